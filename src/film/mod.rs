@@ -1,0 +1,253 @@
+//! The film: what all samples add up to, exactly.
+//!
+//! A sample's radiance `x` becomes `k = round(x 2^24)`, and a pixel is the 64-bit sum of its `k`. Integer sums
+//! do not depend on their order, so threads, lanes, backends, machines and resumed runs all arrive at the same
+//! bits. Samples go to two halves in turn, so that their difference tells the error (see [`Film::error`]); a
+//! film that is not asked for its error has one half.
+
+pub mod checkpoint;
+mod ranges;
+
+pub use ranges::SampleRanges;
+
+use crate::stages::Transfer;
+
+/// One unit of the film's fixed point is `2^-24` of radiance.
+pub const FIXED_POINT_SCALE: f64 = 16_777_216.0;
+
+/// A sample's radiance is below this; more is cut off there. It is the largest that fits a signed 32-bit
+/// integer, which every processor converts to in one instruction.
+pub const RADIANCE_LIMIT: f64 = 128.0;
+
+/// The largest `k`: that of the greatest `f32` below [`RADIANCE_LIMIT`].
+pub const FIXED_POINT_MAX: u32 = 2_147_483_520;
+
+/// Sums of one pixel in units of `2^-24`, RGB.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PixelSum(pub [u64; 3]);
+
+impl PixelSum {
+    /// Adds another sum.
+    pub fn add(&mut self, other: PixelSum) {
+        for (mine, theirs) in self.0.iter_mut().zip(other.0) {
+            *mine += theirs;
+        }
+    }
+
+    /// Sum in units of radiance. Exact up to 2^53 units, which is half a thousand million samples of radiance 1.
+    pub fn radiance(self) -> [f64; 3] {
+        self.0.map(|k| k as f64 / FIXED_POINT_SCALE)
+    }
+}
+
+/// One sample's radiance as the film keeps it, or `None` where a component is NaN, infinite or negative: such
+/// a sample is not added but counted.
+pub fn fixed_point(radiance: [f64; 3]) -> Option<PixelSum> {
+    if radiance.iter().all(|x| x.is_finite() && *x >= 0.0) {
+        let k = |x: f64| ((x * FIXED_POINT_SCALE).round_ties_even() as u64).min(u64::from(FIXED_POINT_MAX));
+        Some(PixelSum(radiance.map(k)))
+    } else {
+        None
+    }
+}
+
+/// An estimate of the picture's error from its two halves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorEstimate {
+    /// Root of the mean squared error over pixels and channels, linear radiance.
+    pub rmse: f64,
+    /// `mean(error^2 / (mean^2 + 0.01))`: errors in the dark count for more.
+    pub rel_mse: f64,
+}
+
+/// Sums of samples for every pixel, top row first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    width: u32,
+    height: u32,
+    halves: Vec<Vec<PixelSum>>,
+    samples: SampleRanges,
+    rejected: u64,
+}
+
+impl Film {
+    /// An empty film of `width` by `height` pixels and `half_count` halves (1 or 2).
+    /// It takes 24 bytes a pixel and half.
+    pub fn new(width: u32, height: u32, half_count: usize) -> Self {
+        debug_assert!(half_count == 1 || half_count == 2);
+        let pixels = width as usize * height as usize;
+        Film {
+            width,
+            height,
+            halves: vec![vec![PixelSum::default(); pixels]; half_count],
+            samples: SampleRanges::default(),
+            rejected: 0,
+        }
+    }
+
+    /// Bytes that the sums of such a film take.
+    pub fn bytes(width: u32, height: u32, half_count: usize) -> u64 {
+        u64::from(width) * u64::from(height) * half_count as u64 * size_of::<PixelSum>() as u64
+    }
+
+    /// Pixels across.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Pixels down.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The halves: sample `i` is in half `i mod half_count`. Each is row by row from the top.
+    pub fn halves(&self) -> &[Vec<PixelSum>] {
+        &self.halves
+    }
+
+    /// Which samples every pixel holds.
+    pub fn samples(&self) -> &SampleRanges {
+        &self.samples
+    }
+
+    /// Samples that were NaN, infinite or negative and so were left out, over all pixels.
+    pub fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    /// Samples per pixel.
+    pub fn sample_count(&self) -> u64 {
+        self.samples.count()
+    }
+
+    /// Samples per pixel of one half.
+    pub fn half_sample_count(&self, half: usize) -> u64 {
+        self.samples.count_in_half(half, self.halves.len())
+    }
+
+    /// The sums, for a renderer to add to. It must afterwards say what it added: [`Film::record`].
+    pub fn halves_mut(&mut self) -> &mut [Vec<PixelSum>] {
+        &mut self.halves
+    }
+
+    /// Notes that every pixel now holds the samples of `range` besides, `rejected` of which were left out.
+    ///
+    /// # Errors
+    /// [`FilmError::Overlap`] if some of them were there before; the note is not taken.
+    pub fn record(&mut self, range: std::ops::Range<u64>, rejected: u64) -> Result<(), FilmError> {
+        self.samples.insert(range)?;
+        self.rejected += rejected;
+        Ok(())
+    }
+
+    /// Sum of a pixel over the halves.
+    pub fn pixel_sum(&self, index: usize) -> PixelSum {
+        let mut sum = PixelSum::default();
+        for half in &self.halves {
+            sum.add(half[index]);
+        }
+        sum
+    }
+
+    /// Mean radiance of pixel `index` (row by row from the top), linear RGB; black without samples.
+    pub fn mean(&self, index: usize) -> [f64; 3] {
+        mean_of(self.pixel_sum(index), self.sample_count())
+    }
+
+    /// The whole picture, linear RGB, row by row from the top.
+    pub fn means(&self) -> Vec<[f32; 3]> {
+        (0..self.width as usize * self.height as usize).map(|i| self.mean(i).map(|x| x as f32)).collect()
+    }
+
+    /// The picture in 8 bits: `transfer`, then `floor(256 clamp(v, 0, .999))`; top row first.
+    pub fn to_rgb8(&self, transfer: Transfer) -> Vec<u8> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let mut bytes = Vec::with_capacity(width * height * 3);
+        for row in 0..height {
+            for column in 0..width {
+                let linear = self.mean(row * width + column);
+                bytes.extend(linear.map(|x| to_byte(x, transfer, row, height)));
+            }
+        }
+        bytes
+    }
+
+    /// The error that the halves show: with `A` and `B` their means, `MSE = mean((A - B)^2) / 4`.
+    /// `None` with one half, or before both hold the same number of samples, at least one.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        let [half_a, half_b] = self.halves.as_slice() else { return None };
+        let (count_a, count_b) = (self.half_sample_count(0), self.half_sample_count(1));
+        if count_a == 0 || count_b == 0 {
+            return None;
+        }
+        let (mut square_sum, mut relative_sum) = (0.0, 0.0);
+        for (a, b) in half_a.iter().zip(half_b) {
+            let (a, b) = (mean_of(*a, count_a), mean_of(*b, count_b));
+            for channel in 0..3 {
+                let mean = 0.5 * (a[channel] + b[channel]);
+                let square = (a[channel] - b[channel]).powi(2) / 4.0;
+                square_sum += square;
+                relative_sum += square / (mean * mean + 1e-2);
+            }
+        }
+        let terms = (half_a.len() * 3) as f64;
+        Some(ErrorEstimate { rmse: (square_sum / terms).sqrt(), rel_mse: relative_sum / terms })
+    }
+
+    /// Adds another film of the same size.
+    ///
+    /// # Errors
+    /// [`FilmError::Size`] or [`FilmError::Overlap`]; this film is then as it was.
+    pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
+        let shape = |f: &Film| (f.width, f.height, f.halves.len());
+        if shape(self) != shape(other) {
+            return Err(FilmError::Size { mine: shape(self), theirs: shape(other) });
+        }
+        let mut samples = self.samples.clone();
+        for range in other.samples.iter() {
+            samples.insert(range)?;
+        }
+        self.samples = samples;
+        self.rejected += other.rejected;
+        for (mine, theirs) in self.halves.iter_mut().zip(&other.halves) {
+            for (sum, more) in mine.iter_mut().zip(theirs) {
+                sum.add(*more);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn mean_of(sum: PixelSum, count: u64) -> [f64; 3] {
+    if count == 0 { [0.0; 3] } else { sum.radiance().map(|x| x / count as f64) }
+}
+
+/// One channel of a picture's pixel in `row` of `height`, from linear radiance.
+pub fn to_byte(linear: f64, transfer: Transfer, row: usize, height: usize) -> u8 {
+    let gamma = match transfer {
+        Transfer::Linear => false,
+        Transfer::Gamma2 => true,
+        Transfer::LinearAboveGamma2 => row >= height / 2,
+    };
+    let value = if gamma { linear.max(0.0).sqrt() } else { linear };
+    (256.0 * value.clamp(0.0, 0.999)) as u8
+}
+
+/// Films that cannot be added.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+pub enum FilmError {
+    /// Different width, height or number of halves.
+    #[error("the films differ in shape: {}x{} with {} halves and {}x{} with {}", mine.0, mine.1, mine.2, theirs.0, theirs.1, theirs.2)]
+    Size {
+        /// Width, height, halves.
+        mine: (u32, u32, usize),
+        /// Width, height, halves.
+        theirs: (u32, u32, usize),
+    },
+    /// A sample would be counted twice.
+    #[error("samples {}..{} are already in the film; each sample may be added once", range.start, range.end)]
+    Overlap {
+        /// The samples that both hold.
+        range: std::ops::Range<u64>,
+    },
+}

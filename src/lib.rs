@@ -1,0 +1,10 @@
+//! Weekender: the path tracer of *Ray Tracing in One Weekend* as a viewer, a headless renderer and a lesson.
+
+pub mod film;
+pub mod output;
+pub mod recipe;
+pub mod render;
+pub mod render_cpu;
+pub mod sampling;
+pub mod scene;
+pub mod stages;

@@ -1,0 +1,275 @@
+//! What every backend renders and how it is asked: [`RenderJob`], [`Features`] and the [`Renderer`] trait.
+//!
+//! **A sample is a pure function** of (job, pixel, sample index). It does not depend on the backend, the packet
+//! width, the thread, its neighbours or what was rendered before. Everything else rests on that.
+
+use crate::film::Film;
+use crate::scene::{Camera, Material, Scene, SceneError};
+use crate::stages::{Rules, Shading};
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+use thiserror::Error;
+
+/// Largest width and height of a picture, pixels: a pixel's position is packed into 32 bits.
+pub const SIZE_LIMIT: u32 = 16_384;
+
+/// Largest number of rays a path may have.
+pub const DEPTH_LIMIT: u32 = 10_000;
+
+/// Sample indices are below this.
+pub const SAMPLE_LIMIT: u64 = 1 << 32;
+
+/// Where the numbers of a sample come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
+#[serde(rename_all = "lowercase")]
+pub enum SamplerKind {
+    /// Independent numbers, as in the book.
+    Independent,
+    /// Scrambled Sobol points: the same picture with fewer samples.
+    #[default]
+    Sobol,
+}
+
+impl SamplerKind {
+    /// All of them.
+    pub const ALL: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
+
+    /// The name used on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            SamplerKind::Independent => "independent",
+            SamplerKind::Sobol => "sobol",
+        }
+    }
+}
+
+/// Numbers of a job that are neither scene nor camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RenderSettings {
+    /// Pixels across, `1..=16384`.
+    pub width: u32,
+    /// Pixels down, `1..=16384`.
+    pub height: u32,
+    /// Most rays of a path, the camera's included, `1..=10000`. A path that is cut off brings nothing.
+    pub max_depth: u32,
+    /// Where the numbers come from.
+    pub sampler: SamplerKind,
+    /// Chooses among pictures that differ in their noise alone.
+    pub seed: u32,
+    /// Whether samples go to two halves with scramblings of their own, so that the error can be estimated.
+    pub estimate_error: bool,
+}
+
+impl RenderSettings {
+    /// Halves of the film: 2 if the error is estimated, else 1.
+    pub fn half_count(&self) -> usize {
+        if self.estimate_error { 2 } else { 1 }
+    }
+}
+
+/// A picture to be rendered, checked once. Two equal jobs have the same samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderJob {
+    scene: Scene,
+    camera: Camera,
+    settings: RenderSettings,
+    rules: Rules,
+}
+
+impl RenderJob {
+    /// Checks everything that a backend relies on.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its value, its limit and what to do.
+    pub fn new(
+        scene: Scene,
+        camera: Camera,
+        settings: RenderSettings,
+        rules: Rules,
+    ) -> Result<Self, JobError> {
+        scene.validate()?;
+        camera.validate()?;
+        for (what, pixels) in [("width", settings.width), ("height", settings.height)] {
+            if !(1..=SIZE_LIMIT).contains(&pixels) {
+                return Err(JobError::Size { what, pixels });
+            }
+        }
+        if !(1..=DEPTH_LIMIT).contains(&settings.max_depth) {
+            return Err(JobError::Depth { depth: settings.max_depth });
+        }
+        Ok(RenderJob { scene, camera, settings, rules })
+    }
+
+    /// Spheres, materials and sky.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The camera.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// Size, depth, sampler, seed, halves.
+    pub fn settings(&self) -> &RenderSettings {
+        &self.settings
+    }
+
+    /// The rules in force.
+    pub fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    /// An empty film for this job.
+    pub fn new_film(&self) -> Film {
+        Film::new(self.settings.width, self.settings.height, self.settings.half_count())
+    }
+
+    /// What this job needs of a kernel.
+    pub fn features(&self) -> Features {
+        let occurs =
+            |test: fn(&Material) -> bool| self.scene.spheres.iter().any(|s| test(self.scene.material_of(s)));
+        Features {
+            lambertian: occurs(|m| matches!(m, Material::Lambertian { .. })),
+            metal: occurs(|m| matches!(m, Material::Metal { .. })),
+            fuzz: occurs(|m| m.effective_fuzz() > 0.0),
+            dielectric: occurs(|m| matches!(m, Material::Dielectric { .. })),
+            lens: self.camera.defocus_angle_degrees > 0.0,
+            stage_rules: !self.rules.are_finished(),
+            rays: self.rules.shading != Shading::ImageGradient,
+        }
+    }
+}
+
+/// What a job needs of a kernel; what it does not need is left out of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Features {
+    /// A Lambertian surface occurs.
+    pub lambertian: bool,
+    /// A metal occurs.
+    pub metal: bool,
+    /// A metal with fuzz above 0 occurs.
+    pub fuzz: bool,
+    /// Glass occurs.
+    pub dielectric: bool,
+    /// The camera has a lens of some size.
+    pub lens: bool,
+    /// A stage's rules differ from the finished renderer's.
+    pub stage_rules: bool,
+    /// Rays are traced at all.
+    pub rays: bool,
+}
+
+/// A job that cannot be rendered.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum JobError {
+    /// The scene or camera.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The picture's size.
+    #[error(
+        "the picture's {what} is {pixels} pixels, but must be within 1 and {SIZE_LIMIT}; choose a smaller picture or stitch several"
+    )]
+    Size {
+        /// "width" or "height".
+        what: &'static str,
+        /// Pixels.
+        pixels: u32,
+    },
+    /// The depth.
+    #[error("max_depth is {depth}, but must be within 1 and {DEPTH_LIMIT} rays a path; 50 is the book's")]
+    Depth {
+        /// Rays a path.
+        depth: u32,
+    },
+}
+
+/// What a call to [`Renderer::accumulate`] did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stats {
+    /// Paths that were finished: pixels times samples.
+    pub paths: u64,
+    /// Rays that were traced.
+    pub rays: u64,
+    /// Samples that were NaN, infinite or negative.
+    pub rejected: u64,
+    /// Lanes that traced a ray, over all intersections of packets.
+    pub busy_lanes: u64,
+    /// Lanes there were, over all intersections of packets.
+    pub offered_lanes: u64,
+    /// Wall time of tracing.
+    pub trace: Duration,
+}
+
+impl Stats {
+    /// Adds another call's figures.
+    pub fn add(&mut self, other: &Stats) {
+        self.paths += other.paths;
+        self.rays += other.rays;
+        self.rejected += other.rejected;
+        self.busy_lanes += other.busy_lanes;
+        self.offered_lanes += other.offered_lanes;
+        self.trace += other.trace;
+    }
+}
+
+/// Why samples could not be added.
+#[derive(Debug, Error)]
+pub enum RenderError {
+    /// The caller asked to stop in the middle. The film's sums are then of no use.
+    #[error("cancelled")]
+    Cancelled,
+    /// The backend failed; another can go on from the last good film.
+    #[error("{backend} failed: {reason}")]
+    Backend {
+        /// Its name.
+        backend: &'static str,
+        /// What it said.
+        reason: String,
+    },
+    /// The same samples were asked for twice.
+    #[error(transparent)]
+    Film(#[from] crate::film::FilmError),
+}
+
+/// What a backend is, for reports.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BackendInfo {
+    /// "cpu", "reference" or "gpu".
+    pub name: &'static str,
+    /// The instruction level or the adapter.
+    pub device: String,
+    /// Paths that advance in step.
+    pub lanes: usize,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// Adds samples to a film.
+pub trait Renderer: Send {
+    /// What this is.
+    fn info(&self) -> BackendInfo;
+
+    /// Builds what tracing `job` needs (tables, hierarchy, kernels). Later calls for an equal job do nothing.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`] if the backend cannot render this job.
+    fn prepare(&mut self, job: &RenderJob) -> Result<(), RenderError>;
+
+    /// Adds samples `range` of every pixel to `film` and records them there. Prepares if need be.
+    ///
+    /// `cancel` is looked at between small units of work.
+    ///
+    /// # Errors
+    /// [`RenderError::Cancelled`] leaves the film's sums incomplete: throw it away. After any other error it is
+    /// as it was.
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError>;
+}

@@ -1,0 +1,91 @@
+//! What happens to light at a surface. (Book 1, sections 9 to 11.)
+
+use super::SceneError;
+use super::error::{colour, finite};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// A surface's behaviour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
+pub enum Material {
+    /// Scatters in proportion to the cosine with the normal. (Section 9.4.)
+    Lambertian {
+        /// Reflected share, linear RGB, each in `0..=1`.
+        albedo: DVec3,
+    },
+    /// Reflects as a mirror, blurred by `fuzz`. (Section 10.)
+    Metal {
+        /// Reflected share, linear RGB, each in `0..=1`.
+        albedo: DVec3,
+        /// Radius of the sphere that the reflected unit direction is moved within; 0 is a mirror.
+        /// Not negative; what is above 1 acts as 1, as in the book.
+        #[serde(default)]
+        fuzz: f64,
+    },
+    /// Refracts or reflects, and absorbs nothing. (Section 11.)
+    Dielectric {
+        /// The material's index over that of what surrounds it, more than 0 and at most `1e9`.
+        refraction_index: f64,
+    },
+}
+
+/// A material and what the scene file calls it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedMaterial {
+    /// Unique within a scene.
+    pub name: String,
+    /// The behaviour.
+    pub material: Material,
+}
+
+impl Material {
+    /// The fuzz that acts: 0 for other materials, at most 1 for a metal.
+    pub fn effective_fuzz(&self) -> f64 {
+        match self {
+            Material::Metal { fuzz, .. } => fuzz.min(1.0),
+            _ => 0.0,
+        }
+    }
+
+    /// The book's word for it.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Material::Lambertian { .. } => "lambertian",
+            Material::Metal { .. } => "metal",
+            Material::Dielectric { .. } => "dielectric",
+        }
+    }
+
+    pub(super) fn validate(&self, name: &str) -> Result<(), SceneError> {
+        let of = |key: &str| format!("materials.{name}.{key}");
+        match *self {
+            Material::Lambertian { albedo } => colour(&of("albedo"), albedo, 1.0),
+            Material::Metal { albedo, fuzz } => {
+                colour(&of("albedo"), albedo, 1.0)?;
+                finite(&of("fuzz"), fuzz)?;
+                if fuzz < 0.0 {
+                    return Err(SceneError::range(
+                        of("fuzz"),
+                        fuzz,
+                        "0 or more",
+                        "use 0 for a perfect mirror",
+                    ));
+                }
+                Ok(())
+            }
+            Material::Dielectric { refraction_index } => {
+                finite(&of("refraction_index"), refraction_index)?;
+                if !(refraction_index > 0.0 && (1e-9..=1e9).contains(&refraction_index)) {
+                    return Err(SceneError::range(
+                        of("refraction_index"),
+                        refraction_index,
+                        "within 1e-9 and 1e9",
+                        "glass is about 1.5; an air bubble in glass is 1/1.5",
+                    ));
+                }
+                Ok(())
+            }
+        }
+    }
+}
