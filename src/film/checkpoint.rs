@@ -268,7 +268,7 @@ fn row_block(
 /// [`CheckpointError`], each with what to do.
 pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
     let damaged = |what: String| CheckpointError::Damaged { path: path.to_owned(), what };
-    let mut reader = exr::block::read(open(path)?, true).map_err(|error| damaged(error.to_string()))?;
+    let reader = exr::block::read(open(path)?, true).map_err(|error| damaged(error.to_string()))?;
 
     // Read what the file says of itself.
     let not_film = || CheckpointError::NotFilm { path: path.to_owned() };

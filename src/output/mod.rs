@@ -1,6 +1,7 @@
 //! Pictures in files: 8-bit PNG, binary PPM (P6), and OpenEXR, which is the whole film. All of them say what they
 //! show: see [`Description`].
 
+mod png;
 mod ppm;
 
 pub use crate::film::{Description, RECIPE_KEY, WriteError, check_writable, key, replace_file};
@@ -8,7 +9,7 @@ pub use crate::film::{Description, RECIPE_KEY, WriteError, check_writable, key, 
 use crate::film::{Film, checkpoint};
 use crate::stages::Transfer;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader, Read, Seek, Write};
+use std::io::{self, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// How a picture is kept in a file.
@@ -95,7 +96,7 @@ pub fn write_image(
 ) -> Result<(), OutputError> {
     let format = OutputFormat::from_path(path)?;
     replace_file(path, |writer| match format {
-        OutputFormat::Png => write_png(film, transfer, description, writer),
+        OutputFormat::Png => png::write(film, transfer, description, writer),
         OutputFormat::P6 => ppm::write(film, transfer, description, writer),
         OutputFormat::Exr => checkpoint::write(film, description, writer),
     })?;
@@ -114,7 +115,7 @@ pub fn read_description(path: &Path) -> Result<Description, OutputError> {
         reader.by_ref().take(8).read_to_end(&mut start)?;
         reader.rewind()?;
         match start.as_slice() {
-            [0x89, b'P', b'N', b'G', ..] => read_png_description(reader),
+            [0x89, b'P', b'N', b'G', ..] => png::read_description(reader),
             [b'P', b'6', ..] => ppm::read_description(reader),
             start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader),
             _ => Ok(None),
@@ -123,49 +124,12 @@ pub fn read_description(path: &Path) -> Result<Description, OutputError> {
     read().map_err(unreadable)?.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
 }
 
-fn write_png(
-    film: &Film,
-    transfer: Transfer,
-    description: &Description,
-    writer: &mut impl Write,
-) -> io::Result<()> {
-    let mut encoder = png::Encoder::new(writer, film.width(), film.height());
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    // Readers keep the two kinds of chunks apart, so one kind for all: else their order would be lost.
-    let latin_1 = description.entries().all(|(_, value)| value.chars().all(|c| c <= 'ÿ'));
-    for (key, value) in description.entries() {
-        let (key, value) = (key.to_owned(), value.to_owned());
-        if latin_1 { encoder.add_text_chunk(key, value)? } else { encoder.add_itxt_chunk(key, value)? }
+/// All pixels, 8-bit RGB, a row at a time: a picture may be larger than one likes to have in memory again.
+fn write_rows(film: &Film, transfer: Transfer, writer: &mut impl Write) -> io::Result<()> {
+    let mut bytes = vec![0; 3 * film.width() as usize];
+    for row in 0..film.height() {
+        film.resolve_rows(row..row + 1, transfer, &mut bytes);
+        writer.write_all(&bytes)?;
     }
-    let mut writer = encoder.write_header()?;
-    let mut recipe = png::text_metadata::ITXtChunk::new(RECIPE_KEY, description.recipe());
-    recipe.compressed = true;
-    recipe.compress_text()?;
-    writer.write_text_chunk(&recipe)?;
-    writer.write_image_data(&film.to_rgb8(transfer))?;
-    writer.finish()?;
     Ok(())
-}
-
-/// Most bytes that the texts of a PNG may have when unpacked.
-const PNG_TEXT_LIMIT: usize = 64 << 20;
-
-fn read_png_description(reader: impl BufRead + Seek) -> io::Result<Option<Description>> {
-    let limits = png::Limits { bytes: PNG_TEXT_LIMIT };
-    let reader = png::Decoder::new_with_limits(reader, limits).read_info()?;
-    let info = reader.info();
-    let Some(recipe) = info.utf8_text.iter().find(|chunk| chunk.keyword == RECIPE_KEY) else {
-        return Ok(None);
-    };
-    let mut recipe = recipe.clone();
-    recipe.decompress_text_with_limit(PNG_TEXT_LIMIT)?;
-    let mut description = Description::new(&recipe.get_text()?);
-    for chunk in &info.uncompressed_latin1_text {
-        description.set(&chunk.keyword, &chunk.text);
-    }
-    for chunk in &info.utf8_text {
-        description.set(&chunk.keyword, chunk.get_text()?);
-    }
-    Ok(Some(description))
 }

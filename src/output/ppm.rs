@@ -1,7 +1,7 @@
 //! Binary PPM (P6). The header's comments hold the description: lines `# key: value`, then a line with the
 //! recipe's key and nothing after it, then the recipe's lines.
 
-use super::{Description, RECIPE_KEY};
+use super::{Description, RECIPE_KEY, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use std::io::{self, BufRead, Write};
@@ -21,7 +21,7 @@ pub(super) fn write(
         writeln!(writer, "# {line}")?;
     }
     writeln!(writer, "{} {}\n255", film.width(), film.height())?;
-    writer.write_all(&film.to_rgb8(transfer))
+    write_rows(film, transfer, writer)
 }
 
 pub(super) fn read_description(mut reader: impl BufRead) -> io::Result<Option<Description>> {
