@@ -1,5 +1,7 @@
 //! Pictures in files: what is in them, what they say, and what happens when they cannot be written.
 
+#![allow(clippy::unwrap_used)]
+
 use image::{ImageFormat, ImageReader};
 use std::fs;
 use std::io;
@@ -49,11 +51,8 @@ fn the_ending_decides() {
     {
         assert_eq!(OutputFormat::from_path(Path::new(name)).unwrap(), format);
     }
-    for name in ["a.jpg", "a", ".png", "", "png", "a.png/"] {
-        let Err(error) = OutputFormat::from_path(Path::new(name)) else {
-            assert_eq!(name, "a.png/");
-            continue;
-        };
+    for name in ["a.jpg", "a", ".png", "", "png"] {
+        let error = OutputFormat::from_path(Path::new(name)).unwrap_err();
         assert!(matches!(error, OutputError::UnknownEnding { .. }));
         let message = error.to_string();
         assert!([".png", ".ppm", ".exr", name].iter().all(|known| message.contains(known)), "{message}");
@@ -104,8 +103,6 @@ fn a_picture_says_what_was_said_of_it() {
     foreign.set("Place", "東京 or Köln");
     let mut latin = description();
     latin.set("Place", "Köln");
-    let mut large = description();
-    large.set("Place", Description::new("").recipe());
     let large_recipe: String =
         (0..100_000).map(|i| format!("center = [{i}, {}, 0]\n", i * 7919 % 1013)).collect();
     let large = Description::new(&large_recipe);

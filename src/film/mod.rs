@@ -231,7 +231,7 @@ impl Film {
     /// If a row is below the picture, or `pixels` is of another length.
     pub fn mean_rows(&self, rows: Range<u32>, pixels: &mut [[f32; 3]]) {
         let unit = self.fixed_point_of_1();
-        self.for_each_sum(rows, pixels, |_, sum, pixel| *pixel = sum.0.map(|k| (k as f64 / unit) as f32));
+        self.for_each_sum(rows, pixels, |sum, pixel| *pixel = sum.0.map(|k| (k as f64 / unit) as f32));
     }
 
     /// The picture in 8 bits: `transfer`, then `floor(256 clamp(v, 0, .999))`; top row first.
@@ -249,9 +249,19 @@ impl Film {
     pub fn resolve_rows(&self, rows: Range<u32>, transfer: Transfer, bytes: &mut [u8]) {
         let (unit, height) = (self.fixed_point_of_1(), self.height as usize);
         let (pixels, []) = bytes.as_chunks_mut::<3>() else { panic!("a pixel has 3 bytes") };
-        self.for_each_sum(rows, pixels, |row, sum, pixel| {
-            *pixel = sum.0.map(|k| to_byte(k as f64 / unit, transfer, row, height));
-        });
+        assert_eq!(pixels.len(), self.width as usize * rows.len(), "3 bytes for each pixel of {rows:?}");
+        // The choice is the row's, and stays out of the loop over its pixels.
+        for (line, row) in pixels.chunks_exact_mut(self.width as usize).zip(rows) {
+            if is_gamma(transfer, row as usize, height) {
+                self.for_each_sum(row..row + 1, line, |sum, pixel| {
+                    *pixel = sum.0.map(|k| quantise((k as f64 / unit).sqrt()));
+                });
+            } else {
+                self.for_each_sum(row..row + 1, line, |sum, pixel| {
+                    *pixel = sum.0.map(|k| quantise(k as f64 / unit));
+                });
+            }
+        }
     }
 
     /// A pixel's sum if all its samples were 1. It is a product with a power of two, so that dividing by it is
@@ -260,25 +270,21 @@ impl Film {
         self.sample_count().max(1) as f64 * FIXED_POINT_SCALE
     }
 
-    fn for_each_sum<T>(&self, rows: Range<u32>, pixels: &mut [T], each: impl Fn(usize, PixelSum, &mut T)) {
+    fn for_each_sum<T>(&self, rows: Range<u32>, places: &mut [T], each: impl Fn(PixelSum, &mut T)) {
         let width = self.width as usize;
-        assert_eq!(pixels.len(), width * rows.len(), "a place for each pixel of the rows {rows:?}");
-        for (line, row) in pixels.chunks_exact_mut(width).zip(rows) {
-            let row = row as usize;
-            let part = row * width..(row + 1) * width;
-            match self.halves.as_slice() {
-                [half_a, half_b] => {
-                    let sums = half_a[part.clone()].iter().zip(&half_b[part]);
-                    for ((a, b), pixel) in sums.zip(line) {
-                        let mut sum = *a;
-                        sum.add(*b);
-                        each(row, sum, pixel);
-                    }
+        let pixels = rows.start as usize * width..rows.end as usize * width;
+        assert_eq!(places.len(), pixels.len(), "a place for each pixel of the rows {rows:?}");
+        match self.halves.as_slice() {
+            [half_a, half_b] => {
+                for ((a, b), place) in half_a[pixels.clone()].iter().zip(&half_b[pixels]).zip(places) {
+                    let mut sum = *a;
+                    sum.add(*b);
+                    each(sum, place);
                 }
-                _ => {
-                    for (sum, pixel) in self.halves[0][part].iter().zip(line) {
-                        each(row, *sum, pixel);
-                    }
+            }
+            _ => {
+                for (sum, place) in self.halves[0][pixels].iter().zip(places) {
+                    each(*sum, place);
                 }
             }
         }
@@ -342,12 +348,19 @@ fn mean_of(sum: PixelSum, count: u64) -> [f64; 3] {
 
 /// One channel of a picture's pixel in `row` of `height`, from linear radiance.
 pub fn to_byte(linear: f64, transfer: Transfer, row: usize, height: usize) -> u8 {
-    let gamma = match transfer {
+    quantise(if is_gamma(transfer, row, height) { linear.max(0.0).sqrt() } else { linear })
+}
+
+/// Whether `row` of `height` takes the square root.
+fn is_gamma(transfer: Transfer, row: usize, height: usize) -> bool {
+    match transfer {
         Transfer::Linear => false,
         Transfer::Gamma2 => true,
         Transfer::LinearAboveGamma2 => row >= height / 2,
-    };
-    let value = if gamma { linear.max(0.0).sqrt() } else { linear };
+    }
+}
+
+fn quantise(value: f64) -> u8 {
     (256.0 * value.clamp(0.0, 0.999)) as u8
 }
 
