@@ -36,7 +36,7 @@ const IDS: [&str; 27] = [
 ];
 
 fn stage(id: &str) -> &'static Stage {
-    Stage::find(id).expect("in the registry")
+    Stage::find(id).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn recipe(id: &str) -> Recipe {

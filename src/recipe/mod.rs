@@ -161,7 +161,7 @@ mod tests {
         let message = |name: &str| Recipe::find(name).expect_err("unknown").to_string();
         assert_eq!(
             message("three-sphere"),
-            "there is no scene \"three-sphere\"; did you mean three-spheres? --list shows all"
+            "there is no scene \"three-sphere\"; did you mean three-spheres or two-spheres? --list shows all"
         );
         assert_eq!(message("xylophone"), "there is no scene \"xylophone\"; --list shows all");
         for count in ["0", "10000001", "-1", "many", ""] {
