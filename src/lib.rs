@@ -4,6 +4,7 @@ pub mod app;
 pub mod backends;
 pub mod batch;
 pub mod cli;
+pub mod failure;
 pub mod film;
 pub mod output;
 pub mod progressive;
