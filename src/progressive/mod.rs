@@ -3,7 +3,7 @@
 //!
 //! Commands go through a channel and are obeyed between passes; what comes back is a small [`Status`] and, when
 //! asked for, a [`Picture`]. No call here waits for the renderer, but [`Progressive::wait`],
-//! [`Progressive::finish`] and dropping it.
+//! [`Progressive::take_film`], [`Progressive::finish`] and dropping it.
 
 mod passes;
 mod plan;
@@ -58,7 +58,7 @@ pub struct Progressive {
     shared: Arc<Shared>,
     run: u64,
     cancel: Arc<AtomicBool>,
-    thread: Option<JoinHandle<Option<Film>>>,
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Progressive {
@@ -163,10 +163,16 @@ impl Progressive {
         }
     }
 
-    /// Ends the thread after its pass and hands out the film; `None` if there is none.
-    pub fn finish(mut self) -> Option<Film> {
-        self.send(Command::Finish);
-        self.thread.take().and_then(|thread| thread.join().ok()).flatten()
+    /// Ends the render after its pass and hands out the film; `None` if there is none.
+    pub fn take_film(&self) -> Option<Film> {
+        let (sender, receiver) = mpsc::channel();
+        self.send(Command::Take(sender));
+        receiver.recv().ok().flatten()
+    }
+
+    /// As [`Progressive::take_film`], and ends the thread.
+    pub fn finish(self) -> Option<Film> {
+        self.take_film()
     }
 
     /// A thread that has died has said so in the status, so that nothing is lost by not sending.

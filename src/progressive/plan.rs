@@ -2,7 +2,6 @@
 
 use crate::film::ErrorEstimate;
 use crate::render::SAMPLE_LIMIT;
-use serde::Serialize;
 use std::ops::Range;
 use std::time::Duration;
 
@@ -53,8 +52,7 @@ impl Plan {
 }
 
 /// What ended a render.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndReason {
     /// The film holds all samples of the plan.
     Samples,
@@ -67,6 +65,16 @@ pub enum EndReason {
 }
 
 impl EndReason {
+    /// As reports name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            EndReason::Samples => "samples",
+            EndReason::TimeLimit => "time_limit",
+            EndReason::NoiseTarget => "noise_target",
+            EndReason::Stopped => "stopped",
+        }
+    }
+
     /// In words, after "ended by".
     pub fn words(self) -> &'static str {
         match self {

@@ -8,7 +8,7 @@ use crate::progressive::{EndReason, HistoryPoint};
 use crate::render::{RenderError, RenderJob, Renderer};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, TryRecvError};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::time::{Duration, Instant};
 
 pub(super) enum Command {
@@ -21,6 +21,7 @@ pub(super) enum Command {
     SetPlan(Plan),
     Inspect(Box<dyn FnOnce(&Film) + Send>),
     Look,
+    Take(Sender<Option<Film>>),
     Finish,
 }
 
@@ -68,7 +69,7 @@ impl Worker {
         Worker { commands, shared, factory, backend: None, render: None }
     }
 
-    pub(super) fn run(mut self) -> Option<Film> {
+    pub(super) fn run(mut self) {
         let _note = DeathNote(Arc::clone(&self.shared));
         loop {
             let is_working = self.render.as_ref().is_some_and(Render::is_working);
@@ -82,7 +83,12 @@ impl Worker {
                 Some(self.commands.recv().unwrap_or(Command::Finish))
             };
             match command {
-                Some(Command::Finish) => return self.render.map(|render| render.film),
+                Some(Command::Finish) => return,
+                Some(Command::Take(taker)) => {
+                    // A taker who has gone away does not want it.
+                    let _ = taker.send(self.take_film());
+                    continue;
+                }
                 Some(command) => self.obey(command),
                 None => self.step(),
             }
@@ -131,6 +137,14 @@ impl Worker {
         let render = Render::new(run, job, choice, plan, film, cancel);
         self.shared.publish(&render.status);
         self.render = Some(render);
+    }
+
+    fn take_film(&mut self) -> Option<Film> {
+        let Render { film, status, .. } = self.render.take()?;
+        if !status.phase.is_over() {
+            self.shared.publish(&Status { phase: Phase::Idle, ..status });
+        }
+        Some(film)
     }
 
     fn abandon(&mut self) {
