@@ -6,9 +6,7 @@ use std::time::Duration;
 use weekender::backends::BackendChoice;
 use weekender::film::{Film, PixelSum};
 use weekender::progressive::{EndReason, Factory, Phase, Plan, Progressive, Work};
-use weekender::render::{
-    BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats,
-};
+use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
 use weekender::render_cpu::CpuOptions;
 use weekender::scene::{Camera, Scene};
 use weekender::stages::Rules;
@@ -250,7 +248,10 @@ fn pictures_come_when_asked_for_and_films_can_be_looked_at() {
         assert!(begin.elapsed() < PATIENCE);
         std::thread::sleep(Duration::from_millis(1));
     };
-    assert_eq!((picture.width, picture.height, picture.samples_per_pixel, picture.rgb8.len()), (2, 2, 64, 12));
+    assert_eq!(
+        (picture.width, picture.height, picture.samples_per_pixel, picture.rgb8.len()),
+        (2, 2, 64, 12)
+    );
     let (sender, receiver) = std::sync::mpsc::channel();
     progressive.inspect(move |film| sender.send(film.clone()).unwrap());
     assert_eq!(receiver.recv_timeout(PATIENCE).unwrap(), expected(64));

@@ -58,7 +58,8 @@ fn describe(
         description.set(key::SECONDS, seconds + status.trace.as_secs_f64());
     }
     if let Some(backend) = &status.backend {
-        description.set(key::BACKEND, format!("{} {}, {} lanes", backend.name, backend.device, backend.lanes));
+        description
+            .set(key::BACKEND, format!("{} {}, {} lanes", backend.name, backend.device, backend.lanes));
     }
     description
 }

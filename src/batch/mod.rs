@@ -42,7 +42,8 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     };
     let mut renderer = Some(backends::create(&options.backend).map_err(Failure::input)?);
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
-    let mut progressive = Progressive::spawn().context("cannot start the render thread").map_err(Failure::Run)?;
+    let mut progressive =
+        Progressive::spawn().context("cannot start the render thread").map_err(Failure::Run)?;
     if let Some(save) = &options.save_scene {
         write_scene(&save.recipe, &save.path).map_err(Failure::Run)?;
     }
@@ -88,7 +89,9 @@ fn write_scene(recipe: &Recipe, path: &Path) -> anyhow::Result<()> {
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     if let Some(directory) = &options.directory {
         std::fs::create_dir_all(directory)
-            .with_context(|| format!("cannot make the directory {}; choose another --out", directory.display()))
+            .with_context(|| {
+                format!("cannot make the directory {}; choose another --out", directory.display())
+            })
             .map_err(Failure::Input)?;
     }
     let pictures = options.renders.iter().flat_map(|render| [Some(&render.out), render.checkpoint.as_ref()]);

@@ -62,7 +62,11 @@ fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
         ("estimate-error", half_words(a.estimate_error).into(), half_words(b.estimate_error).into()),
         ("camera", format!("{:?}", first.camera()), format!("{:?}", other.camera())),
         ("rules of the stage", format!("{:?}", first.rules()), format!("{:?}", other.rules())),
-        ("number of spheres", first.scene().spheres.len().to_string(), other.scene().spheres.len().to_string()),
+        (
+            "number of spheres",
+            first.scene().spheres.len().to_string(),
+            other.scene().spheres.len().to_string(),
+        ),
     ];
     if let Some((what, mine, theirs)) = values.into_iter().find(|(_, mine, theirs)| mine != theirs) {
         return Some(format!("{what} is {mine} here, {theirs} there"));

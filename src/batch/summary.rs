@@ -149,7 +149,11 @@ impl fmt::Display for Summary {
             added if added == self.samples_per_pixel => String::new(),
             added => format!(" ({added} of them now)"),
         };
-        writeln!(f, "samples  {}{added} per pixel, ended by {}", self.samples_per_pixel, self.ended_by_words)?;
+        writeln!(
+            f,
+            "samples  {}{added} per pixel, ended by {}",
+            self.samples_per_pixel, self.ended_by_words
+        )?;
         writeln!(
             f,
             "time     {} (prepare {:.3} s, trace {:.3} s, write {:.3} s)",
@@ -169,7 +173,11 @@ impl fmt::Display for Summary {
             None => writeln!(f)?,
         }
         match self.rmse_estimate {
-            Some(rmse) => writeln!(f, "error    {rmse:.3e} RMSE (estimated), {} rejected samples", self.rejected_samples)?,
+            Some(rmse) => writeln!(
+                f,
+                "error    {rmse:.3e} RMSE (estimated), {} rejected samples",
+                self.rejected_samples
+            )?,
             None => writeln!(f, "error    not estimated, {} rejected samples", self.rejected_samples)?,
         }
         if self.files.is_empty() {

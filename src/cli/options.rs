@@ -1,8 +1,9 @@
 //! Options that can be carried out, and how flags become them.
 
+use super::Request;
 use super::raw::{ProgressChoice, RawDevice, RawRender};
 use super::sources::{self, CliError, Source};
-use super::{Request, values::Simd};
+use super::values::{Level, Simd};
 use crate::backends::{BackendChoice, BackendError};
 use crate::output::OutputFormat;
 use crate::progressive::Plan;
@@ -79,6 +80,7 @@ pub struct MergeOptions {
 /// What the flags ask for, but `--list` and the subcommands.
 pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
     let backend = backend(&raw)?;
+    check_film_names(&raw)?;
     let (renders, directory) = if raw.stage.as_deref() == Some("all") {
         let directory = directory_of_all(&raw)?;
         let renders = Stage::ALL
@@ -123,13 +125,6 @@ fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOpt
         });
     }
     OutputFormat::from_path(&out)?;
-    for (flag, path) in [("--checkpoint", &raw.checkpoint), ("--resume", &raw.resume)] {
-        if let Some(path) = path
-            && !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
-        {
-            return Err(CliError::FilmEnding { flag, path: path.clone() });
-        }
-    }
     check_distinct(raw, &out)?;
     Ok(RenderOptions {
         plan: plan(raw, &source.recipe),
@@ -140,6 +135,17 @@ fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOpt
         checkpoint: raw.checkpoint.clone(),
         resume: raw.resume.clone(),
     })
+}
+
+fn check_film_names(raw: &RawRender) -> Result<(), CliError> {
+    for (flag, path) in [("--checkpoint", &raw.checkpoint), ("--resume", &raw.resume)] {
+        if let Some(path) = path
+            && !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
+        {
+            return Err(CliError::FilmEnding { flag, path: path.clone() });
+        }
+    }
+    Ok(())
 }
 
 /// Refuses two outputs of one name: the second would replace the first.
@@ -176,8 +182,7 @@ fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
 }
 
 fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
-    let Simd(lanes) = raw.simd;
-    let isa = raw.isa.flatten();
+    let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
     let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
     let cpu = CpuOptions { isa, lanes, threads };
     match raw.device {

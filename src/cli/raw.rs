@@ -1,11 +1,10 @@
 //! The flags as they are typed. What they mean together is found out in `options`.
 
 use super::values::{
-    Simd, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds, parse_simd, parse_size,
-    parse_vector,
+    Level, Simd, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds, parse_simd,
+    parse_size, parse_vector,
 };
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
-use crate::render_cpu::Isa;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use std::ops::Range;
@@ -119,8 +118,9 @@ pub(super) struct RawRender {
           help_heading = "Device")]
     pub simd: Simd,
     /// Instruction level of the CPU, for tests and benchmarks: auto, baseline, sse4.2, avx2, avx512, neon
-    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, help_heading = "Device")]
-    pub isa: Option<Option<Isa>>,
+    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
+          help_heading = "Device")]
+    pub isa: Level,
     /// Threads of the CPU, 1 to 1024 [default: one a core]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1024),
           allow_hyphen_values = true, help_heading = "Device")]

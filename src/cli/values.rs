@@ -18,11 +18,15 @@ pub(super) fn parse_simd(text: &str) -> Result<Simd, String> {
     }
 }
 
-pub(super) fn parse_isa(text: &str) -> Result<Option<Isa>, String> {
+/// An instruction level as typed: `None` leaves the choice to the backend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Level(pub Option<Isa>);
+
+pub(super) fn parse_isa(text: &str) -> Result<Level, String> {
     if text == "auto" {
-        return Ok(None);
+        return Ok(Level(None));
     }
-    Isa::ALL.into_iter().find(|isa| isa.name() == text).map(Some).ok_or_else(|| {
+    Isa::ALL.into_iter().find(|isa| isa.name() == text).map(|isa| Level(Some(isa))).ok_or_else(|| {
         let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
         format!("must be auto or one of {}", names.join(", "))
     })
@@ -30,9 +34,9 @@ pub(super) fn parse_isa(text: &str) -> Result<Option<Isa>, String> {
 
 pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let pixels = |text: &str| text.parse::<u32>().ok().filter(|pixels| (1..=SIZE_LIMIT).contains(pixels));
-    text.split_once('x').and_then(|(width, height)| Some((pixels(width)?, pixels(height)?))).ok_or_else(|| {
-        format!("must be WIDTHxHEIGHT, each within 1 and {SIZE_LIMIT} pixels, such as 800x450")
-    })
+    text.split_once('x').and_then(|(width, height)| Some((pixels(width)?, pixels(height)?))).ok_or_else(
+        || format!("must be WIDTHxHEIGHT, each within 1 and {SIZE_LIMIT} pixels, such as 800x450"),
+    )
 }
 
 pub(super) fn parse_vector(text: &str) -> Result<DVec3, String> {
@@ -80,7 +84,7 @@ mod tests {
         assert_eq!(parse_sample_range("64..128"), Ok(64..128));
         assert_eq!(parse_simd("off"), Ok(Simd(Some(1))));
         assert_eq!(parse_simd("16"), Ok(Simd(Some(16))));
-        assert_eq!(parse_isa("sse4.2"), Ok(Some(Isa::Sse42)));
+        assert_eq!(parse_isa("sse4.2"), Ok(Level(Some(Isa::Sse42))));
     }
 
     #[test]

@@ -47,8 +47,7 @@ impl Shared {
         if status.phase.is_over() {
             return status.clone();
         }
-        let (status, _) =
-            self.changed.wait_timeout(status, timeout).unwrap_or_else(PoisonError::into_inner);
+        let (status, _) = self.changed.wait_timeout(status, timeout).unwrap_or_else(PoisonError::into_inner);
         status.clone()
     }
 

@@ -108,9 +108,9 @@ impl Status {
     pub(super) fn credit(&mut self, backend: &BackendInfo, samples: u64) {
         match self.contributions.iter_mut().find(|c| c.backend == *backend) {
             Some(found) => found.samples_per_pixel += samples,
-            None => self
-                .contributions
-                .push(Contribution { backend: backend.clone(), samples_per_pixel: samples }),
+            None => {
+                self.contributions.push(Contribution { backend: backend.clone(), samples_per_pixel: samples })
+            }
         }
     }
 }
