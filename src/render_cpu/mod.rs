@@ -1,13 +1,31 @@
 //! The CPU backends: SIMD packets, scalar, and the `f64` reference, from one width-generic source.
 
+pub mod bvh;
+pub mod camera;
 mod isa;
+mod kernels;
+pub mod lanes;
+pub mod material;
+pub mod path;
+pub mod rng;
+pub mod sphere;
+pub mod tables;
+mod tiles;
+pub mod work;
 
 pub use isa::Isa;
 
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use kernels::Kernel;
+use lanes::Real;
+use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+use tables::Tables;
+use tiles::{tile_side, tiles};
+use work::{DealtBlock, TileStats, Work};
 
 /// What a CPU backend is to use; `None` leaves the choice to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,44 +73,144 @@ fn list<T: std::fmt::Display>(items: &[T]) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
 }
 
+/// A job's tables and its kernel, in one of the two precisions.
+enum Prepared {
+    Single(Tables<f32>, Kernel<f32>),
+    Double(Tables<f64>, Kernel<f64>),
+}
+
 /// Renders on the CPU.
-pub struct CpuRenderer {}
+pub struct CpuRenderer {
+    /// Level and lanes; `None` for the reference.
+    packets: Option<(Isa, usize)>,
+    threads: rayon::ThreadPool,
+    job: Option<RenderJob>,
+    prepared: Option<Prepared>,
+}
 
 impl CpuRenderer {
     /// A renderer in `f32` with these options.
     ///
     /// # Errors
     /// [`CpuError`] with what can be had instead.
-    pub fn new(_options: CpuOptions) -> Result<Self, CpuError> {
-        Ok(CpuRenderer {})
+    pub fn new(options: CpuOptions) -> Result<Self, CpuError> {
+        let available = Isa::available();
+        let best = available.iter().copied().max().unwrap_or(Isa::Baseline);
+        let isa = options.isa.unwrap_or(best);
+        if !available.contains(&isa) {
+            return Err(CpuError::Isa { isa, available });
+        }
+        let lanes = options.lanes.unwrap_or_else(|| isa.native_lanes());
+        if !isa.lane_counts().contains(&lanes) {
+            return Err(CpuError::Lanes { lanes, isa, available: isa.lane_counts().to_vec() });
+        }
+        CpuRenderer::with_packets(Some((isa, lanes)), options.threads)
     }
 
     /// The reference: scalar, `f64`, `threads` threads (`None`: one a core).
     ///
     /// # Errors
     /// [`CpuError::Threads`].
-    pub fn reference(_threads: Option<usize>) -> Result<Self, CpuError> {
-        Ok(CpuRenderer {})
+    pub fn reference(threads: Option<usize>) -> Result<Self, CpuError> {
+        CpuRenderer::with_packets(None, threads)
+    }
+
+    fn with_packets(packets: Option<(Isa, usize)>, threads: Option<usize>) -> Result<Self, CpuError> {
+        let threads = threads.unwrap_or(0);
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|index| format!("trace-{index}"))
+            .build()
+            .map(|threads| CpuRenderer { packets, threads, job: None, prepared: None })
+            .map_err(|error| CpuError::Threads { threads, reason: error.to_string() })
     }
 }
 
 impl Renderer for CpuRenderer {
     fn info(&self) -> BackendInfo {
-        BackendInfo { name: "cpu", device: "baseline".into(), lanes: 1, threads: 1 }
+        let threads = self.threads.current_num_threads();
+        match self.packets {
+            Some((isa, lanes)) => BackendInfo { name: "cpu", device: isa.to_string(), lanes, threads },
+            None => BackendInfo { name: "reference", device: "f64".into(), lanes: 1, threads },
+        }
     }
 
-    fn prepare(&mut self, _job: &RenderJob) -> Result<(), RenderError> {
+    fn prepare(&mut self, job: &RenderJob) -> Result<(), RenderError> {
+        if self.prepared.is_some() && self.job.as_ref() == Some(job) {
+            return Ok(());
+        }
+        self.prepared = None;
+        self.prepared = Some(match self.packets {
+            Some((isa, lanes)) => {
+                let tables = Tables::new(job);
+                let needed = kernels::needs_of(&job.features(), &tables);
+                let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
+                    backend: "cpu",
+                    reason: format!("there is no kernel for {lanes} lanes of {isa}"),
+                })?;
+                Prepared::Single(tables, kernel)
+            }
+            None => Prepared::Double(Tables::new(job), kernels::reference_kernel()),
+        });
+        self.job = Some(job.clone());
         Ok(())
     }
 
     fn accumulate(
         &mut self,
-        _job: &RenderJob,
+        job: &RenderJob,
         range: Range<u64>,
         film: &mut Film,
-        _cancel: &AtomicBool,
+        cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        film.record(range, 0)?;
-        Ok(Stats::default())
+        self.prepare(job)?;
+        let start = Instant::now();
+        let tiles = match &self.prepared {
+            Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, &range, film, cancel),
+            Some(Prepared::Double(tables, kernel)) => self.trace(tables, kernel, &range, film, cancel),
+            None => TileStats::default(),
+        };
+        if cancel.load(Ordering::Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let pixels = u64::from(film.width()) * u64::from(film.height());
+        let paths = pixels * range.end.saturating_sub(range.start);
+        film.record(range, tiles.rejected)?;
+        Ok(Stats {
+            paths,
+            rays: tiles.rays,
+            rejected: tiles.rejected,
+            busy_lanes: tiles.rays,
+            offered_lanes: tiles.offered_lanes,
+            trace: start.elapsed(),
+        })
+    }
+}
+
+impl CpuRenderer {
+    /// Adds samples `range` to the film's sums.
+    fn trace<R: Real>(
+        &self,
+        tables: &Tables<R>,
+        kernel: &Kernel<R>,
+        range: &Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> TileStats {
+        let settings = &tables.settings;
+        let blocks = DealtBlock::of_range(range.clone(), settings, tables.block_limit);
+        let side = tile_side(settings.width, settings.height, self.threads.current_num_threads());
+        let tiles = tiles(film.halves_mut(), settings.width, side);
+        self.threads.install(|| {
+            tiles
+                .into_par_iter()
+                .map(|tile| {
+                    if cancel.load(Ordering::Relaxed) {
+                        return TileStats::default();
+                    }
+                    kernel(tables, &mut Work::new(settings.sampler, &blocks, tile.corner, tile.halves))
+                })
+                .reduce(TileStats::default, TileStats::plus)
+        })
     }
 }

@@ -1,1 +1,90 @@
-//! Numbers.
+//! Where the numbers of a sample come from, in plain scalar code: the oracle that every lane width and the GPU
+//! are held against.
+//!
+//! Each number is a pure function of (sampler, seed, pixel, sample index, bounce). No state walks along a path,
+//! so a sample does not depend on what was traced before it.
+
+mod hash;
+mod sobol;
+mod warp;
+
+pub use hash::{GOLDEN_RATIO, mix32, pcg4d};
+pub use sobol::{LENS_BLOCK, laine_karras, pascal};
+pub use warp::{sin_cos_turns, sine_coefficients, unit_disk, unit_sphere};
+
+use crate::render::{RenderSettings, SamplerKind};
+
+/// Four numbers for one ray of a path, in units of `2^-32`. The first two choose a direction or a point in the
+/// pixel (on the lens, if there is one); a dielectric tosses its coin with the first, since it needs no
+/// direction. The last two are the point in the pixel when there is a lens.
+///
+/// `pixel` is `x | y << 16`, `bounce` 0 for the ray from the camera.
+pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -> [u32; 4] {
+    match settings.sampler {
+        SamplerKind::Independent => pcg4d([pixel, index.reverse_bits(), bounce, settings.seed]),
+        SamplerKind::Sobol => {
+            let half_count = settings.half_count() as u32;
+            let key = pixel_key(settings.seed, index % half_count, pixel);
+            let reversed = (index / half_count).reverse_bits();
+            let pair = |block: u32| {
+                let u = laine_karras(reversed, mix32(key.wrapping_add(block.wrapping_mul(GOLDEN_RATIO))));
+                [u, pascal(u)]
+            };
+            let ([a, b], [c, d]) = (pair(bounce), pair(bounce.wrapping_add(LENS_BLOCK)));
+            [a, b, c, d]
+        }
+    }
+}
+
+/// What tells the Sobol scramblings of pixels, halves and seeds apart.
+pub fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
+    mix32(mix32(seed.wrapping_add(half.wrapping_mul(GOLDEN_RATIO))) ^ pixel)
+}
+
+/// The float in `[0, 1)` of a 32-bit number: its upper 24 bits, so that it is exact and never 1.
+pub fn unit_float(u: u32) -> f32 {
+    (u >> 8) as f32 * (1.0 / 16_777_216.0)
+}
+
+/// `count` samples `first ..` of one half, `first` a multiple of `count`, a power of two. A kernel walks through
+/// them in bit-reversed order, which costs one addition a sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SampleBlock {
+    /// Half of the film.
+    pub half: u32,
+    /// First index within the half.
+    pub first: u32,
+    /// Number of samples, a power of two.
+    pub count: u32,
+}
+
+impl SampleBlock {
+    /// Splits samples `range` into blocks of at most `count_limit` (a power of two) samples.
+    pub fn split(range: std::ops::Range<u64>, half_count: u32, count_limit: u32) -> Vec<SampleBlock> {
+        let mut blocks = Vec::new();
+        for half in 0..half_count {
+            let below =
+                |end: u64| (end + u64::from(half_count) - 1 - u64::from(half)) / u64::from(half_count);
+            let (mut first, end) = (below(range.start), below(range.end));
+            while first < end {
+                let aligned = if first == 0 { u64::MAX } else { 1 << first.trailing_zeros() };
+                let fitting = 1 << (end - first).ilog2();
+                let count = aligned.min(fitting).min(u64::from(count_limit));
+                blocks.push(SampleBlock { half, first: first as u32, count: count as u32 });
+                first += count;
+            }
+        }
+        blocks
+    }
+
+    /// The sampler's counter of the first sample, and what to add to it for each next.
+    pub fn counter(&self, settings: &RenderSettings) -> (u32, u32) {
+        let half_count = settings.half_count() as u32;
+        let (first, stride) = match settings.sampler {
+            SamplerKind::Independent => (self.first * half_count + self.half, half_count),
+            SamplerKind::Sobol => (self.first, 1),
+        };
+        let step = (1_u64 << 32) / (u64::from(self.count) * u64::from(stride));
+        (first.reverse_bits(), step as u32)
+    }
+}

@@ -1,0 +1,206 @@
+//! A hierarchy of boxes over many spheres, and its traversal by whole packets.
+//!
+//! obvhs builds the tree; here it is laid out for the kernels, and its boxes are made wide enough that rounding
+//! never hides a hit that testing every sphere would find.
+//!
+//! Twin: shaders/bvh.wgsl
+
+use super::lanes::{Lanes, Real, V3, splat3};
+use super::sphere::{Nearest, Rays, nearest_root};
+use crate::scene::Sphere;
+use glam::DVec3;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::{Boundable, BvhBuildParams};
+use std::time::Duration;
+
+/// Deepest tree that a traversal has room for. obvhs promises depths well below.
+const STACK_SIZE: usize = 96;
+
+/// Nodes to be visited. It outlives the traversals: clearing it each time would show in the run time.
+pub type Stack = [u32; STACK_SIZE];
+
+/// A stack to start with.
+pub const EMPTY_STACK: Stack = [0; STACK_SIZE];
+
+/// Rounding in the test of a sphere and of a box, relative to the largest coordinate that takes part, is below
+/// this many units of `2^-24`.
+const ROUNDING_UNITS: f64 = 8.0;
+
+/// A box and what it holds.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Node<R> {
+    /// Lowest corner.
+    pub min: [R; 3],
+    /// First sphere of a leaf, or the first of two children that stand side by side.
+    pub first: u32,
+    /// Highest corner.
+    pub max: [R; 3],
+    /// Spheres of a leaf; else 0, or'ed with the axis that parts the children in bits 30 and 31.
+    pub count: u32,
+}
+
+/// Nodes, the root first.
+#[derive(Clone, Debug)]
+pub struct Hierarchy<R> {
+    /// All nodes.
+    pub nodes: Vec<Node<R>>,
+    /// Largest coordinate of any box in size: how coarse rounding can be.
+    pub extent: R,
+}
+
+struct SphereBounds {
+    min: DVec3,
+    max: DVec3,
+}
+
+impl SphereBounds {
+    fn new(sphere: &Sphere) -> Self {
+        let unit = f64::from(f32::EPSILON) / 2.0;
+        let reach =
+            sphere.radius + ROUNDING_UNITS * unit * (sphere.radius + sphere.center.abs().max_element());
+        SphereBounds { min: sphere.center - reach, max: sphere.center + reach }
+    }
+}
+
+impl Boundable for SphereBounds {
+    fn aabb(&self) -> Aabb {
+        let below = |x: f64| (x as f32).next_down();
+        let above = |x: f64| (x as f32).next_up();
+        let vector = |v: DVec3, f: fn(f64) -> f32| glam::Vec3A::new(f(v.x), f(v.y), f(v.z));
+        Aabb::new(vector(self.min, below), vector(self.max, above))
+    }
+}
+
+impl<R: Real> Hierarchy<R> {
+    /// Builds it over at least one sphere. Returns also the order in which the leaves name the spheres.
+    pub fn build(spheres: &[Sphere]) -> (Self, Vec<u32>) {
+        let bounds: Vec<SphereBounds> = spheres.iter().map(SphereBounds::new).collect();
+        let params = if spheres.len() <= 100_000 {
+            BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::medium_build() }
+        } else {
+            BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::fast_build() }
+        };
+        let tree = build_bvh2(&bounds, params, &mut Duration::default());
+        let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
+        let mut extent = 0.0_f32;
+        let nodes = tree
+            .nodes
+            .iter()
+            .map(|node| {
+                let aabb = node.aabb();
+                extent = extent.max(aabb.min.abs().max_element()).max(aabb.max.abs().max_element());
+                let axis =
+                    if node.is_leaf() { 0 } else { parting_axis(&tree.nodes, node.first_index as usize) };
+                Node {
+                    min: corner(aabb.min),
+                    first: node.first_index,
+                    max: corner(aabb.max),
+                    count: node.prim_count | axis,
+                }
+            })
+            .collect();
+        (Hierarchy { nodes, extent: R::from_f64(f64::from(extent)) }, tree.primitive_indices)
+    }
+}
+
+/// The axis along which two sibling boxes lie farthest apart, in bits 30 and 31; bit 29 is set where the second
+/// lies before the first.
+fn parting_axis(nodes: &[obvhs::bvh2::node::Bvh2Node], first: usize) -> u32 {
+    let apart = nodes[first + 1].aabb().center() - nodes[first].aabb().center();
+    let size = apart.abs();
+    let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
+    (axis as u32) << 30 | u32::from(apart[axis] < 0.0) << 29
+}
+
+const COUNT_MASK: u32 = (1 << 29) - 1;
+
+/// Takes the nearest hits among the spheres of a hierarchy into `nearest`. `active` lanes are those whose result
+/// matters.
+#[inline(always)]
+pub fn traverse<L: Lanes>(
+    l: L,
+    hierarchy: &Hierarchy<L::Real>,
+    spheres: &[[L::Real; 4]],
+    rays: &Rays<L>,
+    active: L::M,
+    stack: &mut Stack,
+    nearest: &mut Nearest<L>,
+) {
+    let slabs = Slabs::new(l, rays, hierarchy.extent);
+    let forward = [rays.direction.x, rays.direction.y, rays.direction.z].map(|d| {
+        2 * L::bits(L::lt(l.constant(0.0), d) & active).count_ones() >= L::bits(active).count_ones()
+    });
+    stack[0] = 0;
+    let mut depth = 1;
+    while depth > 0 {
+        depth -= 1;
+        let node = &hierarchy.nodes[stack[depth] as usize];
+        if L::bits(slabs.meet(l, node, L::from_key(nearest.key)) & active) == 0 {
+            continue;
+        }
+        let count = node.count & COUNT_MASK;
+        if count > 0 {
+            let first = node.first as usize;
+            for (offset, sphere) in spheres[first..first + count as usize].iter().enumerate() {
+                let number = l.splat_u((first + offset) as u32);
+                nearest.take_in_any_order(nearest_root(l, rays, sphere, number), number);
+            }
+        } else {
+            let ascending = node.count & (1 << 29) == 0;
+            let first_is_near = forward[(node.count >> 30) as usize] == ascending;
+            let (near, far) =
+                if first_is_near { (node.first, node.first + 1) } else { (node.first + 1, node.first) };
+            stack[depth] = far;
+            stack[depth + 1] = near;
+            depth += 2;
+        }
+    }
+}
+
+/// Rays prepared for boxes: per axis `1/d`, and the origin moved outwards by the rounding there can be.
+struct Slabs<L: Lanes> {
+    inverse: V3<L::F>,
+    low: V3<L::F>,
+    high: V3<L::F>,
+}
+
+impl<L: Lanes> Slabs<L> {
+    #[inline(always)]
+    fn new(l: L, rays: &Rays<L>, extent: L::Real) -> Self {
+        let o = rays.origin;
+        let size = L::max(L::max(L::abs(o.x), L::abs(o.y)), L::max(L::abs(o.z), l.splat(extent)));
+        let margin = size * l.constant(ROUNDING_UNITS * f64::from(f32::EPSILON) / 2.0);
+        let inverse = V3 {
+            x: inverse(l, rays.direction.x),
+            y: inverse(l, rays.direction.y),
+            z: inverse(l, rays.direction.z),
+        };
+        let margin = V3 { x: margin, y: margin, z: margin };
+        Slabs { inverse, low: (o + margin).times(inverse), high: (o - margin).times(inverse) }
+    }
+
+    /// Which rays meet the box before distance `limit`.
+    #[inline(always)]
+    fn meet(&self, l: L, node: &Node<L::Real>, limit: L::F) -> L::M {
+        let (min, max) = (splat3(l, node.min), splat3(l, node.max));
+        let at = |corner: L::F, inverse: L::F, origin: L::F| L::mul_add(corner, inverse, -origin);
+        let (x0, x1) = (at(min.x, self.inverse.x, self.low.x), at(max.x, self.inverse.x, self.high.x));
+        let (y0, y1) = (at(min.y, self.inverse.y, self.low.y), at(max.y, self.inverse.y, self.high.y));
+        let (z0, z1) = (at(min.z, self.inverse.z, self.low.z), at(max.z, self.inverse.z, self.high.z));
+        let enter = L::max(L::max(L::min(x0, x1), L::min(y0, y1)), L::max(L::min(z0, z1), l.constant(0.0)));
+        let leave = L::min(L::min(L::max(x0, x1), L::max(y0, y1)), L::min(L::max(z0, z1), limit));
+        // Rounding of the distances themselves.
+        let wide = l.constant(1.0 + 4.0 * f64::from(f32::EPSILON));
+        !L::lt(leave * wide, enter)
+    }
+}
+
+/// `1/d`, finite also where `d` is 0.
+#[inline(always)]
+fn inverse<L: Lanes>(l: L, d: L::F) -> L::F {
+    let least = l.constant(1e-18);
+    let size = L::max(L::abs(d), least);
+    L::copysign(l.constant(1.0) / size, d)
+}

@@ -1,0 +1,587 @@
+//! Width-generic values: one source for scalar code, SIMD packets and the `f64` reference.
+//!
+//! A [`Lanes`] is a token that stands for a lane count, a precision and an instruction level. Its values are
+//! rows of that many numbers. Everything is `#[inline(always)]`: a call that stays a call would run without the
+//! level's instructions.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{
+    f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
+};
+use std::num::Wrapping;
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+
+/// Largest lane count, for buffers on the stack.
+pub const MAX_LANES: usize = 16;
+
+/// A number of a table: `f32`, or `f64` for the reference.
+pub trait Real: Copy + Default + Send + Sync + PartialOrd + std::fmt::Debug + 'static {
+    /// The nearest number of this precision.
+    fn from_f64(x: f64) -> Self;
+    /// Without loss.
+    fn to_f64(self) -> f64;
+}
+
+impl Real for f32 {
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        x as f32
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
+
+/// Sixteen numbers about one thing, a cache line in `f32`: what a winner is looked up by.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct Row<R>(pub [R; 16]);
+
+/// Rows of numbers, and what can be done with them.
+///
+/// Ordering by [`Lanes::key`]: distances are compared as unsigned integers, in which order positive numbers come
+/// first, then infinity, then NaN and negative numbers; so those lose a search for the nearest by themselves.
+pub trait Lanes: Copy + Send + Sync + 'static {
+    /// Precision.
+    type Real: Real;
+    /// Floating-point numbers.
+    type F: Copy
+        + Add<Output = Self::F>
+        + Sub<Output = Self::F>
+        + Mul<Output = Self::F>
+        + Div<Output = Self::F>
+        + Neg<Output = Self::F>;
+    /// 32-bit unsigned integers, wrapping.
+    type U: Copy
+        + Add<Output = Self::U>
+        + Sub<Output = Self::U>
+        + Mul<Output = Self::U>
+        + BitXor<Output = Self::U>
+        + BitAnd<Output = Self::U>
+        + BitOr<Output = Self::U>;
+    /// Truth values.
+    type M: Copy + BitAnd<Output = Self::M> + BitOr<Output = Self::M> + Not<Output = Self::M>;
+    /// A float's bits, for ordering.
+    type Key: Copy;
+    /// Numbers in a row.
+    const WIDTH: usize;
+
+    /// The same number in every lane.
+    fn splat(self, x: Self::Real) -> Self::F;
+    /// The same number in every lane.
+    fn splat_u(self, x: u32) -> Self::U;
+    /// A literal in every lane.
+    #[inline(always)]
+    fn constant(self, x: f64) -> Self::F {
+        self.splat(Self::Real::from_f64(x))
+    }
+    /// Truth values from the lowest bits.
+    fn mask(self, bits: u32) -> Self::M;
+    /// The first [`Lanes::WIDTH`] numbers of a buffer.
+    fn load_u(self, from: &[u32; MAX_LANES]) -> Self::U;
+    /// To the first [`Lanes::WIDTH`] numbers of a buffer.
+    fn store_u(u: Self::U, to: &mut [u32; MAX_LANES]);
+    /// To the first [`Lanes::WIDTH`] numbers of a buffer.
+    fn store(f: Self::F, to: &mut [Self::Real; MAX_LANES]);
+
+    /// `a b + c`, rounded once where the level can.
+    fn mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// `c - a b`, rounded once where the level can.
+    fn neg_mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// Square root; NaN below 0.
+    fn sqrt(x: Self::F) -> Self::F;
+    /// Without the sign.
+    fn abs(x: Self::F) -> Self::F;
+    /// The size of one with the sign of another.
+    fn copysign(size: Self::F, sign: Self::F) -> Self::F;
+    /// `if a < b { a } else { b }`.
+    fn min(a: Self::F, b: Self::F) -> Self::F;
+    /// `if a > b { a } else { b }`.
+    fn max(a: Self::F, b: Self::F) -> Self::F;
+    /// `a < b`.
+    fn lt(a: Self::F, b: Self::F) -> Self::M;
+    /// Where `m`, `a`; else `b`.
+    fn select(m: Self::M, a: Self::F, b: Self::F) -> Self::F;
+
+    /// Where `m`, `a`; else `b`.
+    fn select_u(m: Self::M, a: Self::U, b: Self::U) -> Self::U;
+    /// `a == b`.
+    fn eq_u(a: Self::U, b: Self::U) -> Self::M;
+    /// The smaller.
+    fn min_u(a: Self::U, b: Self::U) -> Self::U;
+    /// Left by `n` bits.
+    fn shl(a: Self::U, n: u32) -> Self::U;
+    /// Right by `n` bits.
+    fn shr(a: Self::U, n: u32) -> Self::U;
+
+    /// One bit a lane.
+    fn bits(m: Self::M) -> u32;
+
+    /// To compare as unsigned.
+    fn key(f: Self::F) -> Self::Key;
+    /// The float with these bits.
+    fn from_key(k: Self::Key) -> Self::F;
+    /// The smaller.
+    fn min_key(a: Self::Key, b: Self::Key) -> Self::Key;
+    /// `a == b`.
+    fn eq_key(a: Self::Key, b: Self::Key) -> Self::M;
+
+    /// An integer below `2^31` as a float.
+    fn float_of(u: Self::U) -> Self::F;
+    /// A float in `0 ..= 2^31 - 128` to the nearest integer, ties to even.
+    fn fixed_point(f: Self::F) -> Self::U;
+    /// Columns `4 group ..` of the rows that the first [`Lanes::WIDTH`] `indices` name.
+    fn gather(self, rows: &[Row<Self::Real>], indices: &[u32; MAX_LANES], group: usize) -> [Self::F; 4];
+    /// Sine and cosine of an angle in turns, `0 <= u < 1`.
+    fn sin_cos_turns(self, u: Self::F) -> (Self::F, Self::F);
+}
+
+/// A float in `[0, 1)` from the upper 24 bits.
+#[inline(always)]
+pub fn unit_float<L: Lanes>(l: L, u: L::U) -> L::F {
+    L::float_of(L::shr(u, 8)) * l.constant(1.0 / 16_777_216.0)
+}
+
+/// Three rows: a point, a direction or a colour.
+#[derive(Clone, Copy)]
+pub struct V3<F> {
+    /// First component.
+    pub x: F,
+    /// Second component.
+    pub y: F,
+    /// Third component.
+    pub z: F,
+}
+
+impl<F: Copy + Add<Output = F>> Add for V3<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        V3 { x: self.x + o.x, y: self.y + o.y, z: self.z + o.z }
+    }
+}
+
+impl<F: Copy + Sub<Output = F>> Sub for V3<F> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        V3 { x: self.x - o.x, y: self.y - o.y, z: self.z - o.z }
+    }
+}
+
+impl<F: Copy + Mul<Output = F>> V3<F> {
+    /// All components times `s`.
+    #[inline(always)]
+    pub fn scale(self, s: F) -> Self {
+        V3 { x: self.x * s, y: self.y * s, z: self.z * s }
+    }
+
+    /// Component by component.
+    #[inline(always)]
+    pub fn times(self, o: Self) -> Self {
+        V3 { x: self.x * o.x, y: self.y * o.y, z: self.z * o.z }
+    }
+}
+
+/// The same vector in every lane.
+#[inline(always)]
+pub fn splat3<L: Lanes>(l: L, v: [L::Real; 3]) -> V3<L::F> {
+    V3 { x: l.splat(v[0]), y: l.splat(v[1]), z: l.splat(v[2]) }
+}
+
+/// Scalar product.
+#[inline(always)]
+pub fn dot<L: Lanes>(a: V3<L::F>, b: V3<L::F>) -> L::F {
+    L::mul_add(a.x, b.x, L::mul_add(a.y, b.y, a.z * b.z))
+}
+
+/// `a s + b`.
+#[inline(always)]
+pub fn mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
+    V3 { x: L::mul_add(a.x, s, b.x), y: L::mul_add(a.y, s, b.y), z: L::mul_add(a.z, s, b.z) }
+}
+
+/// `b - a s`.
+#[inline(always)]
+pub fn neg_mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
+    V3 { x: L::neg_mul_add(a.x, s, b.x), y: L::neg_mul_add(a.y, s, b.y), z: L::neg_mul_add(a.z, s, b.z) }
+}
+
+/// Where `m`, `a`; else `b`.
+#[inline(always)]
+pub fn select3<L: Lanes>(m: L::M, a: V3<L::F>, b: V3<L::F>) -> V3<L::F> {
+    V3 { x: L::select(m, a.x, b.x), y: L::select(m, a.y, b.y), z: L::select(m, a.z, b.z) }
+}
+
+/// The polynomial of [`crate::sampling::sin_cos_turns`].
+#[inline(always)]
+fn polynomial_sin_cos_turns<L: Lanes>(l: L, u: L::F) -> (L::F, L::F) {
+    let quarter = l.constant(0.25);
+    let x = u - l.constant(0.5);
+    let q = L::abs(x) - quarter;
+    let sine = sine_of_quarter(l, quarter - L::abs(q));
+    (-L::copysign(sine, x), sine_of_quarter(l, q))
+}
+
+#[inline(always)]
+fn sine_of_quarter<L: Lanes>(l: L, x: L::F) -> L::F {
+    let c = crate::sampling::sine_coefficients();
+    let y = x * x;
+    let p = L::mul_add(y, l.constant(c[4]), l.constant(c[3]));
+    let p = L::mul_add(y, p, l.constant(c[2]));
+    let p = L::mul_add(y, p, l.constant(c[1]));
+    L::mul_add(y, p, l.constant(c[0])) * x
+}
+
+/// One lane of `f32`. `FUSED` says whether the level it runs at has fused multiply and add; on one that has not,
+/// `f32::mul_add` would be a call to a library.
+#[derive(Clone, Copy)]
+pub struct Scalar<const FUSED: bool>;
+
+/// One lane of `f64`, for the reference.
+#[derive(Clone, Copy)]
+pub struct Reference;
+
+macro_rules! scalar_lanes {
+    ($real:ident, $bits:ident, $fused:expr) => {
+        type Real = $real;
+        type F = $real;
+        type U = Wrapping<u32>;
+        type M = bool;
+        type Key = $bits;
+        const WIDTH: usize = 1;
+
+        #[inline(always)]
+        fn splat(self, x: $real) -> $real {
+            x
+        }
+        #[inline(always)]
+        fn splat_u(self, x: u32) -> Wrapping<u32> {
+            Wrapping(x)
+        }
+        #[inline(always)]
+        fn mask(self, bits: u32) -> bool {
+            bits & 1 != 0
+        }
+        #[inline(always)]
+        fn load_u(self, from: &[u32; MAX_LANES]) -> Wrapping<u32> {
+            Wrapping(from[0])
+        }
+        #[inline(always)]
+        fn store_u(u: Wrapping<u32>, to: &mut [u32; MAX_LANES]) {
+            to[0] = u.0;
+        }
+        #[inline(always)]
+        fn store(f: $real, to: &mut [$real; MAX_LANES]) {
+            to[0] = f;
+        }
+        #[inline(always)]
+        fn mul_add(a: $real, b: $real, c: $real) -> $real {
+            if $fused { a.mul_add(b, c) } else { a * b + c }
+        }
+        #[inline(always)]
+        fn neg_mul_add(a: $real, b: $real, c: $real) -> $real {
+            if $fused { (-a).mul_add(b, c) } else { c - a * b }
+        }
+        #[inline(always)]
+        fn sqrt(x: $real) -> $real {
+            x.sqrt()
+        }
+        #[inline(always)]
+        fn abs(x: $real) -> $real {
+            x.abs()
+        }
+        #[inline(always)]
+        fn copysign(size: $real, sign: $real) -> $real {
+            size.copysign(sign)
+        }
+        #[inline(always)]
+        fn min(a: $real, b: $real) -> $real {
+            if a < b { a } else { b }
+        }
+        #[inline(always)]
+        fn max(a: $real, b: $real) -> $real {
+            if a > b { a } else { b }
+        }
+        #[inline(always)]
+        fn lt(a: $real, b: $real) -> bool {
+            a < b
+        }
+        #[inline(always)]
+        fn select(m: bool, a: $real, b: $real) -> $real {
+            if m { a } else { b }
+        }
+        #[inline(always)]
+        fn select_u(m: bool, a: Wrapping<u32>, b: Wrapping<u32>) -> Wrapping<u32> {
+            if m { a } else { b }
+        }
+        #[inline(always)]
+        fn eq_u(a: Wrapping<u32>, b: Wrapping<u32>) -> bool {
+            a == b
+        }
+        #[inline(always)]
+        fn min_u(a: Wrapping<u32>, b: Wrapping<u32>) -> Wrapping<u32> {
+            a.min(b)
+        }
+        #[inline(always)]
+        fn shl(a: Wrapping<u32>, n: u32) -> Wrapping<u32> {
+            Wrapping(a.0 << n)
+        }
+        #[inline(always)]
+        fn shr(a: Wrapping<u32>, n: u32) -> Wrapping<u32> {
+            Wrapping(a.0 >> n)
+        }
+        #[inline(always)]
+        fn bits(m: bool) -> u32 {
+            u32::from(m)
+        }
+        #[inline(always)]
+        fn key(f: $real) -> $bits {
+            f.to_bits()
+        }
+        #[inline(always)]
+        fn from_key(k: $bits) -> $real {
+            <$real>::from_bits(k)
+        }
+        #[inline(always)]
+        fn min_key(a: $bits, b: $bits) -> $bits {
+            a.min(b)
+        }
+        #[inline(always)]
+        fn eq_key(a: $bits, b: $bits) -> bool {
+            a == b
+        }
+        #[inline(always)]
+        fn float_of(u: Wrapping<u32>) -> $real {
+            u.0 as i32 as $real
+        }
+        #[inline(always)]
+        fn fixed_point(f: $real) -> Wrapping<u32> {
+            Wrapping(f.round_ties_even() as i32 as u32)
+        }
+        #[inline(always)]
+        fn gather(self, rows: &[Row<$real>], indices: &[u32; MAX_LANES], group: usize) -> [$real; 4] {
+            let row = &rows[indices[0] as usize].0;
+            [row[4 * group], row[4 * group + 1], row[4 * group + 2], row[4 * group + 3]]
+        }
+    };
+}
+
+impl<const FUSED: bool> Lanes for Scalar<FUSED> {
+    scalar_lanes!(f32, u32, FUSED);
+
+    #[inline(always)]
+    fn sin_cos_turns(self, u: f32) -> (f32, f32) {
+        polynomial_sin_cos_turns(self, u)
+    }
+}
+
+impl Lanes for Reference {
+    scalar_lanes!(f64, u64, false);
+
+    #[inline(always)]
+    fn sin_cos_turns(self, u: f64) -> (f64, f64) {
+        (u * std::f64::consts::TAU).sin_cos()
+    }
+}
+
+macro_rules! simd_lanes {
+    ($name:ident, $width:literal, $f:ident, $u:ident, $i:ident, $m:ident, $gather:ident, $what:literal) => {
+        #[doc = $what]
+        #[derive(Clone, Copy)]
+        pub struct $name<S: Simd>(pub S);
+
+        impl<S: Simd> Lanes for $name<S> {
+            type Real = f32;
+            type F = $f<S>;
+            type U = $u<S>;
+            type M = $m<S>;
+            type Key = $u<S>;
+            const WIDTH: usize = $width;
+
+            #[inline(always)]
+            fn splat(self, x: f32) -> $f<S> {
+                $f::splat(self.0, x)
+            }
+            #[inline(always)]
+            fn splat_u(self, x: u32) -> $u<S> {
+                $u::splat(self.0, x)
+            }
+            #[inline(always)]
+            fn mask(self, bits: u32) -> $m<S> {
+                $m::from_bitmask(self.0, u64::from(bits))
+            }
+            #[inline(always)]
+            fn load_u(self, from: &[u32; MAX_LANES]) -> $u<S> {
+                $u::from_slice(self.0, &from[..$width])
+            }
+            #[inline(always)]
+            fn store_u(u: $u<S>, to: &mut [u32; MAX_LANES]) {
+                u.store_slice(&mut to[..$width]);
+            }
+            #[inline(always)]
+            fn store(f: $f<S>, to: &mut [f32; MAX_LANES]) {
+                f.store_slice(&mut to[..$width]);
+            }
+            #[inline(always)]
+            fn mul_add(a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
+                a.mul_add(b, c)
+            }
+            #[inline(always)]
+            fn neg_mul_add(a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
+                (-a).mul_add(b, c)
+            }
+            #[inline(always)]
+            fn sqrt(x: $f<S>) -> $f<S> {
+                x.sqrt()
+            }
+            #[inline(always)]
+            fn abs(x: $f<S>) -> $f<S> {
+                x.abs()
+            }
+            #[inline(always)]
+            fn copysign(size: $f<S>, sign: $f<S>) -> $f<S> {
+                size.copysign(sign)
+            }
+            #[inline(always)]
+            fn min(a: $f<S>, b: $f<S>) -> $f<S> {
+                a.min(b)
+            }
+            #[inline(always)]
+            fn max(a: $f<S>, b: $f<S>) -> $f<S> {
+                a.max(b)
+            }
+            #[inline(always)]
+            fn lt(a: $f<S>, b: $f<S>) -> $m<S> {
+                a.simd_lt(b)
+            }
+            #[inline(always)]
+            fn select(m: $m<S>, a: $f<S>, b: $f<S>) -> $f<S> {
+                m.select(a, b)
+            }
+            #[inline(always)]
+            fn select_u(m: $m<S>, a: $u<S>, b: $u<S>) -> $u<S> {
+                m.select(a, b)
+            }
+            #[inline(always)]
+            fn eq_u(a: $u<S>, b: $u<S>) -> $m<S> {
+                a.simd_eq(b)
+            }
+            #[inline(always)]
+            fn min_u(a: $u<S>, b: $u<S>) -> $u<S> {
+                a.min(b)
+            }
+            #[inline(always)]
+            fn shl(a: $u<S>, n: u32) -> $u<S> {
+                a << n
+            }
+            #[inline(always)]
+            fn shr(a: $u<S>, n: u32) -> $u<S> {
+                a >> n
+            }
+            #[inline(always)]
+            fn bits(m: $m<S>) -> u32 {
+                m.to_bitmask() as u32
+            }
+            #[inline(always)]
+            fn key(f: $f<S>) -> $u<S> {
+                f.bitcast()
+            }
+            #[inline(always)]
+            fn from_key(k: $u<S>) -> $f<S> {
+                k.bitcast()
+            }
+            #[inline(always)]
+            fn min_key(a: $u<S>, b: $u<S>) -> $u<S> {
+                a.min(b)
+            }
+            #[inline(always)]
+            fn eq_key(a: $u<S>, b: $u<S>) -> $m<S> {
+                a.simd_eq(b)
+            }
+            #[inline(always)]
+            fn float_of(u: $u<S>) -> $f<S> {
+                let signed: $i<S> = u.bitcast();
+                signed.to_float()
+            }
+            #[inline(always)]
+            fn fixed_point(f: $f<S>) -> $u<S> {
+                let signed: $i<S> = f.round_ties_even().to_int();
+                signed.bitcast()
+            }
+            #[inline(always)]
+            fn gather(self, rows: &[Row<f32>], indices: &[u32; MAX_LANES], group: usize) -> [$f<S>; 4] {
+                $gather(self.0, rows, indices, 0, group)
+            }
+            #[inline(always)]
+            fn sin_cos_turns(self, u: $f<S>) -> ($f<S>, $f<S>) {
+                polynomial_sin_cos_turns(self, u)
+            }
+        }
+    };
+}
+
+simd_lanes!(Lanes4, 4, f32x4, u32x4, i32x4, mask32x4, gather4, "Four lanes of `f32`.");
+simd_lanes!(Lanes8, 8, f32x8, u32x8, i32x8, mask32x8, gather8, "Eight lanes of `f32`.");
+simd_lanes!(Lanes16, 16, f32x16, u32x16, i32x16, mask32x16, gather16, "Sixteen lanes of `f32`.");
+
+/// Four columns of four rows, transposed.
+#[inline(always)]
+fn gather4<S: Simd>(
+    simd: S,
+    rows: &[Row<f32>],
+    indices: &[u32; MAX_LANES],
+    first: usize,
+    group: usize,
+) -> [f32x4<S>; 4] {
+    let a = gathered_row(simd, rows, indices[first], group);
+    let b = gathered_row(simd, rows, indices[first + 1], group);
+    let c = gathered_row(simd, rows, indices[first + 2], group);
+    let d = gathered_row(simd, rows, indices[first + 3], group);
+    let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
+    let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
+    [ac_low.zip_low(bd_low), ac_low.zip_high(bd_low), ac_high.zip_low(bd_high), ac_high.zip_high(bd_high)]
+}
+
+#[inline(always)]
+fn gathered_row<S: Simd>(simd: S, rows: &[Row<f32>], index: u32, group: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &rows[index as usize].0[4 * group..4 * group + 4])
+}
+
+#[inline(always)]
+fn gather8<S: Simd>(
+    simd: S,
+    rows: &[Row<f32>],
+    indices: &[u32; MAX_LANES],
+    first: usize,
+    group: usize,
+) -> [f32x8<S>; 4] {
+    let [a0, a1, a2, a3] = gather4(simd, rows, indices, first, group);
+    let [b0, b1, b2, b3] = gather4(simd, rows, indices, first + 4, group);
+    [a0.combine(b0), a1.combine(b1), a2.combine(b2), a3.combine(b3)]
+}
+
+#[inline(always)]
+fn gather16<S: Simd>(
+    simd: S,
+    rows: &[Row<f32>],
+    indices: &[u32; MAX_LANES],
+    first: usize,
+    group: usize,
+) -> [f32x16<S>; 4] {
+    let [a0, a1, a2, a3] = gather8(simd, rows, indices, first, group);
+    let [b0, b1, b2, b3] = gather8(simd, rows, indices, first + 8, group);
+    [a0.combine(b0), a1.combine(b1), a2.combine(b2), a3.combine(b3)]
+}

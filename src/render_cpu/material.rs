@@ -1,0 +1,92 @@
+//! What a surface does with a ray. (Book 1, sections 9 to 11.)
+//!
+//! Every material sends a ray on along `along d + across n + spread u`: `d` the direction it came in, `n` the unit
+//! normal on the side it came from, `u` a uniform unit vector. Only the three factors differ, so a packet of
+//! mixed materials takes one path through this code.
+//!
+//! Twin: shaders/material.wgsl
+
+use super::lanes::{Lanes, V3, dot, mul_add3};
+use crate::stages::DielectricLaws;
+
+/// A material as its table row has it.
+#[derive(Clone, Copy)]
+pub struct Surface<L: Lanes> {
+    /// Length of the unit vector's part; with a minus sign (also on 0) the direction is a reflection.
+    pub weight: L::F,
+    /// Refraction index; 0 if not glass.
+    pub index: L::F,
+    /// 1 / refraction index; 0 if not glass.
+    pub inverse_index: L::F,
+    /// Schlick's share at normal incidence.
+    pub normal_share: L::F,
+}
+
+/// Where light goes on.
+pub struct Scatter<L: Lanes> {
+    /// Not of length 1.
+    pub direction: V3<L::F>,
+    /// Whether it passes through the surface.
+    pub refracts: L::M,
+    /// Whether the surface is a metal.
+    pub is_metal: L::M,
+}
+
+/// Scatters at a surface that is a mirror, a metal or Lambertian, or, if `GLASS`, a dielectric.
+///
+/// `cosine` is that of the angle of incidence, in `[0, 1]`; `front` says that the ray comes from outside;
+/// `coin` is uniform in `[0, 1)`.
+#[inline(always)]
+pub fn scatter<L: Lanes, const GLASS: bool>(
+    l: L,
+    surface: &Surface<L>,
+    laws: DielectricLaws,
+    direction: V3<L::F>,
+    normal: V3<L::F>,
+    cosine: L::F,
+    front: L::M,
+    unit: V3<L::F>,
+    coin: L::F,
+) -> Scatter<L> {
+    let (zero, one) = (l.constant(0.0), l.constant(1.0));
+    let reflects = L::lt(L::copysign(one, surface.weight), zero);
+    let mut along = L::select(reflects, one, zero);
+    let mut across = L::select(reflects, cosine + cosine, one);
+    let mut refracts = l.mask(0);
+    let mut is_metal = reflects;
+    if GLASS {
+        let is_glass = L::lt(zero, surface.index);
+        let ratio = L::select(front, surface.inverse_index, surface.index);
+        // Squared sine of the refracted ray's angle: above 1 Snell's law has no solution.
+        let refracted_sine2 = ratio * ratio * L::neg_mul_add(cosine, cosine, one);
+        let mut kept = is_glass;
+        if laws != DielectricLaws::RefractOnly {
+            kept = kept & !L::lt(one, refracted_sine2);
+        }
+        if laws == DielectricLaws::Schlick {
+            kept = kept & !L::lt(coin, reflectance(l, cosine, surface.normal_share));
+        }
+        let inner_cosine = L::sqrt(L::abs(one - refracted_sine2));
+        refracts = kept;
+        along = L::select(refracts, ratio, along);
+        across = L::select(refracts, L::mul_add(ratio, cosine, -inner_cosine), across);
+        is_metal = is_metal & !is_glass;
+    }
+    let smooth = mul_add3::<L>(direction, along, normal.scale(across));
+    Scatter { direction: mul_add3::<L>(unit, L::abs(surface.weight), smooth), refracts, is_metal }
+}
+
+/// Schlick's approximation of the reflected share. (Section 11.4.)
+#[inline(always)]
+pub fn reflectance<L: Lanes>(l: L, cosine: L::F, normal_share: L::F) -> L::F {
+    let one = l.constant(1.0);
+    let x = one - cosine;
+    let x2 = x * x;
+    L::mul_add(one - normal_share, x2 * x2 * x, normal_share)
+}
+
+/// A uniform direction on the side of `normal`: the first diffuse stage's rule. (Section 9.1.)
+#[inline(always)]
+pub fn hemisphere<L: Lanes>(l: L, normal: V3<L::F>, unit: V3<L::F>) -> V3<L::F> {
+    unit.scale(L::copysign(l.constant(1.0), dot::<L>(unit, normal)))
+}

@@ -1,0 +1,75 @@
+//! The numbers of a sample, lane by lane: [`crate::sampling`] in packets.
+//!
+//! Twin: shaders/rng.wgsl
+
+use super::lanes::Lanes;
+use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK};
+
+/// A bijection of 32 bits.
+#[inline(always)]
+pub fn mix32<L: Lanes>(l: L, x: L::U) -> L::U {
+    let x = (x ^ L::shr(x, 16)) * l.splat_u(0x7FEB_352D);
+    let x = (x ^ L::shr(x, 15)) * l.splat_u(0x846C_A68B);
+    x ^ L::shr(x, 16)
+}
+
+/// Four numbers from four.
+#[inline(always)]
+pub fn pcg4d<L: Lanes>(l: L, v: [L::U; 4]) -> [L::U; 4] {
+    let (a, c) = (l.splat_u(1_664_525), l.splat_u(1_013_904_223));
+    let v = stir::<L>([v[0] * a + c, v[1] * a + c, v[2] * a + c, v[3] * a + c]);
+    stir::<L>([
+        v[0] ^ L::shr(v[0], 16),
+        v[1] ^ L::shr(v[1], 16),
+        v[2] ^ L::shr(v[2], 16),
+        v[3] ^ L::shr(v[3], 16),
+    ])
+}
+
+#[inline(always)]
+fn stir<L: Lanes>([x, y, z, w]: [L::U; 4]) -> [L::U; 4] {
+    let x = x + y * w;
+    let y = y + z * x;
+    let z = z + x * y;
+    [x, y, z, w + y * z]
+}
+
+/// Owen's scrambling of reversed bits.
+#[inline(always)]
+pub fn laine_karras<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
+    let x = x ^ x * l.splat_u(0x3D20_ADEA);
+    let x = x + seed;
+    let x = x * (L::shr(seed, 16) | l.splat_u(1));
+    let x = x ^ x * l.splat_u(0x0552_6C56);
+    x ^ x * l.splat_u(0x53A2_2864)
+}
+
+/// The second Sobol coordinate from the first.
+#[inline(always)]
+pub fn pascal<L: Lanes>(l: L, u: L::U) -> L::U {
+    let u = u ^ L::shl(u, 16);
+    let u = u ^ L::shl(u & l.splat_u(0x00FF_00FF), 8);
+    let u = u ^ L::shl(u & l.splat_u(0x0F0F_0F0F), 4);
+    let u = u ^ L::shl(u & l.splat_u(0x3333_3333), 2);
+    u ^ L::shl(u & l.splat_u(0x5555_5555), 1)
+}
+
+/// A pair of Sobol coordinates: that of the reversed sample index `counter` in the block of dimensions that
+/// `stream`, the pixel's key moved on by the bounce, names.
+#[inline(always)]
+pub fn sobol_pair<L: Lanes>(l: L, counter: L::U, stream: L::U) -> [L::U; 2] {
+    let u = laine_karras(l, counter, mix32(l, stream));
+    [u, pascal(l, u)]
+}
+
+/// `key` moved on to the dimensions of `bounce`.
+#[inline(always)]
+pub fn stream_of<L: Lanes>(l: L, key: L::U, bounce: L::U) -> L::U {
+    key + bounce * l.splat_u(GOLDEN_RATIO)
+}
+
+/// `key` moved on to the second pair of dimensions of `bounce`, for a point in the pixel beside one on the lens.
+#[inline(always)]
+pub fn lens_stream_of<L: Lanes>(l: L, key: L::U, bounce: L::U) -> L::U {
+    stream_of(l, key, bounce + l.splat_u(LENS_BLOCK))
+}

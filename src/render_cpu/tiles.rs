@@ -1,0 +1,55 @@
+//! A film cut into tiles for the threads.
+
+use super::work::TileRows;
+use crate::film::PixelSum;
+
+/// Side of a tile where the picture has enough of them.
+const SIDE: u32 = 64;
+
+/// Smallest side: below it, lanes wait at the end of a tile for longer than they work.
+const SIDE_MIN: u32 = 8;
+
+/// Tiles that there should be for each thread, so that none is left waiting for long.
+const TILES_A_THREAD: u32 = 4;
+
+/// A tile of the film: where it lies, and its rows of each half.
+pub struct Tile<'film> {
+    /// Column and row of the upper left pixel.
+    pub corner: [u32; 2],
+    /// Rows of each half.
+    pub halves: Vec<TileRows<'film>>,
+}
+
+/// The side of the tiles for a picture and so many threads, a power of two.
+pub fn tile_side(width: u32, height: u32, threads: usize) -> u32 {
+    let count = |side: u32| width.div_ceil(side) * height.div_ceil(side);
+    let wanted = TILES_A_THREAD.saturating_mul(threads as u32);
+    let mut side = SIDE;
+    while side > SIDE_MIN && count(side) < wanted {
+        side /= 2;
+    }
+    side
+}
+
+/// Cuts the halves of a film of `width` pixels across into tiles, row by row.
+pub fn tiles(halves: &mut [Vec<PixelSum>], width: u32, side: u32) -> Vec<Tile<'_>> {
+    let mut tiles: Vec<Tile> = Vec::new();
+    let across = width.div_ceil(side) as usize;
+    for (half_index, half) in halves.iter_mut().enumerate() {
+        for (y, row) in half.chunks_mut(width as usize).enumerate() {
+            let y = y as u32;
+            for (column, part) in row.chunks_mut(side as usize).enumerate() {
+                let index = (y / side) as usize * across + column;
+                if index == tiles.len() {
+                    tiles.push(Tile { corner: [column as u32 * side, y], halves: Vec::new() });
+                }
+                let halves = &mut tiles[index].halves;
+                if halves.len() == half_index {
+                    halves.push(Vec::with_capacity(side as usize));
+                }
+                halves[half_index].push(part);
+            }
+        }
+    }
+    tiles
+}
