@@ -1,4 +1,5 @@
 //! The program from outside: what it writes, says and returns.
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};

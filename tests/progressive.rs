@@ -1,4 +1,5 @@
 //! The progressive render with a renderer that can be told to fail: nothing is lost, whatever happens to it.
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -126,6 +126,6 @@ mod tests {
         assert_eq!(sizer.next(&held, 0..100, None), Some(0..2));
         assert_eq!(sizer.next(&held, 0..100, Some(TARGET)), None);
         sizer.measured(64, Duration::from_secs(1), TARGET);
-        assert_eq!(sizer.next(&held, 0..100, Some(TARGET / 4)), Some(0..4));
+        assert_eq!(sizer.next(&held, 0..100, Some(TARGET / 4)), Some(0..16));
     }
 }
