@@ -8,3 +8,4 @@ pub mod render_cpu;
 pub mod sampling;
 pub mod scene;
 pub mod stages;
+pub mod tables;
