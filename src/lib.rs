@@ -14,3 +14,4 @@ pub mod render_cpu;
 pub mod sampling;
 pub mod scene;
 pub mod stages;
+pub mod tables;

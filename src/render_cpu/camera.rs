@@ -3,7 +3,7 @@
 //! Twin: shaders/camera.wgsl
 
 use super::lanes::{Lanes, V3, mul_add3, splat3};
-use super::tables::CameraTable;
+use crate::tables::CameraTable;
 
 /// Where a ray starts and where it goes; the direction's length is not 1.
 pub struct CameraRays<L: Lanes> {

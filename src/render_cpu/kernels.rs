@@ -7,9 +7,9 @@
 use super::Isa;
 use super::lanes::{Lanes4, Lanes8, Lanes16, Reference, Scalar};
 use super::path::{needs, trace};
-use super::tables::Tables;
 use super::work::{TileStats, Work};
 use crate::render::Features;
+use crate::tables::Tables;
 use fearless_simd::{Level, Simd};
 
 /// Traces a tile.

@@ -4,6 +4,7 @@
 //! rows of that many numbers. Everything is `#[inline(always)]`: a call that stays a call would run without the
 //! level's instructions.
 
+use crate::tables::{Real, Row};
 use fearless_simd::prelude::*;
 use fearless_simd::{
     f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
@@ -13,41 +14,6 @@ use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// Largest lane count, for buffers on the stack.
 pub const MAX_LANES: usize = 16;
-
-/// A number of a table: `f32`, or `f64` for the reference.
-pub trait Real: Copy + Default + Send + Sync + PartialOrd + std::fmt::Debug + 'static {
-    /// The nearest number of this precision.
-    fn from_f64(x: f64) -> Self;
-    /// Without loss.
-    fn to_f64(self) -> f64;
-}
-
-impl Real for f32 {
-    #[inline(always)]
-    fn from_f64(x: f64) -> Self {
-        x as f32
-    }
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
-}
-
-impl Real for f64 {
-    #[inline(always)]
-    fn from_f64(x: f64) -> Self {
-        x
-    }
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self
-    }
-}
-
-/// Sixteen numbers about one thing, a cache line in `f32`: what a winner is looked up by.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
-pub struct Row<R>(pub [R; 16]);
 
 /// Rows of numbers, and what can be done with them.
 ///

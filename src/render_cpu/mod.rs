@@ -9,7 +9,6 @@ pub mod material;
 pub mod path;
 pub mod rng;
 pub mod sphere;
-pub mod tables;
 mod tiles;
 pub mod work;
 
@@ -17,13 +16,12 @@ pub use isa::Isa;
 
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::tables::{Real, Tables};
 use kernels::Kernel;
-use lanes::Real;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
-use tables::Tables;
 use tiles::{tile_side, tiles};
 use work::{DealtBlock, TileStats, Work};
 

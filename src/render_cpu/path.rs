@@ -16,11 +16,11 @@ use super::sphere::{
     NONE, Nearest, Rays, acne_root, anchored_root, anchored_surface_point, near_root, nearest_root,
     surface_point,
 };
-use super::tables::Tables;
 use super::work::{LaneState, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::render::SamplerKind;
 use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
+use crate::tables::Tables;
 
 /// Code that a kernel may carry, as bits of its constant parameter.
 pub mod needs {

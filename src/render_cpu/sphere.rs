@@ -3,7 +3,7 @@
 //! Twin: shaders/sphere.wgsl
 
 use super::lanes::{Lanes, V3, dot, mul_add3, neg_mul_add3, splat3};
-use super::tables::AnchoredSphere;
+use crate::tables::AnchoredSphere;
 
 /// In place of a sphere's number: no sphere.
 pub const NONE: u32 = u32::MAX;

@@ -1,12 +1,16 @@
 //! What a kernel reads: the job, rounded once to the kernel's precision and laid out flat.
 
-use super::bvh::Hierarchy;
-use super::lanes::{Real, Row};
+pub mod hierarchy;
+mod real;
+
+pub use real::{Real, Row};
+
 use crate::film::FIXED_POINT_SCALE;
 use crate::render::{RenderJob, RenderSettings};
 use crate::scene::{Camera, Material, Scene, Sphere};
 use crate::stages::{Rules, Surface};
 use glam::DVec3;
+use hierarchy::Hierarchy;
 
 /// Spheres from which on the hierarchy is faster than the list: on one AVX2 core the two cross between 16 and
 /// 32 spheres (`cargo bench --bench kernels -- crossover`).

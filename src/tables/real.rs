@@ -1,0 +1,36 @@
+//! The precisions of tables.
+
+/// A number of a table: `f32`, or `f64` for the reference.
+pub trait Real: Copy + Default + Send + Sync + PartialOrd + std::fmt::Debug + 'static {
+    /// The nearest number of this precision.
+    fn from_f64(x: f64) -> Self;
+    /// Without loss.
+    fn to_f64(self) -> f64;
+}
+
+impl Real for f32 {
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        x as f32
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Real for f64 {
+    #[inline(always)]
+    fn from_f64(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
+
+/// Sixteen numbers about one thing, a cache line in `f32`: what a winner is looked up by.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(C, align(64))]
+pub struct Row<R>(pub [R; 16]);
