@@ -20,7 +20,7 @@ use super::work::{LaneState, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::render::SamplerKind;
 use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
-use crate::tables::Tables;
+use crate::tables::{Real, Tables};
 
 /// Code that a kernel may carry, as bits of its constant parameter.
 pub mod needs {
@@ -34,6 +34,8 @@ pub mod needs {
     pub const HIERARCHY: u32 = 8;
     /// Stage rules.
     pub const RULES: u32 = 16;
+    /// Everything.
+    pub const ALL: u32 = 31;
 }
 
 /// Packets that take turns. Fewer leave the processor waiting (2: -10 %, 1: -35 %), more gain nothing.
@@ -109,6 +111,68 @@ pub fn trace<L: Lanes, const NEEDS: u32>(l: L, tables: &Tables<L::Real>, work: &
         stats.offered_lanes += (PACKETS * L::WIDTH) as u64;
         for packet in &mut packets {
             shade::<L, NEEDS>(l, tables, packet, work, &mut stats);
+        }
+    }
+}
+
+/// A packet of one lane, for a record of what it does.
+pub struct SinglePath<L: Lanes> {
+    packet: Packet<L>,
+    stack: Stack,
+}
+
+impl<L: Lanes> SinglePath<L> {
+    /// Takes the first sample of `work`.
+    #[inline(always)]
+    pub fn start(l: L, tables: &Tables<L::Real>, work: &mut Work) -> Self {
+        let mut packet = Packet::idle(l);
+        shade::<L, { needs::ALL }>(l, tables, &mut packet, work, &mut TileStats::default());
+        SinglePath { packet, stack: EMPTY_STACK }
+    }
+
+    /// Whether there is a ray to trace.
+    pub fn is_alive(&self) -> bool {
+        L::bits(self.packet.alive) != 0
+    }
+
+    /// Whether the path was absorbed where it is.
+    pub fn is_absorbed(&self) -> bool {
+        L::bits(self.packet.absorbed) != 0
+    }
+
+    /// Where the ray starts.
+    pub fn origin(&self) -> V3<L::F> {
+        self.packet.rays.origin
+    }
+
+    /// Where it goes.
+    pub fn direction(&self) -> V3<L::F> {
+        self.packet.rays.direction
+    }
+
+    /// What its light counts for.
+    pub fn throughput(&self) -> V3<L::F> {
+        self.packet.throughput
+    }
+
+    /// Traces the ray and sends it on. Returns the number of the sphere that it met and the distance.
+    #[inline(always)]
+    pub fn advance(&mut self, l: L, tables: &Tables<L::Real>, work: &mut Work) -> (u32, f64) {
+        let mut stats = TileStats::default();
+        intersect::<L, { needs::ALL }>(l, tables, &mut self.packet, &mut self.stack, &mut stats);
+        let mut sphere = [0; MAX_LANES];
+        let mut distance = [L::Real::default(); MAX_LANES];
+        L::store_u(self.packet.nearest.sphere, &mut sphere);
+        L::store(L::from_key(self.packet.nearest.key), &mut distance);
+        shade::<L, { needs::ALL }>(l, tables, &mut self.packet, work, &mut stats);
+        (sphere[0], distance[0].to_f64())
+    }
+
+    /// Ends an absorbed path.
+    #[inline(always)]
+    pub fn finish(&mut self, l: L, tables: &Tables<L::Real>, work: &mut Work) {
+        if self.is_alive() {
+            self.advance(l, tables, work);
         }
     }
 }
