@@ -5,7 +5,7 @@
 //! them render the same bits, which tests hold them to.
 
 use super::Isa;
-use super::lanes::{Lanes4, Lanes8, Lanes16, Reference, Scalar};
+use super::lanes::{Permute, Lanes4, Lanes8, Lanes16, Reference, Scalar};
 use super::path::{needs, trace};
 use super::record::{PathRecord, record};
 use super::work::{TileStats, Work};
@@ -132,7 +132,7 @@ fn scalar<S: Simd, const FUSED: bool>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn four<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn four<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
@@ -141,7 +141,7 @@ fn four<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn eight<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn eight<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
@@ -150,7 +150,7 @@ fn eight<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn sixteen<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn sixteen<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]

@@ -230,6 +230,38 @@ fn intersect<L: Lanes, const NEEDS: u32>(
     alive
 }
 
+/// Which row of the table each lane looks up.
+enum Rows<L: Lanes> {
+    /// Few enough that a column fits a register.
+    Permuted(L::U),
+    /// By their number in memory.
+    Gathered([u32; MAX_LANES]),
+}
+
+impl<L: Lanes> Rows<L> {
+    #[inline(always)]
+    fn of(_: L, tables: &Tables<L::Real>, numbers: L::U) -> Self {
+        if tables.rows.len() <= L::PERMUTED_ROWS {
+            return Rows::Permuted(numbers);
+        }
+        let mut stored = [0; MAX_LANES];
+        L::store_u(numbers, &mut stored);
+        Rows::Gathered(stored)
+    }
+
+    /// Columns `4 group ..`.
+    #[inline(always)]
+    fn columns(&self, l: L, tables: &Tables<L::Real>, group: usize) -> [L::F; 4] {
+        match self {
+            Rows::Permuted(numbers) => {
+                let column = |offset: usize| l.permute(&tables.columns[4 * group + offset], *numbers);
+                [column(0), column(1), column(2), column(3)]
+            }
+            Rows::Gathered(stored) => l.gather(&tables.rows, stored, group),
+        }
+    }
+}
+
 /// Ends paths or sends them on, and starts the next sample in lanes whose path has ended.
 #[inline(always)]
 fn shade<L: Lanes, const NEEDS: u32>(
@@ -247,16 +279,15 @@ fn shade<L: Lanes, const NEEDS: u32>(
     let direction = packet.rays.direction;
 
     // What was hit, and where.
-    let mut rows = [0; MAX_LANES];
-    L::store_u(L::select_u(miss, l.splat_u(0), hit), &mut rows);
-    let [cx, cy, cz, curvature] = l.gather(&tables.rows, &rows, 0);
-    let [red, green, blue, weight] = l.gather(&tables.rows, &rows, 1);
-    let [radius, index, inverse_index, normal_share] = l.gather(&tables.rows, &rows, 2);
+    let rows = Rows::of(l, tables, L::select_u(miss, l.splat_u(0), hit));
+    let [cx, cy, cz, curvature] = rows.columns(l, tables, 0);
+    let [red, green, blue, weight] = rows.columns(l, tables, 1);
+    let [radius, index, inverse_index, normal_share] = rows.columns(l, tables, 2);
     let reference = V3 { x: cx, y: cy, z: cz };
     let t = L::from_key(packet.nearest.key);
     let mut point = surface_point(l, &packet.rays, t, reference, curvature, radius);
     if NEEDS & needs::ANCHORED != 0 && !tables.anchored.is_empty() {
-        let [mx, my, mz, is_anchored] = l.gather(&tables.rows, &rows, 3);
+        let [mx, my, mz, is_anchored] = rows.columns(l, tables, 3);
         let inward = V3 { x: mx, y: my, z: mz };
         let far = anchored_surface_point(l, &packet.rays, t, reference, inward, curvature);
         let is_anchored = L::lt(zero, is_anchored);
