@@ -5,6 +5,7 @@ pub mod output;
 pub mod recipe;
 pub mod render;
 pub mod render_cpu;
+pub mod render_gpu;
 pub mod sampling;
 pub mod scene;
 pub mod stages;
