@@ -25,6 +25,7 @@ fn main() {
     let settings =
         RenderSettings { width: 800, height: 450, max_depth: 24, sampler, seed: 0, estimate_error: true };
     let job = RenderJob::new(scene, Camera::default(), settings, Rules::default()).unwrap();
+    let only: Option<usize> = std::env::args().nth(3).map(|s| s.parse().unwrap());
     for (isa, lanes) in [
         (Isa::Avx2, 8),
         (Isa::Sse42, 4),

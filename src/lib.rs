@@ -1,7 +1,13 @@
 //! Weekender: the path tracer of *Ray Tracing in One Weekend* as a viewer, a headless renderer and a lesson.
 
+pub mod app;
+pub mod backends;
+pub mod batch;
+pub mod cli;
+pub mod failure;
 pub mod film;
 pub mod output;
+pub mod progressive;
 pub mod recipe;
 pub mod render;
 pub mod render_cpu;

@@ -1,2 +1,20 @@
 //! The program: parse, run, exit code.
-fn main() {}
+
+use std::process::ExitCode;
+use weekender::cli::{self, Request};
+use weekender::failure::Failure;
+use weekender::{app, batch};
+
+fn main() -> ExitCode {
+    run().unwrap_or_else(|failure| failure.report())
+}
+
+fn run() -> Result<ExitCode, Failure> {
+    match cli::parse(std::env::args_os())? {
+        Request::Window => app::run().map_err(Failure::Input),
+        Request::List => batch::list(),
+        Request::SaveScene(options) => batch::save_scene(&options),
+        Request::Merge(options) => batch::merge(&options),
+        Request::Batch(options) => batch::run(options),
+    }
+}

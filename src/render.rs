@@ -62,6 +62,20 @@ pub struct RenderSettings {
     pub estimate_error: bool,
 }
 
+impl Default for RenderSettings {
+    /// What a scene file that does not say gets.
+    fn default() -> Self {
+        RenderSettings {
+            width: 800,
+            height: 450,
+            max_depth: 50,
+            sampler: SamplerKind::Sobol,
+            seed: 0,
+            estimate_error: true,
+        }
+    }
+}
+
 impl RenderSettings {
     /// Halves of the film: 2 if the error is estimated, else 1.
     pub fn half_count(&self) -> usize {

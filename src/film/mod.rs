@@ -6,11 +6,19 @@
 //! film that is not asked for its error has one half.
 
 pub mod checkpoint;
+mod description;
+mod merge;
 mod ranges;
+mod replace;
 
+pub use checkpoint::{CheckpointError, FilmFile};
+pub use description::{Description, RECIPE_KEY, key};
+pub use merge::{MergeError, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;
+pub use replace::{WriteError, check_writable, replace_file};
 
 use crate::stages::Transfer;
+use std::ops::Range;
 
 /// One unit of the film's fixed point is `2^-24` of radiance.
 pub const FIXED_POINT_SCALE: f64 = 16_777_216.0;
@@ -85,9 +93,65 @@ impl Film {
         }
     }
 
+    /// As [`Film::new`], but having no memory is an error.
+    ///
+    /// # Errors
+    /// [`FilmError::Memory`]. A system that promises more memory than it has may end the program instead.
+    pub fn try_new(width: u32, height: u32, half_count: usize) -> Result<Self, FilmError> {
+        let no_memory = |_| FilmError::Memory { bytes: Film::bytes(width, height, half_count) };
+        let mut halves = Vec::with_capacity(half_count);
+        for _ in 0..half_count {
+            let mut half = Vec::new();
+            let pixels = width as usize * height as usize;
+            half.try_reserve_exact(pixels).map_err(no_memory)?;
+            half.resize(pixels, PixelSum::default());
+            halves.push(half);
+        }
+        Ok(Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 })
+    }
+
+    /// A film from its parts, as a file has them.
+    ///
+    /// # Errors
+    /// [`FilmError::Parts`] if they are not those of any film.
+    pub fn from_parts(
+        width: u32,
+        height: u32,
+        halves: Vec<Vec<PixelSum>>,
+        samples: SampleRanges,
+        rejected: u64,
+    ) -> Result<Self, FilmError> {
+        let film = Film { width, height, halves, samples, rejected };
+        film.validate().map_err(|what| FilmError::Parts { what })?;
+        Ok(film)
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        let pixels = self.width as usize * self.height as usize;
+        if pixels == 0 {
+            return Err(format!("a size of {}x{}", self.width, self.height));
+        }
+        if !(1..=2).contains(&self.halves.len()) {
+            return Err(format!("{} halves", self.halves.len()));
+        }
+        if u128::from(self.rejected) > u128::from(self.sample_count()) * pixels as u128 {
+            return Err(format!("{} samples rejected of {} a pixel", self.rejected, self.sample_count()));
+        }
+        for (index, half) in self.halves.iter().enumerate() {
+            if half.len() != pixels {
+                return Err(format!("{} sums for {pixels} pixels", half.len()));
+            }
+            let limit = u128::from(self.half_sample_count(index)) * u128::from(FIXED_POINT_MAX);
+            if let Some(pixel) = half.iter().position(|sum| sum.0.iter().any(|k| u128::from(*k) > limit)) {
+                return Err(format!("a sum of pixel {pixel} that its samples cannot reach"));
+            }
+        }
+        Ok(())
+    }
+
     /// Bytes that the sums of such a film take.
     pub fn bytes(width: u32, height: u32, half_count: usize) -> u64 {
-        u64::from(width) * u64::from(height) * half_count as u64 * size_of::<PixelSum>() as u64
+        (u64::from(width) * u64::from(height)).saturating_mul((half_count * size_of::<PixelSum>()) as u64)
     }
 
     /// Pixels across.
@@ -134,7 +198,7 @@ impl Film {
     ///
     /// # Errors
     /// [`FilmError::Overlap`] if some of them were there before; the note is not taken.
-    pub fn record(&mut self, range: std::ops::Range<u64>, rejected: u64) -> Result<(), FilmError> {
+    pub fn record(&mut self, range: Range<u64>, rejected: u64) -> Result<(), FilmError> {
         self.samples.insert(range)?;
         self.rejected += rejected;
         Ok(())
@@ -156,42 +220,102 @@ impl Film {
 
     /// The whole picture, linear RGB, row by row from the top.
     pub fn means(&self) -> Vec<[f32; 3]> {
-        (0..self.width as usize * self.height as usize).map(|i| self.mean(i).map(|x| x as f32)).collect()
+        let mut pixels = vec![[0.0; 3]; self.width as usize * self.height as usize];
+        self.mean_rows(0..self.height, &mut pixels);
+        pixels
+    }
+
+    /// Rows `rows` of the picture, linear RGB, into `pixels` (`width` of them for each row).
+    ///
+    /// # Panics
+    /// If a row is below the picture, or `pixels` is of another length.
+    pub fn mean_rows(&self, rows: Range<u32>, pixels: &mut [[f32; 3]]) {
+        let unit = self.fixed_point_of_1();
+        self.for_each_sum(rows, pixels, |sum, pixel| *pixel = sum.0.map(|k| (k as f64 / unit) as f32));
     }
 
     /// The picture in 8 bits: `transfer`, then `floor(256 clamp(v, 0, .999))`; top row first.
     pub fn to_rgb8(&self, transfer: Transfer) -> Vec<u8> {
-        let (width, height) = (self.width as usize, self.height as usize);
-        let mut bytes = Vec::with_capacity(width * height * 3);
-        for row in 0..height {
-            for column in 0..width {
-                let linear = self.mean(row * width + column);
-                bytes.extend(linear.map(|x| to_byte(x, transfer, row, height)));
-            }
-        }
+        let mut bytes = vec![0; self.width as usize * self.height as usize * 3];
+        self.resolve_rows(0..self.height, transfer, &mut bytes);
         bytes
     }
 
-    /// The error that the halves show: with `A` and `B` their means, `MSE = mean((A - B)^2) / 4`.
-    /// `None` with one half, or before both hold the same number of samples, at least one.
-    pub fn error(&self) -> Option<ErrorEstimate> {
-        let [half_a, half_b] = self.halves.as_slice() else { return None };
-        let (count_a, count_b) = (self.half_sample_count(0), self.half_sample_count(1));
-        if count_a == 0 || count_b == 0 {
-            return None;
-        }
-        let (mut square_sum, mut relative_sum) = (0.0, 0.0);
-        for (a, b) in half_a.iter().zip(half_b) {
-            let (a, b) = (mean_of(*a, count_a), mean_of(*b, count_b));
-            for channel in 0..3 {
-                let mean = 0.5 * (a[channel] + b[channel]);
-                let square = (a[channel] - b[channel]).powi(2) / 4.0;
-                square_sum += square;
-                relative_sum += square / (mean * mean + 1e-2);
+    /// Rows `rows` of [`Film::to_rgb8`], into `bytes` (`3 width` of them for each row). Rows do not depend on
+    /// each other, so that threads may share a picture.
+    ///
+    /// # Panics
+    /// If a row is below the picture, or `bytes` is of another length.
+    pub fn resolve_rows(&self, rows: Range<u32>, transfer: Transfer, bytes: &mut [u8]) {
+        let (unit, height) = (self.fixed_point_of_1(), self.height as usize);
+        let (pixels, []) = bytes.as_chunks_mut::<3>() else { panic!("a pixel has 3 bytes") };
+        assert_eq!(pixels.len(), self.width as usize * rows.len(), "3 bytes for each pixel of {rows:?}");
+        // The choice is the row's, and stays out of the loop over its pixels.
+        for (line, row) in pixels.chunks_exact_mut(self.width as usize).zip(rows) {
+            if is_gamma(transfer, row as usize, height) {
+                self.for_each_sum(row..row + 1, line, |sum, pixel| {
+                    *pixel = sum.0.map(|k| quantise((k as f64 / unit).sqrt()));
+                });
+            } else {
+                self.for_each_sum(row..row + 1, line, |sum, pixel| {
+                    *pixel = sum.0.map(|k| quantise(k as f64 / unit));
+                });
             }
         }
-        let terms = (half_a.len() * 3) as f64;
-        Some(ErrorEstimate { rmse: (square_sum / terms).sqrt(), rel_mse: relative_sum / terms })
+    }
+
+    /// A pixel's sum if all its samples were 1. It is a product with a power of two, so that dividing by it is
+    /// to the bit what dividing by the two factors would be.
+    fn fixed_point_of_1(&self) -> f64 {
+        self.sample_count().max(1) as f64 * FIXED_POINT_SCALE
+    }
+
+    fn for_each_sum<T>(&self, rows: Range<u32>, places: &mut [T], each: impl Fn(PixelSum, &mut T)) {
+        let width = self.width as usize;
+        let pixels = rows.start as usize * width..rows.end as usize * width;
+        assert_eq!(places.len(), pixels.len(), "a place for each pixel of the rows {rows:?}");
+        match self.halves.as_slice() {
+            [half_a, half_b] => {
+                for ((a, b), place) in half_a[pixels.clone()].iter().zip(&half_b[pixels]).zip(places) {
+                    let mut sum = *a;
+                    sum.add(*b);
+                    each(sum, place);
+                }
+            }
+            _ => {
+                for (sum, place) in self.halves[0][pixels].iter().zip(places) {
+                    each(*sum, place);
+                }
+            }
+        }
+    }
+
+    /// The error that the halves show. With `A` and `B` the means of `a` and `b` samples,
+    /// `MSE = mean((A - B)^2) a b / (a + b)^2`: a quarter of the squared difference when `a = b`, as after every
+    /// even number of samples. `None` with one half, or while a half has no sample.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        let [half_a, half_b] = self.halves.as_slice() else { return None };
+        let (count_a, count_b) = (self.half_sample_count(0) as f64, self.half_sample_count(1) as f64);
+        if count_a == 0.0 || count_b == 0.0 || half_a.is_empty() {
+            return None;
+        }
+        let count = count_a + count_b;
+        let (scale_a, scale_b) = (1.0 / (count_a * FIXED_POINT_SCALE), 1.0 / (count_b * FIXED_POINT_SCALE));
+        let scale = 1.0 / (count * FIXED_POINT_SCALE);
+        let weight = (count_a / count) * (count_b / count);
+        let (mut square_sum, mut relative_sum) = ([0.0; 3], [0.0; 3]);
+        for (a, b) in half_a.iter().zip(half_b) {
+            for channel in 0..3 {
+                let (a, b) = (a.0[channel], b.0[channel]);
+                let mean = (a + b) as f64 * scale;
+                let difference = a as f64 * scale_a - b as f64 * scale_b;
+                let square = difference * difference * weight;
+                square_sum[channel] += square;
+                relative_sum[channel] += square / (mean * mean + 1e-2);
+            }
+        }
+        let mean = |sums: [f64; 3]| sums.iter().sum::<f64>() / (half_a.len() * 3) as f64;
+        Some(ErrorEstimate { rmse: mean(square_sum).sqrt(), rel_mse: mean(relative_sum) })
     }
 
     /// Adds another film of the same size.
@@ -224,16 +348,23 @@ fn mean_of(sum: PixelSum, count: u64) -> [f64; 3] {
 
 /// One channel of a picture's pixel in `row` of `height`, from linear radiance.
 pub fn to_byte(linear: f64, transfer: Transfer, row: usize, height: usize) -> u8 {
-    let gamma = match transfer {
+    quantise(if is_gamma(transfer, row, height) { linear.max(0.0).sqrt() } else { linear })
+}
+
+/// Whether `row` of `height` takes the square root.
+fn is_gamma(transfer: Transfer, row: usize, height: usize) -> bool {
+    match transfer {
         Transfer::Linear => false,
         Transfer::Gamma2 => true,
         Transfer::LinearAboveGamma2 => row >= height / 2,
-    };
-    let value = if gamma { linear.max(0.0).sqrt() } else { linear };
+    }
+}
+
+fn quantise(value: f64) -> u8 {
     (256.0 * value.clamp(0.0, 0.999)) as u8
 }
 
-/// Films that cannot be added.
+/// Films that cannot be added, and what is no film.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum FilmError {
     /// Different width, height or number of halves.
@@ -248,6 +379,18 @@ pub enum FilmError {
     #[error("samples {}..{} are already in the film; each sample may be added once", range.start, range.end)]
     Overlap {
         /// The samples that both hold.
-        range: std::ops::Range<u64>,
+        range: Range<u64>,
+    },
+    /// There is no memory for the sums.
+    #[error("the film needs {bytes} bytes of memory, which are not to be had; choose a smaller picture")]
+    Memory {
+        /// Bytes of all sums.
+        bytes: u64,
+    },
+    /// Parts that do not fit together.
+    #[error("this is no film: {what}")]
+    Parts {
+        /// What is wrong.
+        what: String,
     },
 }

@@ -16,7 +16,8 @@ impl SampleRanges {
 
     /// How many of them fall to half `half` of `half_count`: those with `index mod half_count == half`.
     pub fn count_in_half(&self, half: usize, half_count: usize) -> u64 {
-        let below = |end: u64| (end + half_count as u64 - 1 - half as u64) / half_count as u64;
+        let (half, half_count) = (half as u64, half_count as u64);
+        let below = |end: u64| end / half_count + u64::from(end % half_count > half);
         self.0.iter().map(|r| below(r.end) - below(r.start)).sum()
     }
 
@@ -30,6 +31,12 @@ impl SampleRanges {
         self.0.last().map_or(0, |r| r.end)
     }
 
+    /// The first samples of `range` that are there, in one piece.
+    pub fn overlap(&self, range: &Range<u64>) -> Option<Range<u64>> {
+        let common = |r: &Range<u64>| r.start.max(range.start)..r.end.min(range.end);
+        self.0.iter().map(common).find(|both| !both.is_empty())
+    }
+
     /// Adds a range; ranges that touch become one.
     ///
     /// # Errors
@@ -38,8 +45,7 @@ impl SampleRanges {
         if range.is_empty() {
             return Ok(());
         }
-        if let Some(both) = self.0.iter().find(|r| r.start < range.end && range.start < r.end) {
-            let range = both.start.max(range.start)..both.end.min(range.end);
+        if let Some(range) = self.overlap(&range) {
             return Err(FilmError::Overlap { range });
         }
         self.0.push(range);
@@ -55,7 +61,8 @@ impl SampleRanges {
         Ok(())
     }
 
-    /// The first samples of `within` that are missing, at most `limit` of them; `None` when all are there.
+    /// The first samples of `within` that are missing, at most `limit` of them, in one piece; `None` when all
+    /// are there, or the limit is 0.
     pub fn first_gap(&self, within: Range<u64>, limit: u64) -> Option<Range<u64>> {
         let mut start = within.start;
         for range in &self.0 {

@@ -1,1 +1,135 @@
-//! Pictures in files.
+//! Pictures in files: 8-bit PNG, binary PPM (P6), and OpenEXR, which is the whole film. All of them say what they
+//! show: see [`Description`].
+
+mod png;
+mod ppm;
+
+pub use crate::film::{Description, RECIPE_KEY, WriteError, check_writable, key, replace_file};
+
+use crate::film::{Film, checkpoint};
+use crate::stages::Transfer;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+/// How a picture is kept in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum OutputFormat {
+    /// 8-bit RGB.
+    Png,
+    /// Binary PPM, 8-bit RGB: the book's format, as bytes.
+    P6,
+    /// Linear float RGB and the film's exact sums: see [`crate::film::checkpoint`].
+    Exr,
+}
+
+impl OutputFormat {
+    /// All of them.
+    pub const ALL: [OutputFormat; 3] = [OutputFormat::Png, OutputFormat::P6, OutputFormat::Exr];
+
+    /// What its files end in, with the dot.
+    pub fn ending(self) -> &'static str {
+        match self {
+            OutputFormat::Png => ".png",
+            OutputFormat::P6 => ".ppm",
+            OutputFormat::Exr => ".exr",
+        }
+    }
+
+    /// The format that a file's ending stands for, in capitals or not.
+    ///
+    /// # Errors
+    /// [`OutputError::UnknownEnding`], which lists those that are known.
+    pub fn from_path(path: &Path) -> Result<Self, OutputError> {
+        let ending = path.extension().map(|ending| format!(".{}", ending.to_string_lossy().to_lowercase()));
+        OutputFormat::ALL
+            .into_iter()
+            .find(|format| Some(format.ending()) == ending.as_deref())
+            .ok_or_else(|| OutputError::UnknownEnding { path: path.to_owned() })
+    }
+}
+
+/// A picture that cannot be written, or cannot be read for what it says.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The file's name does not say what to write.
+    #[error(
+        "the name {} does not end in a known picture format; let it end in one of {}",
+        path.display(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
+    )]
+    UnknownEnding {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file system, or what it says.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The file cannot be read.
+    #[error("cannot read {}: {reason}; check the name and that it is a whole picture", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: io::Error,
+    },
+    /// A picture of somebody else's.
+    #[error(
+        "{} does not say how it was made; only PNG, PPM and EXR files that Weekender wrote do, as long as no other program saved them again",
+        path.display()
+    )]
+    NoDescription {
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// Writes a picture in place of `path`, in the format of its ending. `transfer` matters for 8 bits only; an EXR
+/// file is linear and holds the film.
+///
+/// # Errors
+/// [`OutputError`]; the file that was there is then as it was.
+pub fn write_image(
+    path: &Path,
+    film: &Film,
+    transfer: Transfer,
+    description: &Description,
+) -> Result<(), OutputError> {
+    let format = OutputFormat::from_path(path)?;
+    replace_file(path, |writer| match format {
+        OutputFormat::Png => png::write(film, transfer, description, writer),
+        OutputFormat::P6 => ppm::write(film, transfer, description, writer),
+        OutputFormat::Exr => checkpoint::write(film, description, writer),
+    })?;
+    Ok(())
+}
+
+/// Reads what a picture says about itself. What the file is shows in its first bytes; its name does not matter.
+///
+/// # Errors
+/// [`OutputError::Read`] or [`OutputError::NoDescription`].
+pub fn read_description(path: &Path) -> Result<Description, OutputError> {
+    let unreadable = |reason| OutputError::Read { path: path.to_owned(), reason };
+    let read = || {
+        let mut reader = BufReader::new(File::open(path)?);
+        let mut start = Vec::new();
+        reader.by_ref().take(8).read_to_end(&mut start)?;
+        reader.rewind()?;
+        match start.as_slice() {
+            [0x89, b'P', b'N', b'G', ..] => png::read_description(reader),
+            [b'P', b'6', ..] => ppm::read_description(reader),
+            start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader),
+            _ => Ok(None),
+        }
+    };
+    read().map_err(unreadable)?.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
+}
+
+/// All pixels, 8-bit RGB, a row at a time: a picture may be larger than one likes to have in memory again.
+fn write_rows(film: &Film, transfer: Transfer, writer: &mut impl Write) -> io::Result<()> {
+    let mut bytes = vec![0; 3 * film.width() as usize];
+    for row in 0..film.height() {
+        film.resolve_rows(row..row + 1, transfer, &mut bytes);
+        writer.write_all(&bytes)?;
+    }
+    Ok(())
+}

@@ -3,9 +3,14 @@
 
 pub mod file;
 
-use crate::render::{JobError, RenderJob, RenderSettings};
-use crate::scene::{Camera, Scene};
-use crate::stages::Rules;
+use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT};
+use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
+use crate::scene::{Camera, Scene, or_nearest, similar_names};
+use crate::stages::{Rules, Setup, Stage};
+use thiserror::Error;
+
+/// Samples per pixel where a scene file does not say.
+pub const DEFAULT_SAMPLES_PER_PIXEL: u64 = 200;
 
 /// Scene, camera, settings and rules, not checked yet, and how many samples are wanted.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,16 +25,158 @@ pub struct Recipe {
     pub settings: RenderSettings,
     /// The rules in force.
     pub rules: Rules,
-    /// Samples per pixel that the picture should have. It is no part of the job: a film can have any number.
+    /// Samples per pixel that the picture should have, `1..=2^32`. It is no part of the job: a film can have
+    /// any number.
     pub samples_per_pixel: u64,
 }
 
 impl Recipe {
-    /// Checks it.
+    /// The built-in scene of this name; `field:N` is a field of `N` spheres.
+    pub fn builtin(name: &str) -> Option<Recipe> {
+        Self::find(name).ok()
+    }
+
+    /// The built-in scene of this name; `field:N` is a field of `N` spheres.
+    ///
+    /// # Errors
+    /// Says which scenes have a name like it, or how many spheres a field may have.
+    pub fn find(name: &str) -> Result<Recipe, SceneNameError> {
+        if let Some(builtin) = BuiltinScene::find(name) {
+            let (scene, camera) = (builtin.build)();
+            return Ok(Self::of_builtin(builtin, name, scene, camera));
+        }
+        let Some(count) = name.strip_prefix("field:") else {
+            let near = similar_names(name, BuiltinScene::ALL.iter().map(|scene| scene.name));
+            return Err(SceneNameError::Unknown { name: name.to_owned(), near });
+        };
+        match count.parse() {
+            Ok(number) if FIELD_COUNT_LIMITS.contains(&number) => {
+                let (scene, camera) = field(number);
+                Ok(Self::of_builtin(&BuiltinScene::FIELD, name, scene, camera))
+            }
+            _ => Err(SceneNameError::FieldCount { count: count.to_owned() }),
+        }
+    }
+
+    fn of_builtin(builtin: &BuiltinScene, name: &str, scene: Scene, camera: Camera) -> Recipe {
+        let BuiltinScene { width, height, samples_per_pixel, max_depth, .. } = *builtin;
+        Recipe {
+            name: name.to_owned(),
+            scene,
+            camera,
+            settings: RenderSettings { width, height, max_depth, ..RenderSettings::default() },
+            rules: Rules::FINISHED,
+            samples_per_pixel,
+        }
+    }
+
+    /// Checks scene, camera, settings and rules. [`Recipe::check_samples`] checks the rest.
     ///
     /// # Errors
     /// See [`RenderJob::new`].
     pub fn job(&self) -> Result<RenderJob, JobError> {
         RenderJob::new(self.scene.clone(), self.camera, self.settings, self.rules)
+    }
+
+    /// Checks the samples per pixel.
+    ///
+    /// # Errors
+    /// If they are not within `1..=2^32`.
+    pub fn check_samples(&self) -> Result<(), SamplesError> {
+        if (1..=SAMPLE_LIMIT).contains(&self.samples_per_pixel) {
+            Ok(())
+        } else {
+            Err(SamplesError { samples: self.samples_per_pixel })
+        }
+    }
+}
+
+impl Stage {
+    /// The picture that shows this stage.
+    pub fn recipe(&self) -> Recipe {
+        let Setup { scene, camera, rules, width, height, samples_per_pixel, max_depth } = self.setup;
+        Recipe {
+            name: self.id.to_owned(),
+            scene: scene(),
+            camera,
+            settings: RenderSettings { width, height, max_depth, ..RenderSettings::default() },
+            rules,
+            samples_per_pixel,
+        }
+    }
+}
+
+/// No built-in scene has this name.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+pub enum SceneNameError {
+    /// None is called so.
+    #[error("there is no scene {name:?}; {}", or_nearest(near))]
+    Unknown {
+        /// What was asked for.
+        name: String,
+        /// Names like it, the likeliest first.
+        near: Vec<&'static str>,
+    },
+    /// `field:N` with an `N` that cannot be.
+    #[error(
+        "field:{count} has {count:?} for its number of spheres, which must be within {} and {}; try field:10000",
+        FIELD_COUNT_LIMITS.start(),
+        FIELD_COUNT_LIMITS.end()
+    )]
+    FieldCount {
+        /// What stands after the colon.
+        count: String,
+    },
+}
+
+/// A number of samples per pixel that cannot be had.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error(
+    "samples_per_pixel is {samples}, but must be within 1 and {SAMPLE_LIMIT}; 100 give a first impression"
+)]
+pub struct SamplesError {
+    /// Samples per pixel.
+    pub samples: u64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scenes_are_found_by_name() {
+        for builtin in BuiltinScene::ALL {
+            let recipe = Recipe::builtin(builtin.name).expect("in the registry");
+            assert_eq!(recipe.name, builtin.name);
+            recipe.job().expect("valid");
+            recipe.check_samples().expect("valid");
+        }
+        let field = Recipe::builtin("field:123").expect("a field");
+        assert_eq!((field.name.as_str(), field.scene.spheres.len()), ("field:123", 124));
+        assert_eq!(field.settings, Recipe::builtin("field").expect("a field").settings);
+    }
+
+    #[test]
+    fn unknown_scenes_are_answered_with_a_guess() {
+        let message = |name: &str| Recipe::find(name).expect_err("unknown").to_string();
+        assert_eq!(
+            message("three-sphere"),
+            "there is no scene \"three-sphere\"; did you mean three-spheres or two-spheres? --list shows all"
+        );
+        assert_eq!(message("xylophone"), "there is no scene \"xylophone\"; --list shows all");
+        for count in ["0", "10000001", "-1", "many", ""] {
+            let refused = message(&format!("field:{count}"));
+            assert!(refused.contains("must be within 1 and 10000000"), "{refused}");
+        }
+        assert_eq!(Recipe::builtin("xylophone"), None);
+    }
+
+    #[test]
+    fn samples_have_limits() {
+        let with = |samples_per_pixel| Recipe { samples_per_pixel, ..Stage::ALL[0].recipe() }.check_samples();
+        with(1).expect("least");
+        with(SAMPLE_LIMIT).expect("most");
+        assert!(with(0).expect_err("none").to_string().contains("samples_per_pixel is 0"));
+        assert_eq!(with(SAMPLE_LIMIT + 1), Err(SamplesError { samples: SAMPLE_LIMIT + 1 }));
     }
 }

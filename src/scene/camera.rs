@@ -1,14 +1,19 @@
 //! The camera: where it stands, where it looks, and its lens. (Book 1, sections 12 and 13.)
 
 use super::SceneError;
-use super::error::{finite, finite_vector};
+use super::error::{finite, finite_vector, position};
 use glam::DVec3;
+use std::ops::RangeInclusive;
 
 /// Vertical field of view, degrees.
 pub const VFOV_LIMITS_DEGREES: [f64; 2] = [0.01, 179.0];
 
 /// Defocus angles are from 0 to below this, degrees.
 pub const DEFOCUS_LIMIT_DEGREES: f64 = 179.0;
+
+/// Focus distances, scene units. The upper end holds every distance between two points within the limits of
+/// a position.
+const FOCUS_LIMITS: RangeInclusive<f64> = 1e-18..=1e19;
 
 /// A thin-lens camera as the user sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,16 +35,9 @@ pub struct Camera {
 }
 
 impl Default for Camera {
-    /// The book's first camera: at the origin, looking along -z, 90 degrees high.
+    /// [`Camera::BOOK`].
     fn default() -> Self {
-        Camera {
-            look_from: DVec3::ZERO,
-            look_at: DVec3::NEG_Z,
-            vup: DVec3::Y,
-            vfov_degrees: 90.0,
-            defocus_angle_degrees: 0.0,
-            focus_distance: None,
-        }
+        Camera::BOOK
     }
 }
 
@@ -55,18 +53,28 @@ pub struct CameraBasis {
 }
 
 impl Camera {
+    /// The book's first camera: at the origin, looking along -z, 90 degrees high.
+    pub const BOOK: Camera = Camera {
+        look_from: DVec3::ZERO,
+        look_at: DVec3::NEG_Z,
+        vup: DVec3::Y,
+        vfov_degrees: 90.0,
+        defocus_angle_degrees: 0.0,
+        focus_distance: None,
+    };
+
     /// Checks every number against its limits.
     ///
     /// # Errors
     /// The first value that no picture can be made with, with its limit and what to do about it.
     pub fn validate(&self) -> Result<(), SceneError> {
-        finite_vector("look_from", self.look_from)?;
-        finite_vector("look_at", self.look_at)?;
-        finite_vector("vup", self.vup)?;
+        position(|| "look_from".to_owned(), self.look_from)?;
+        position(|| "look_at".to_owned(), self.look_at)?;
+        finite_vector(|| "vup".to_owned(), self.vup)?;
         if self.look_from == self.look_at {
             return Err(SceneError::NoDirection { at: self.look_from });
         }
-        finite("vfov_degrees", self.vfov_degrees)?;
+        finite(|| "vfov_degrees".to_owned(), self.vfov_degrees)?;
         if !(VFOV_LIMITS_DEGREES[0]..=VFOV_LIMITS_DEGREES[1]).contains(&self.vfov_degrees) {
             return Err(SceneError::range(
                 "vfov_degrees".into(),
@@ -75,7 +83,7 @@ impl Camera {
                 "90 is wide, 20 is a portrait lens",
             ));
         }
-        finite("defocus_angle_degrees", self.defocus_angle_degrees)?;
+        finite(|| "defocus_angle_degrees".to_owned(), self.defocus_angle_degrees)?;
         if !(0.0..DEFOCUS_LIMIT_DEGREES).contains(&self.defocus_angle_degrees) {
             return Err(SceneError::range(
                 "defocus_angle_degrees".into(),
@@ -84,18 +92,27 @@ impl Camera {
                 "use 0 for a pinhole",
             ));
         }
-        if let Some(distance) = self.focus_distance {
-            finite("focus_distance", distance)?;
-            if !(distance > 0.0 && (1e-18..=1e18).contains(&distance)) {
-                return Err(SceneError::range(
+        match self.focus_distance {
+            None if !FOCUS_LIMITS.contains(&self.effective_focus_distance()) => Err(SceneError::range(
+                "focus_distance (that from look_from to look_at)".into(),
+                self.effective_focus_distance(),
+                "within 1e-18 and 1e19 scene units",
+                "move look_at or give a focus_distance",
+            )),
+            None => Ok(()),
+            Some(distance) => {
+                finite(|| "focus_distance".to_owned(), distance)?;
+                if FOCUS_LIMITS.contains(&distance) {
+                    return Ok(());
+                }
+                Err(SceneError::range(
                     "focus_distance".into(),
                     distance,
-                    "within 1e-18 and 1e18 scene units",
+                    "within 1e-18 and 1e19 scene units",
                     "leave it out to focus on look_at",
-                ));
+                ))
             }
         }
-        Ok(())
     }
 
     /// The focus distance that acts, scene units.
@@ -127,4 +144,100 @@ impl Camera {
 /// vanish.
 fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn assert_orthonormal(camera: &Camera) {
+        let CameraBasis { u, v, w } = camera.basis();
+        for (a, b, expected) in [(u, u, 1.0), (v, v, 1.0), (w, w, 1.0), (u, v, 0.0), (v, w, 0.0), (w, u, 0.0)]
+        {
+            assert!((a.dot(b) - expected).abs() < 1e-12, "{camera:?}: {u} {v} {w}");
+        }
+        assert!((u.cross(v) - w).length() < 1e-12, "left-handed: {camera:?}");
+        let view = unit(camera.look_at - camera.look_from);
+        assert!((w + view).length() < 1e-12, "{camera:?}");
+    }
+
+    fn message(camera: Camera) -> String {
+        camera.validate().expect_err("refused").to_string()
+    }
+
+    /// Case 31.
+    #[test]
+    fn up_along_the_view_still_gives_a_frame() {
+        for view in [DVec3::X, DVec3::NEG_Y, DVec3::Z, DVec3::new(1.0, 2.0, -3.0), DVec3::splat(1e-12)] {
+            for vup in [view, -view, view * 1e-200, view * 1e200, DVec3::ZERO] {
+                let camera = Camera { look_at: view, vup, ..Camera::BOOK };
+                camera.validate().expect("valid");
+                assert_orthonormal(&camera);
+            }
+        }
+    }
+
+    #[test]
+    fn frames_are_the_books() {
+        let basis = Camera::BOOK.basis();
+        assert_eq!((basis.u, basis.v, basis.w), (DVec3::X, DVec3::Y, DVec3::Z));
+        for scale in [1e-9, 1.0, 1e9] {
+            let look_from = scale * DVec3::new(13.0, 2.0, 3.0);
+            assert_orthonormal(&Camera { look_from, look_at: DVec3::ZERO, ..Camera::BOOK });
+        }
+    }
+
+    /// Case 31.
+    #[test]
+    fn a_camera_without_direction_is_refused() {
+        let refused = message(Camera { look_at: DVec3::ZERO, ..Camera::BOOK });
+        assert!(refused.contains("look_from and look_at are both [0, 0, 0]"), "{refused}");
+        assert!(refused.contains("move one"), "{refused}");
+    }
+
+    /// Case 32.
+    #[test]
+    fn fields_of_view_have_limits() {
+        for vfov_degrees in [0.01, 20.0, 179.0] {
+            Camera { vfov_degrees, ..Camera::BOOK }.validate().expect("within the limits");
+        }
+        for vfov_degrees in [0.0, -1.0, 0.0099, 179.001, 180.0] {
+            let refused = message(Camera { vfov_degrees, ..Camera::BOOK });
+            assert!(refused.contains(&format!("vfov_degrees is {vfov_degrees}")), "{refused}");
+            assert!(refused.contains("within 0.01 and 179 degrees"), "{refused}");
+        }
+        let refused = message(Camera { vfov_degrees: f64::NAN, ..Camera::BOOK });
+        assert_eq!(refused, "vfov_degrees is NaN, but must be a finite number");
+    }
+
+    /// Case 33.
+    #[test]
+    fn lenses_have_limits() {
+        Camera { defocus_angle_degrees: 178.9, ..Camera::BOOK }.validate().expect("a wide lens");
+        for defocus_angle_degrees in [-0.1, 179.0, 180.0, f64::INFINITY] {
+            let refused = message(Camera { defocus_angle_degrees, ..Camera::BOOK });
+            assert!(refused.starts_with("defocus_angle_degrees is"), "{refused}");
+        }
+        for distance in [0.0, -1.0, f64::NAN, 1e30] {
+            let refused = message(Camera { focus_distance: Some(distance), ..Camera::BOOK });
+            assert!(refused.starts_with(&format!("focus_distance is {distance}")), "{refused}");
+        }
+    }
+
+    #[test]
+    fn focus_is_on_what_is_looked_at_unless_said() {
+        let camera = Camera { look_at: DVec3::new(3.0, 4.0, 0.0), ..Camera::BOOK };
+        assert_eq!(camera.effective_focus_distance(), 5.0);
+        assert_eq!(Camera { focus_distance: Some(2.0), ..camera }.effective_focus_distance(), 2.0);
+    }
+
+    #[test]
+    fn positions_that_f32_cannot_hold_are_refused() {
+        for far in [1e19, 1e300] {
+            let refused = message(Camera { look_from: DVec3::new(0.0, far, 0.0), ..Camera::BOOK });
+            assert!(refused.starts_with("look_from.y is"), "{refused}");
+        }
+        let refused = message(Camera { look_at: DVec3::new(0.0, 1e-200, 0.0), ..Camera::BOOK });
+        assert!(refused.contains("focus_distance"), "{refused}");
+    }
 }

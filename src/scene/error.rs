@@ -46,6 +46,12 @@ pub enum SceneError {
         /// The name it gives.
         material: String,
     },
+    /// Two materials of one name.
+    #[error("two materials are called {name:?}; rename one")]
+    DuplicateMaterial {
+        /// The name.
+        name: String,
+    },
     /// The camera stands where it looks.
     #[error("look_from and look_at are both [{}, {}, {}], so there is no direction to look in; move one of them", at.x, at.y, at.z)]
     NoDirection {
@@ -60,20 +66,42 @@ impl SceneError {
     }
 }
 
-pub(super) fn finite(what: &str, value: f64) -> Result<(), SceneError> {
-    if value.is_finite() { Ok(()) } else { Err(SceneError::NotFinite { what: what.to_owned(), value }) }
+/// Largest coordinate or radius. Squares of it, and sums of three of those, must be finite in `f32`.
+pub(super) const LENGTH_LIMIT: f64 = 1e18;
+
+// The checks are run on millions of values; where one stands is put into words only if it is refused.
+
+pub(super) fn finite(what: impl FnOnce() -> String, value: f64) -> Result<(), SceneError> {
+    if value.is_finite() { Ok(()) } else { Err(SceneError::NotFinite { what: what(), value }) }
 }
 
-pub(super) fn finite_vector(what: &str, value: DVec3) -> Result<(), SceneError> {
-    [("x", value.x), ("y", value.y), ("z", value.z)]
+pub(super) fn finite_vector(what: impl Fn() -> String, value: DVec3) -> Result<(), SceneError> {
+    components(value)
         .into_iter()
-        .try_for_each(|(axis, component)| finite(&format!("{what}.{axis}"), component))
+        .try_for_each(|(axis, component)| finite(|| format!("{}.{axis}", what()), component))
 }
 
-pub(super) fn colour(what: &str, value: DVec3, limit: f64) -> Result<(), SceneError> {
-    finite_vector(what, value)?;
+pub(super) fn position(what: impl Fn() -> String, value: DVec3) -> Result<(), SceneError> {
+    finite_vector(&what, value)?;
+    match components(value).into_iter().find(|(_, component)| component.abs() > LENGTH_LIMIT) {
+        None => Ok(()),
+        Some((axis, component)) => Err(SceneError::range(
+            format!("{}.{axis}", what()),
+            component,
+            "within -1e18 and 1e18",
+            "scale the scene down",
+        )),
+    }
+}
+
+pub(super) fn colour(what: impl Fn() -> String, value: DVec3, limit: f64) -> Result<(), SceneError> {
+    finite_vector(&what, value)?;
     if value.min_element() < 0.0 || value.max_element() > limit {
-        return Err(SceneError::Colour { what: what.to_owned(), value, limit });
+        return Err(SceneError::Colour { what: what(), value, limit });
     }
     Ok(())
+}
+
+fn components(v: DVec3) -> [(char, f64); 3] {
+    [('x', v.x), ('y', v.y), ('z', v.z)]
 }

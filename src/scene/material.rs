@@ -60,10 +60,10 @@ impl Material {
     pub(super) fn validate(&self, name: &str) -> Result<(), SceneError> {
         let of = |key: &str| format!("materials.{name}.{key}");
         match *self {
-            Material::Lambertian { albedo } => colour(&of("albedo"), albedo, 1.0),
+            Material::Lambertian { albedo } => colour(|| of("albedo"), albedo, 1.0),
             Material::Metal { albedo, fuzz } => {
-                colour(&of("albedo"), albedo, 1.0)?;
-                finite(&of("fuzz"), fuzz)?;
+                colour(|| of("albedo"), albedo, 1.0)?;
+                finite(|| of("fuzz"), fuzz)?;
                 if fuzz < 0.0 {
                     return Err(SceneError::range(
                         of("fuzz"),
@@ -75,7 +75,7 @@ impl Material {
                 Ok(())
             }
             Material::Dielectric { refraction_index } => {
-                finite(&of("refraction_index"), refraction_index)?;
+                finite(|| of("refraction_index"), refraction_index)?;
                 if !(refraction_index > 0.0 && (1e-9..=1e9).contains(&refraction_index)) {
                     return Err(SceneError::range(
                         of("refraction_index"),
@@ -86,6 +86,42 @@ impl Material {
                 }
                 Ok(())
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(material: Material) -> String {
+        material.validate("m").expect_err("refused").to_string()
+    }
+
+    #[test]
+    fn materials_reflect_no_more_than_they_get() {
+        for albedo in [DVec3::new(0.0, 1.1, 0.0), DVec3::new(0.0, 0.0, -0.1)] {
+            assert!(refusal(Material::Lambertian { albedo }).starts_with("materials.m.albedo is [0, "));
+            assert!(refusal(Material::Metal { albedo, fuzz: 0.0 }).contains("within 0 and 1"));
+        }
+        Material::Lambertian { albedo: DVec3::ONE }.validate("m").expect("white is fine");
+    }
+
+    #[test]
+    fn fuzz_above_one_is_kept_and_acts_as_one() {
+        let fuzzy = Material::Metal { albedo: DVec3::ONE, fuzz: 5.0 };
+        fuzzy.validate("m").expect("as in the book");
+        assert_eq!(fuzzy.effective_fuzz(), 1.0);
+        let refused = refusal(Material::Metal { albedo: DVec3::ONE, fuzz: -0.5 });
+        assert!(refused.starts_with("materials.m.fuzz is -0.5, but must be 0 or more"), "{refused}");
+        assert!(refusal(Material::Metal { albedo: DVec3::ONE, fuzz: f64::NAN }).contains("fuzz is NaN"));
+    }
+
+    #[test]
+    fn refraction_indices_are_positive() {
+        for refraction_index in [0.0, -1.5, 1e10, f64::INFINITY] {
+            let refused = refusal(Material::Dielectric { refraction_index });
+            assert!(refused.starts_with("materials.m.refraction_index is"), "{refused}");
         }
     }
 }

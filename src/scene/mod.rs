@@ -10,14 +10,17 @@ mod camera;
 mod error;
 mod material;
 mod sphere;
+mod suggest;
 
 pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, VFOV_LIMITS_DEGREES};
 pub use error::SceneError;
 pub use material::{Material, NamedMaterial};
 pub use sphere::Sphere;
+pub(crate) use suggest::{or_nearest, similar_names};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 
 /// Largest component of a sky colour. The film's fixed point holds one sample's radiance below 128
 /// ([`crate::film::RADIANCE_LIMIT`]); no path gains energy on the way, so a sky below it never saturates.
@@ -78,13 +81,41 @@ impl Scene {
     /// # Errors
     /// The first value that no picture can be made with, with its limit and what to do about it.
     pub fn validate(&self) -> Result<(), SceneError> {
+        let mut names = HashSet::with_capacity(self.materials.len());
         for named in &self.materials {
+            if !names.insert(named.name.as_str()) {
+                return Err(SceneError::DuplicateMaterial { name: named.name.clone() });
+            }
             named.material.validate(&named.name)?;
         }
         for (index, sphere) in self.spheres.iter().enumerate() {
             sphere.validate(index, self.materials.len())?;
         }
-        error::colour("sky.bottom", self.sky.bottom, SKY_LIMIT)?;
-        error::colour("sky.top", self.sky.top, SKY_LIMIT)
+        error::colour(|| "sky.bottom".to_owned(), self.sky.bottom, SKY_LIMIT)?;
+        error::colour(|| "sky.top".to_owned(), self.sky.top, SKY_LIMIT)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn skies_are_bright_but_not_too_bright() {
+        let under = |sky| Scene { sky, ..Scene::default() }.validate();
+        under(Sky { bottom: DVec3::ZERO, top: DVec3::splat(SKY_LIMIT) }).expect("within the limits");
+        let bright = under(Sky { top: DVec3::splat(101.0), ..Sky::default() }).expect_err("refused");
+        assert!(bright.to_string().starts_with("sky.top is [101, 101, 101]"), "{bright}");
+        let nan = under(Sky { bottom: DVec3::NAN, ..Sky::default() }).expect_err("refused");
+        assert!(nan.to_string().starts_with("sky.bottom.x is NaN"), "{nan}");
+    }
+
+    #[test]
+    fn material_names_are_unique() {
+        let mut scene = Scene::default();
+        scene.add_material("glass", Material::Dielectric { refraction_index: 1.5 });
+        scene.add_material("glass", Material::Dielectric { refraction_index: 1.7 });
+        let refused = scene.validate().expect_err("refused").to_string();
+        assert!(refused.contains("\"glass\""), "{refused}");
     }
 }

@@ -1,7 +1,7 @@
 //! A sphere. (Book 1, section 5.)
 
 use super::SceneError;
-use super::error::finite;
+use super::error::{LENGTH_LIMIT, finite, position};
 use glam::DVec3;
 
 /// A sphere with one material all over.
@@ -16,27 +16,14 @@ pub struct Sphere {
     pub material: usize,
 }
 
-/// Largest coordinate or radius. Squares of it, and sums of three of those, must be finite in `f32`.
-const LENGTH_LIMIT: f64 = 1e18;
-
 /// Smallest radius. Its square must be a normal number in `f32`.
 const RADIUS_MIN: f64 = 1e-18;
 
 impl Sphere {
     pub(super) fn validate(&self, index: usize, material_count: usize) -> Result<(), SceneError> {
         let of = |key: &str| format!("spheres[{index}].{key}");
-        for (axis, value) in [("x", self.center.x), ("y", self.center.y), ("z", self.center.z)] {
-            finite(&format!("{}.{axis}", of("center")), value)?;
-            if value.abs() > LENGTH_LIMIT {
-                return Err(SceneError::range(
-                    of("center"),
-                    value,
-                    "at most 1e18 in size",
-                    "scale the scene down",
-                ));
-            }
-        }
-        finite(&of("radius"), self.radius)?;
+        position(|| of("center"), self.center)?;
+        finite(|| of("radius"), self.radius)?;
         if !(RADIUS_MIN..=LENGTH_LIMIT).contains(&self.radius) {
             return Err(SceneError::range(
                 of("radius"),
@@ -53,5 +40,42 @@ impl Sphere {
             return Err(SceneError::MissingMaterial { sphere: index, material: self.material.to_string() });
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(center: DVec3, radius: f64, material: usize) -> String {
+        let sphere = Sphere { center, radius, material };
+        sphere.validate(3, 1).expect_err("refused").to_string()
+    }
+
+    /// Case 37.
+    #[test]
+    fn radii_are_positive_and_of_a_size_that_f32_holds() {
+        for radius in [0.0, -0.0, -1.0, 1e-30, 1e30] {
+            let refused = refusal(DVec3::ZERO, radius, 0);
+            assert!(refused.starts_with(&format!("spheres[3].radius is {radius}, but must be within")));
+        }
+        assert!(refusal(DVec3::ZERO, -0.4, 0).contains("for a hollow glass sphere"));
+        for radius in [1e-18, 0.5, 1e18] {
+            Sphere { center: DVec3::ZERO, radius, material: 0 }.validate(3, 1).expect("fine");
+        }
+    }
+
+    #[test]
+    fn numbers_are_finite() {
+        assert!(refusal(DVec3::ZERO, f64::NAN, 0).starts_with("spheres[3].radius is NaN"));
+        assert!(refusal(DVec3::new(0.0, f64::NAN, 0.0), 1.0, 0).starts_with("spheres[3].center.y is NaN"));
+        assert!(refusal(DVec3::new(0.0, 0.0, 1e19), 1.0, 0).starts_with("spheres[3].center.z is 1"));
+        let infinite = DVec3::new(f64::NEG_INFINITY, 0.0, 0.0);
+        assert!(refusal(infinite, 1.0, 0).starts_with("spheres[3].center.x is -inf"));
+    }
+
+    #[test]
+    fn the_material_exists() {
+        assert!(refusal(DVec3::ZERO, 1.0, 1).contains("not among the materials"));
     }
 }

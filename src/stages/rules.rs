@@ -27,25 +27,28 @@ pub struct Rules {
 }
 
 impl Default for Rules {
+    /// [`Rules::FINISHED`].
     fn default() -> Self {
-        Rules {
-            shading: Shading::Path,
-            diffuse: Diffuse::Lambertian,
-            dielectric: DielectricLaws::Schlick,
-            surface: Surface::Exact,
-            reflectance_strips: false,
-            antialiasing: true,
-            transfer: Transfer::Gamma2,
-        }
+        Rules::FINISHED
     }
 }
 
 impl Rules {
+    /// Those of the finished renderer.
+    pub const FINISHED: Rules = Rules {
+        shading: Shading::Path,
+        diffuse: Diffuse::Lambertian,
+        dielectric: DielectricLaws::Schlick,
+        surface: Surface::Exact,
+        reflectance_strips: false,
+        antialiasing: true,
+        transfer: Transfer::Gamma2,
+    };
+
     /// Whether the tracer needs no code beyond that of the finished renderer.
     /// (Antialiasing is a number to the kernel, and the transfer comes after it.)
     pub fn are_finished(&self) -> bool {
-        let finished = Rules::default();
-        Rules { antialiasing: true, transfer: Transfer::Gamma2, ..*self } == finished
+        Rules { antialiasing: true, transfer: Transfer::Gamma2, ..*self } == Rules::FINISHED
     }
 }
 

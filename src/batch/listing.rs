@@ -1,0 +1,37 @@
+//! `--list`: scenes, stages, devices.
+
+use super::print;
+use crate::backends;
+use crate::failure::Failure;
+use crate::scene::builtin::BuiltinScene;
+use crate::stages::Stage;
+use std::fmt::Write;
+use std::process::ExitCode;
+
+/// Prints what there is to choose from.
+///
+/// # Errors
+/// None now; a device that cannot be asked might be one.
+pub fn list() -> Result<ExitCode, Failure> {
+    print(&text());
+    Ok(ExitCode::SUCCESS)
+}
+
+fn text() -> String {
+    let mut lines = vec!["Scenes (--scene)".to_owned()];
+    lines.extend(BuiltinScene::ALL.iter().map(|scene| format!("  {:<16} {}", scene.name, scene.about)));
+    lines.extend([String::new(), "Stages (--stage)".to_owned()]);
+    lines.extend(
+        Stage::ALL.iter().map(|stage| format!("  {:<16} {:>5}  {}", stage.id, stage.section, stage.title)),
+    );
+    lines.extend([String::new(), "Devices (--device)".to_owned()]);
+    for backend in backends::list() {
+        let note = if backend.is_auto { " (auto)" } else { "" };
+        lines.push(format!("  {:<16} {}{note}", backend.device, backend.about));
+    }
+    lines.iter().fold(String::new(), |mut text, line| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{line}");
+        text
+    })
+}

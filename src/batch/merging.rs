@@ -1,0 +1,30 @@
+//! `weekender merge`: films of one picture, added.
+
+use super::{print, resuming};
+use crate::cli::MergeOptions;
+use crate::failure::Failure;
+use crate::film::{SampleRanges, check_writable, merge_files};
+use crate::output::{OutputFormat, write_image};
+use crate::recipe::file;
+use std::process::ExitCode;
+
+/// Adds films and writes the sum.
+///
+/// # Errors
+/// [`Failure::Input`] for films that do not go together, [`Failure::Run`] if the sum cannot be written.
+pub fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
+    OutputFormat::from_path(&options.out).map_err(Failure::input)?;
+    check_writable(&options.out).map_err(Failure::input)?;
+    let sum = merge_files(&options.films, resuming::same_job).map_err(Failure::input)?;
+    let recipe = file::parse(sum.description.recipe(), "the films' recipe").map_err(Failure::input)?;
+    let transfer = recipe.rules.transfer;
+    write_image(&options.out, &sum.film, transfer, &sum.description).map_err(Failure::run)?;
+    let samples: &SampleRanges = sum.film.samples();
+    print(&format!(
+        "{} samples per pixel ({samples}) of {} films\nwrote {}\n",
+        samples.count(),
+        options.films.len(),
+        options.out.display()
+    ));
+    Ok(ExitCode::SUCCESS)
+}

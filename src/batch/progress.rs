@@ -1,0 +1,168 @@
+//! Progress on standard error: a bar on a terminal, now and then a line elsewhere, or nothing.
+
+use crate::cli::{ProgressChoice, RenderOptions};
+use crate::progressive::{Phase, Plan, Status};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{IsTerminal, stderr};
+use std::time::{Duration, Instant};
+
+/// Time between lines where there is no terminal.
+const LINE_INTERVAL: Duration = Duration::from_secs(5);
+
+/// Steps of the bar.
+const STEPS: u64 = 1000;
+
+enum Display {
+    Bar(ProgressBar),
+    Lines { next: Instant },
+    Off,
+}
+
+/// The progress of one picture.
+pub(super) struct Progress {
+    display: Display,
+    plan: Plan,
+    begin: Instant,
+}
+
+impl Progress {
+    pub(super) fn new(choice: ProgressChoice, render: &RenderOptions) -> Self {
+        let display = match (choice, stderr().is_terminal()) {
+            (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
+            (ProgressChoice::On, false) => Display::Lines { next: Instant::now() },
+            (_, true) => {
+                let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
+                if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:24}] {wide_msg}") {
+                    bar.set_style(style.progress_chars("=> "));
+                }
+                bar.set_prefix(render.recipe.name.clone());
+                Display::Bar(bar)
+            }
+        };
+        Progress { display, plan: render.plan.clone(), begin: Instant::now() }
+    }
+
+    /// Shows where the render stands.
+    pub(super) fn update(&mut self, status: &Status) {
+        let elapsed = self.begin.elapsed();
+        let left = seconds_left(&self.plan, status);
+        let words = || match status.phase {
+            Phase::Preparing => "prepare and build hierarchy".to_owned(),
+            _ => {
+                let left = left.map_or_else(String::new, |left| format!(", {} left", seconds(left)));
+                let error = status.error.map_or_else(String::new, |e| format!(", error {:.2e}", e.rmse));
+                format!(
+                    "trace: {} spp, {:.1} Mpaths/s, {}{left}{error}",
+                    status.samples_per_pixel,
+                    status.paths_per_second() / 1e6,
+                    seconds(elapsed.as_secs_f64()),
+                )
+            }
+        };
+        match &mut self.display {
+            Display::Bar(bar) => {
+                let share = left.map_or(0.0, |left| {
+                    let done = elapsed.as_secs_f64();
+                    done / (done + left).max(f64::MIN_POSITIVE)
+                });
+                bar.set_position((share * STEPS as f64) as u64);
+                bar.set_message(words());
+            }
+            Display::Lines { next } if Instant::now() >= *next => {
+                *next = Instant::now() + LINE_INTERVAL;
+                eprintln!("{}", words());
+            }
+            Display::Lines { .. } | Display::Off => {}
+        }
+    }
+
+    /// Says that the files are being written.
+    pub(super) fn writing(&self) {
+        match &self.display {
+            Display::Bar(bar) => {
+                bar.set_position(STEPS);
+                bar.set_message("write");
+            }
+            Display::Lines { .. } => eprintln!("write"),
+            Display::Off => {}
+        }
+    }
+
+    /// Says something that must be read, whatever the display.
+    pub(super) fn say(&self, message: &str) {
+        match &self.display {
+            Display::Bar(bar) => bar.suspend(|| eprintln!("{message}")),
+            Display::Lines { .. } | Display::Off => eprintln!("{message}"),
+        }
+    }
+
+    /// Takes the bar away.
+    pub(super) fn finish(&self) {
+        if let Display::Bar(bar) = &self.display {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Seconds until the first of the plan's conditions is met, if that can be told.
+fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
+    let added: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
+    if added == 0 {
+        return None;
+    }
+    let per_sample = status.trace.as_secs_f64() / added as f64;
+    let held = status.samples_per_pixel as f64;
+    let by_samples = (status.planned_samples_per_pixel as f64 - held) * per_sample;
+    let by_time = plan.time_limit.map(|limit| limit.saturating_sub(status.elapsed).as_secs_f64());
+    // The error falls at least as the square root of the samples.
+    let by_noise = plan
+        .noise_target
+        .zip(status.error)
+        .map(|(target, error)| held * ((error.rmse / target).powi(2) - 1.0).max(0.0) * per_sample);
+    [Some(by_samples), by_time, by_noise].into_iter().flatten().reduce(f64::min)
+}
+
+/// As `3.2 s`, `4 min 05 s` or `2 h 03 min`.
+pub(super) fn seconds(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    match whole {
+        0..60 => format!("{seconds:.1} s"),
+        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
+        3600..864_000 => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
+        _ => format!("{} days", whole / 86_400),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::ErrorEstimate;
+
+    #[test]
+    fn times_are_short() {
+        let found = [0.0, 59.4, 245.0, 7385.0, 1e7].map(seconds);
+        assert_eq!(found, ["0.0 s", "59.4 s", "4 min 05 s", "2 h 03 min", "115 days"]);
+    }
+
+    #[test]
+    fn the_condition_that_is_met_first_tells_the_time_left() {
+        let mut status = Status {
+            samples_per_pixel: 100,
+            planned_samples_per_pixel: 1100,
+            trace: Duration::from_secs(10),
+            elapsed: Duration::from_secs(10),
+            error: Some(ErrorEstimate { rmse: 0.02, rel_mse: 0.1 }),
+            ..Status::default()
+        };
+        let mut plan = Plan::samples(1100);
+        assert_eq!(seconds_left(&plan, &status), None);
+        let info = crate::render::BackendInfo { name: "cpu", device: String::new(), lanes: 1, threads: 1 };
+        status.contributions =
+            vec![crate::progressive::Contribution { backend: info, samples_per_pixel: 100 }];
+        assert_eq!(seconds_left(&plan, &status), Some(100.0));
+        plan.time_limit = Some(Duration::from_secs(60));
+        assert_eq!(seconds_left(&plan, &status), Some(50.0));
+        plan.noise_target = Some(0.01);
+        assert!((seconds_left(&plan, &status).unwrap() - 30.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,189 @@
+//! The closing figures of a picture, as text and as JSON.
+
+use super::progress::seconds;
+use crate::cli::RenderOptions;
+use crate::film::Film;
+use crate::progressive::{Contribution, HistoryPoint, Phase, Status};
+use serde::Serialize;
+use std::fmt;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Version of the JSON: it grows when a key changes its meaning or goes away.
+const SCHEMA: u32 = 1;
+
+/// The JSON of one picture, or of all stages.
+#[derive(Serialize)]
+pub(super) struct Report {
+    schema: u32,
+    version: &'static str,
+    #[serde(flatten)]
+    content: Content,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Content {
+    One(Box<Summary>),
+    All { stages: Vec<Summary> },
+}
+
+impl Report {
+    pub(super) fn of_one(summary: Summary) -> Self {
+        Report::new(Content::One(Box::new(summary)))
+    }
+
+    pub(super) fn of_all(stages: Vec<Summary>) -> Self {
+        Report::new(Content::All { stages })
+    }
+
+    fn new(content: Content) -> Self {
+        Report { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), content }
+    }
+}
+
+/// What one picture took and how good it is. Times and counts are of this run; `samples_per_pixel`,
+/// `rejected_samples` and the estimates are of the film, with what it held before.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Summary {
+    scene: String,
+    stage: Option<&'static str>,
+    width: u32,
+    height: u32,
+    max_depth: u32,
+    sampler: &'static str,
+    seed: u32,
+    backend: Option<&'static str>,
+    device: Option<String>,
+    lanes: Option<usize>,
+    threads: Option<usize>,
+    samples_per_pixel: u64,
+    sample_ranges: String,
+    added_samples_per_pixel: u64,
+    prepare_seconds: f64,
+    trace_seconds: f64,
+    write_seconds: f64,
+    total_seconds: f64,
+    paths: u64,
+    rays: u64,
+    paths_per_second: f64,
+    rays_per_second: f64,
+    lane_occupancy: Option<f64>,
+    rmse_estimate: Option<f64>,
+    rel_mse_estimate: Option<f64>,
+    rejected_samples: u64,
+    ended_by: &'static str,
+    #[serde(skip)]
+    ended_by_words: String,
+    backends: Vec<Contribution>,
+    history: Vec<HistoryPoint>,
+    warnings: Vec<String>,
+    files: Vec<PathBuf>,
+}
+
+impl Summary {
+    pub(super) fn new(
+        render: &RenderOptions,
+        status: &Status,
+        film: Option<&Film>,
+        files: Vec<PathBuf>,
+        write: Duration,
+    ) -> Self {
+        let settings = render.job.settings();
+        let backend = status.backend.as_ref();
+        let (ended_by, ended_by_words) = ending(&status.phase);
+        Summary {
+            scene: render.recipe.name.clone(),
+            stage: render.stage.map(|stage| stage.id),
+            width: settings.width,
+            height: settings.height,
+            max_depth: settings.max_depth,
+            sampler: settings.sampler.name(),
+            seed: settings.seed,
+            backend: backend.map(|info| info.name),
+            device: backend.map(|info| info.device.clone()),
+            lanes: backend.map(|info| info.lanes),
+            threads: backend.map(|info| info.threads),
+            samples_per_pixel: status.samples_per_pixel,
+            sample_ranges: film.map_or_else(String::new, |film| film.samples().to_string()),
+            added_samples_per_pixel: status.contributions.iter().map(|part| part.samples_per_pixel).sum(),
+            prepare_seconds: status.prepare.as_secs_f64(),
+            trace_seconds: status.trace.as_secs_f64(),
+            write_seconds: write.as_secs_f64(),
+            total_seconds: (status.elapsed + write).as_secs_f64(),
+            paths: status.stats.paths,
+            rays: status.stats.rays,
+            paths_per_second: status.paths_per_second(),
+            rays_per_second: status.rays_per_second(),
+            lane_occupancy: status.lane_occupancy(),
+            rmse_estimate: status.error.map(|error| error.rmse),
+            rel_mse_estimate: status.error.map(|error| error.rel_mse),
+            rejected_samples: status.rejected_samples,
+            ended_by,
+            ended_by_words,
+            backends: status.contributions.clone(),
+            history: status.history.clone(),
+            warnings: status.messages.clone(),
+            files,
+        }
+    }
+}
+
+fn ending(phase: &Phase) -> (&'static str, String) {
+    match phase {
+        Phase::Done(reason) => (reason.name(), reason.words().to_owned()),
+        Phase::Failed(reason) => ("failure", reason.clone()),
+        _ => ("nothing", "nothing".to_owned()),
+    }
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Summary { scene, width, height, max_depth, sampler, seed, .. } = self;
+        writeln!(f, "scene    {scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}")?;
+        if let (Some(backend), Some(device)) = (self.backend, &self.device) {
+            let [lanes, threads] = [self.lanes, self.threads].map(Option::unwrap_or_default);
+            writeln!(f, "backend  {backend} {device}, {lanes} lanes, {threads} threads")?;
+        }
+        let added = match self.added_samples_per_pixel {
+            added if added == self.samples_per_pixel => String::new(),
+            added => format!(" ({added} of them now)"),
+        };
+        writeln!(
+            f,
+            "samples  {}{added} per pixel, ended by {}",
+            self.samples_per_pixel, self.ended_by_words
+        )?;
+        writeln!(
+            f,
+            "time     {} (prepare {:.3} s, trace {:.3} s, write {:.3} s)",
+            seconds(self.total_seconds),
+            self.prepare_seconds,
+            self.trace_seconds,
+            self.write_seconds
+        )?;
+        write!(
+            f,
+            "speed    {:.2} Mpaths/s, {:.2} Mray/s",
+            self.paths_per_second / 1e6,
+            self.rays_per_second / 1e6
+        )?;
+        match self.lane_occupancy {
+            Some(share) => writeln!(f, ", {:.1} % of lanes in use", 100.0 * share)?,
+            None => writeln!(f)?,
+        }
+        match self.rmse_estimate {
+            Some(rmse) => writeln!(
+                f,
+                "error    {rmse:.3e} RMSE (estimated), {} rejected samples",
+                self.rejected_samples
+            )?,
+            None => writeln!(f, "error    not estimated, {} rejected samples", self.rejected_samples)?,
+        }
+        if self.files.is_empty() {
+            return writeln!(f, "files    none");
+        }
+        let files: Vec<String> = self.files.iter().map(|path| path.display().to_string()).collect();
+        writeln!(f, "files    {}", files.join(", "))
+    }
+}

@@ -1,0 +1,43 @@
+//! The command line: what was typed, checked, as options that can be carried out.
+
+mod options;
+mod raw;
+mod sources;
+mod values;
+
+pub use options::{BatchOptions, JsonTarget, MergeOptions, RenderOptions, SaveSceneOptions};
+pub use raw::ProgressChoice;
+pub use sources::CliError;
+
+use crate::failure::Failure;
+use clap::Parser;
+use raw::{Raw, RawCommand};
+use std::ffi::OsString;
+
+/// What the program is asked to do.
+#[derive(Debug)]
+pub enum Request {
+    /// Open the window.
+    Window,
+    /// List scenes, stages and devices.
+    List,
+    /// Write a scene file and render nothing.
+    SaveScene(SaveSceneOptions),
+    /// Add films.
+    Merge(MergeOptions),
+    /// Render to files.
+    Batch(BatchOptions),
+}
+
+/// Reads the command line; the first argument is the program's name.
+///
+/// # Errors
+/// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written then.
+pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
+    let raw = Raw::try_parse_from(arguments).map_err(Failure::CommandLine)?;
+    match raw.command {
+        Some(RawCommand::Merge { films, out }) => Ok(Request::Merge(MergeOptions { films, out })),
+        None if raw.render.list => Ok(Request::List),
+        None => options::request(raw.render).map_err(Failure::input),
+    }
+}

@@ -1,0 +1,229 @@
+//! Options that can be carried out, and how flags become them.
+
+use super::Request;
+use super::raw::{ProgressChoice, RawDevice, RawRender};
+use super::sources::{self, CliError, Source};
+use super::values::{Level, Simd};
+use crate::backends::{BackendChoice, BackendError};
+use crate::output::OutputFormat;
+use crate::progressive::Plan;
+use crate::recipe::Recipe;
+use crate::render::{RenderJob, SAMPLE_LIMIT};
+use crate::render_cpu::CpuOptions;
+use crate::stages::Stage;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// What `--batch` renders.
+#[derive(Debug)]
+pub struct BatchOptions {
+    /// The pictures, one or those of all stages.
+    pub renders: Vec<RenderOptions>,
+    /// The directory of all stages' pictures, to be made if need be.
+    pub directory: Option<PathBuf>,
+    /// A scene file to be written besides.
+    pub save_scene: Option<SaveSceneOptions>,
+    /// Who renders.
+    pub backend: BackendChoice,
+    /// Whether progress is shown.
+    pub progress: ProgressChoice,
+    /// Where the closing figures go.
+    pub json: Option<JsonTarget>,
+}
+
+/// One picture.
+#[derive(Clone, Debug)]
+pub struct RenderOptions {
+    /// What is rendered.
+    pub recipe: Recipe,
+    /// The recipe, checked.
+    pub job: RenderJob,
+    /// The stage that it is from.
+    pub stage: Option<&'static Stage>,
+    /// When it ends.
+    pub plan: Plan,
+    /// The picture's file.
+    pub out: PathBuf,
+    /// Where the film is kept.
+    pub checkpoint: Option<PathBuf>,
+    /// The film that goes on.
+    pub resume: Option<PathBuf>,
+}
+
+/// Where JSON goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum JsonTarget {
+    /// Standard output.
+    StandardOutput,
+    /// A file.
+    File(PathBuf),
+}
+
+/// A scene file to be written.
+#[derive(Clone, Debug)]
+pub struct SaveSceneOptions {
+    /// What it will hold; it has been checked.
+    pub recipe: Recipe,
+    /// The file.
+    pub path: PathBuf,
+}
+
+/// Films to be added.
+#[derive(Clone, Debug)]
+pub struct MergeOptions {
+    /// The films.
+    pub films: Vec<PathBuf>,
+    /// Where the sum goes.
+    pub out: PathBuf,
+}
+
+/// What the flags ask for, but `--list` and the subcommands.
+pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
+    let backend = backend(&raw)?;
+    check_film_names(&raw)?;
+    let (renders, directory) = if raw.stage.as_deref() == Some("all") {
+        let directory = directory_of_all(&raw)?;
+        let renders = Stage::ALL
+            .iter()
+            .map(|stage| {
+                let source = Source { recipe: stage.recipe(), stage: Some(stage) };
+                render(source, &raw, directory.join(format!("{}.png", stage.id)))
+            })
+            .collect::<Result<_, _>>()?;
+        (renders, Some(directory))
+    } else {
+        let source = sources::find(&raw)?;
+        let out = raw.out.clone().unwrap_or_else(|| default_name(&source));
+        (vec![render(source, &raw, out)?], None)
+    };
+    let save_scene = match (&raw.save_scene, renders.as_slice()) {
+        (Some(path), [only]) => Some(SaveSceneOptions { recipe: only.recipe.clone(), path: path.clone() }),
+        _ => None,
+    };
+    match save_scene {
+        Some(options) if !raw.batch => Ok(Request::SaveScene(options)),
+        _ if !raw.batch => Ok(Request::Window),
+        save_scene => Ok(Request::Batch(BatchOptions {
+            renders,
+            directory,
+            save_scene,
+            backend,
+            progress: raw.progress,
+            json: raw.json.map(json_target),
+        })),
+    }
+}
+
+fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
+    sources::change(&mut source.recipe, raw);
+    let job = source.recipe.job()?;
+    if raw.noise_target.is_some() && !source.recipe.settings.estimate_error {
+        return Err(CliError::Needs {
+            flag: "--noise-target",
+            other: "--estimate-error on",
+            reason: "the error is estimated from the film's two halves",
+        });
+    }
+    OutputFormat::from_path(&out)?;
+    check_distinct(raw, &out)?;
+    Ok(RenderOptions {
+        plan: plan(raw, &source.recipe),
+        recipe: source.recipe,
+        job,
+        stage: source.stage,
+        out,
+        checkpoint: raw.checkpoint.clone(),
+        resume: raw.resume.clone(),
+    })
+}
+
+fn check_film_names(raw: &RawRender) -> Result<(), CliError> {
+    for (flag, path) in [("--checkpoint", &raw.checkpoint), ("--resume", &raw.resume)] {
+        if let Some(path) = path
+            && !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
+        {
+            return Err(CliError::FilmEnding { flag, path: path.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses two outputs of one name: the second would replace the first.
+fn check_distinct(raw: &RawRender, out: &Path) -> Result<(), CliError> {
+    let json = raw.json.as_deref().filter(|path| *path != Path::new("-"));
+    let outputs = [
+        ("--out", Some(out)),
+        ("--checkpoint", raw.checkpoint.as_deref()),
+        ("--save-scene", raw.save_scene.as_deref()),
+        ("--json", json),
+    ];
+    for (index, (second, path)) in outputs.iter().enumerate() {
+        let Some(path) = path else { continue };
+        if let Some((first, _)) = outputs[..index].iter().find(|(_, other)| other.as_ref() == Some(path)) {
+            return Err(CliError::SameFile { first, second, path: path.to_path_buf() });
+        }
+    }
+    Ok(())
+}
+
+fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
+    let ends_otherwise = raw.time_limit.is_some() || raw.noise_target.is_some();
+    let samples = match (&raw.sample_range, raw.samples) {
+        (Some(range), _) => range.clone(),
+        (None, None) if ends_otherwise => 0..SAMPLE_LIMIT,
+        (None, _) => 0..recipe.samples_per_pixel,
+    };
+    Plan {
+        samples,
+        time_limit: raw.time_limit.map(Duration::from_secs_f64),
+        noise_target: raw.noise_target,
+        pass_target: Plan::BATCH_PASS,
+    }
+}
+
+fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
+    let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
+    let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
+    let cpu = CpuOptions { isa, lanes, threads };
+    match raw.device {
+        RawDevice::Auto => Ok(BackendChoice::auto(cpu)),
+        RawDevice::Cpu => Ok(BackendChoice::Cpu(cpu)),
+        RawDevice::Gpu => Err(BackendError::NoGpu.into()),
+        RawDevice::Reference if lanes.is_some() || isa.is_some() => Err(CliError::Together {
+            flag: if lanes.is_some() { "--simd" } else { "--isa" },
+            other: "--device reference",
+            reason: "the reference is scalar; leave one of them out",
+        }),
+        RawDevice::Reference => Ok(BackendChoice::Reference { threads }),
+    }
+}
+
+/// The directory of `--stage all`, which goes with few other flags.
+fn directory_of_all(raw: &RawRender) -> Result<PathBuf, CliError> {
+    let single = [
+        ("--checkpoint", raw.checkpoint.is_some()),
+        ("--resume", raw.resume.is_some()),
+        ("--save-scene", raw.save_scene.is_some()),
+    ];
+    if let Some((flag, _)) = single.into_iter().find(|(_, is_given)| *is_given) {
+        let reason = "it stands for one picture; choose one stage";
+        return Err(CliError::Together { flag, other: "--stage all", reason });
+    }
+    raw.out.clone().ok_or(CliError::Needs {
+        flag: "--stage all",
+        other: "--out DIR",
+        reason: "it writes a picture for every stage",
+    })
+}
+
+fn json_target(path: PathBuf) -> JsonTarget {
+    if path == Path::new("-") { JsonTarget::StandardOutput } else { JsonTarget::File(path) }
+}
+
+/// `SCENE.png` in the current directory.
+fn default_name(source: &Source) -> PathBuf {
+    let name = source.stage.map_or(source.recipe.name.as_str(), |stage| stage.id);
+    let is_plain = |c: char| c.is_alphanumeric() || "-_. ".contains(c);
+    let name: String = name.chars().map(|c| if is_plain(c) { c } else { '-' }).collect();
+    PathBuf::from(format!("{name}.png"))
+}

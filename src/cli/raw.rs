@@ -1,0 +1,189 @@
+//! The flags as they are typed. What they mean together is found out in `options`.
+
+use super::values::{
+    Level, Simd, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds, parse_simd,
+    parse_size, parse_vector,
+};
+use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec3;
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
+#[derive(Debug, Parser)]
+#[command(name = "weekender", version, args_conflicts_with_subcommands = true)]
+pub(super) struct Raw {
+    #[command(flatten)]
+    pub render: RawRender,
+    #[command(subcommand)]
+    pub command: Option<RawCommand>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum RawCommand {
+    /// Add film files of one picture that hold different samples
+    Merge {
+        /// Film files (.exr), as --checkpoint, --out and merge write them
+        #[arg(required = true, num_args = 1.., value_name = "FILM")]
+        films: Vec<PathBuf>,
+        /// Where the sum goes: .exr for the film, .png or .ppm for the picture
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RawRender {
+    /// Render to a file, without a window
+    #[arg(long)]
+    pub batch: bool,
+    /// List scenes, stages and devices
+    #[arg(long)]
+    pub list: bool,
+
+    /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "stage", help_heading = "Picture")]
+    pub scene: Option<String>,
+    /// A stage of the book; "all" renders every one into the directory --out
+    #[arg(long, value_name = "ID", help_heading = "Picture")]
+    pub stage: Option<String>,
+    /// Width and height in pixels, each 1 to 16384 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Picture")]
+    pub size: Option<(u32, u32)>,
+    /// Most rays of a path, the camera's included, 1 to 10000 [default: the scene's]
+    #[arg(long, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(1..=i64::from(DEPTH_LIMIT)),
+          allow_hyphen_values = true, help_heading = "Picture")]
+    pub depth: Option<u32>,
+    /// Where random numbers come from: scrambled Sobol points, or independent ones as in the book
+    /// [default: sobol, or the scene's]
+    #[arg(long, value_enum, help_heading = "Picture")]
+    pub sampler: Option<RawSampler>,
+    /// Chooses among pictures that differ in noise alone, 0 to 4294967295 [default: 0, or the scene's]
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..),
+          allow_hyphen_values = true, help_heading = "Picture")]
+    pub seed: Option<u32>,
+
+    /// The eye, scene units
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub look_from: Option<DVec3>,
+    /// A point in the middle of the picture, scene units
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub look_at: Option<DVec3>,
+    /// What is up in the picture; its length does not matter
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub vup: Option<DVec3>,
+    /// Vertical field of view, 0.01 to 179 degrees
+    #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub vfov: Option<f64>,
+    /// Angle of the cone from the focus point to the lens, 0 (a pinhole) to below 179 degrees
+    #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub defocus_angle: Option<f64>,
+    /// Distance to the plane that is sharp, more than 0 scene units
+    #[arg(long, value_name = "UNITS", value_parser = parse_number, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub focus_distance: Option<f64>,
+
+    /// Samples per pixel, 1 to 4294967296 [default: the scene's; no limit with --time-limit or --noise-target]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+          allow_hyphen_values = true, help_heading = "When to stop (the first one met)")]
+    pub samples: Option<u64>,
+    /// Seconds of rendering
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_hyphen_values = true,
+          help_heading = "When to stop (the first one met)")]
+    pub time_limit: Option<f64>,
+    /// Estimated error: root of the mean square over pixels and channels, linear radiance
+    #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
+          help_heading = "When to stop (the first one met)")]
+    pub noise_target: Option<f64>,
+    /// Render samples A to B - 1 only, a part of a picture for `weekender merge`
+    #[arg(long, value_name = "A..B", value_parser = parse_sample_range, conflicts_with = "samples",
+          help_heading = "When to stop (the first one met)")]
+    pub sample_range: Option<Range<u64>>,
+    /// Keep samples in two halves, which tell the error; off takes half the memory
+    /// [default: on, or the scene's]
+    #[arg(long, value_enum, help_heading = "When to stop (the first one met)")]
+    pub estimate_error: Option<RawSwitch>,
+
+    /// What renders; auto is the fastest there is
+    #[arg(long, value_enum, default_value = "auto", help_heading = "Device")]
+    pub device: RawDevice,
+    /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16
+    #[arg(long, value_name = "LANES", value_parser = parse_simd, default_value = "auto",
+          help_heading = "Device")]
+    pub simd: Simd,
+    /// Instruction level of the CPU, for tests and benchmarks: auto, baseline, sse4.2, avx2, avx512, neon
+    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
+          help_heading = "Device")]
+    pub isa: Level,
+    /// Threads of the CPU, 1 to 1024 [default: one a core]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1024),
+          allow_hyphen_values = true, help_heading = "Device")]
+    pub threads: Option<u64>,
+
+    /// The picture: .png, .ppm (binary P6) or .exr (linear film); with --stage all the directory
+    /// [default: SCENE.png]
+    #[arg(long, value_name = "FILE", help_heading = "Files")]
+    pub out: Option<PathBuf>,
+    /// Keep the film, so that it can be resumed or merged; written at the end, after Ctrl-C, too
+    #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
+    pub checkpoint: Option<PathBuf>,
+    /// Go on with a film; without --scene and --stage its own scene is taken
+    #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
+    pub resume: Option<PathBuf>,
+    /// Write the scene, as the other flags make it, as a scene file
+    #[arg(long, value_name = "FILE.toml", help_heading = "Files")]
+    pub save_scene: Option<PathBuf>,
+    /// Write the closing figures as JSON; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Files")]
+    pub json: Option<PathBuf>,
+
+    /// Progress on standard error; auto: when it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum RawDevice {
+    Auto,
+    Cpu,
+    Gpu,
+    Reference,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum RawSampler {
+    Sobol,
+    Independent,
+}
+
+impl From<RawSampler> for SamplerKind {
+    fn from(raw: RawSampler) -> Self {
+        match raw {
+            RawSampler::Sobol => SamplerKind::Sobol,
+            RawSampler::Independent => SamplerKind::Independent,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum RawSwitch {
+    On,
+    Off,
+}
+
+/// Whether progress is shown on standard error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressChoice {
+    /// If it is a terminal.
+    Auto,
+    /// Always; as lines where it is no terminal.
+    On,
+    /// Never.
+    Off,
+}

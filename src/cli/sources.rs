@@ -1,0 +1,134 @@
+//! Where a picture comes from: a built-in scene, a stage, a scene file or a film; and what flags change in it.
+
+use super::raw::{RawRender, RawSwitch};
+use crate::film::key;
+use crate::output::{OutputError, read_description};
+use crate::recipe::{Recipe, SceneNameError, file};
+use crate::render::JobError;
+use crate::stages::{Stage, UnknownStage};
+use std::path::{Path, PathBuf};
+
+/// Flags that cannot be carried out.
+#[derive(Debug, thiserror::Error)]
+pub enum CliError {
+    /// No such scene.
+    #[error(transparent)]
+    SceneName(#[from] SceneNameError),
+    /// No such stage.
+    #[error(transparent)]
+    StageName(#[from] UnknownStage),
+    /// A scene file that cannot be read.
+    #[error(transparent)]
+    SceneFile(#[from] file::FileError),
+    /// A value that no picture can be made with.
+    #[error(transparent)]
+    Job(#[from] JobError),
+    /// The file's name or what it says of itself.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// No such device here.
+    #[error(transparent)]
+    Backend(#[from] crate::backends::BackendError),
+    /// Two flags that do not go together.
+    #[error("{flag} cannot be used with {other}: {reason}")]
+    Together {
+        /// A flag.
+        flag: &'static str,
+        /// Another, with its value if that matters.
+        other: &'static str,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
+    /// A flag that needs another.
+    #[error("{flag} needs {other}: {reason}")]
+    Needs {
+        /// A flag.
+        flag: &'static str,
+        /// What is missing.
+        other: &'static str,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
+    /// Two files of one name.
+    #[error("{first} and {second} are both {}; give them different names", path.display())]
+    SameFile {
+        /// A flag.
+        first: &'static str,
+        /// Another.
+        second: &'static str,
+        /// Their file.
+        path: PathBuf,
+    },
+    /// A film file of another name.
+    #[error("{flag} is {}, but a film file's name must end in .exr", path.display())]
+    FilmEnding {
+        /// The flag.
+        flag: &'static str,
+        /// The file.
+        path: PathBuf,
+    },
+}
+
+/// The scene that is rendered if none is asked for.
+const DEFAULT_SCENE: &str = "three-spheres";
+
+/// A recipe and the stage that it is from, if from one.
+#[derive(Clone, Debug)]
+pub(super) struct Source {
+    pub recipe: Recipe,
+    pub stage: Option<&'static Stage>,
+}
+
+/// The source that the flags name, before other flags change it.
+pub(super) fn find(raw: &RawRender) -> Result<Source, CliError> {
+    match (&raw.stage, &raw.scene, &raw.resume) {
+        (Some(id), _, _) => {
+            let stage = Stage::find(id)?;
+            Ok(Source { recipe: stage.recipe(), stage: Some(stage) })
+        }
+        (None, Some(name), _) => Ok(Source { recipe: scene(name)?, stage: None }),
+        (None, None, Some(film)) => of_film(film),
+        (None, None, None) => Ok(Source { recipe: scene(DEFAULT_SCENE)?, stage: None }),
+    }
+}
+
+fn scene(name: &str) -> Result<Recipe, CliError> {
+    let path = Path::new(name);
+    let is_file = path.extension().is_some() || path.components().count() > 1;
+    if is_file { Ok(file::load(path)?) } else { Ok(Recipe::find(name)?) }
+}
+
+fn of_film(path: &Path) -> Result<Source, CliError> {
+    let description = read_description(path)?;
+    let name = description.get(key::SCENE).unwrap_or("film");
+    let mut recipe = file::parse(description.recipe(), &path.display().to_string())?;
+    recipe.name = name.to_owned();
+    let stage = description.get(key::STAGE).and_then(|id| Stage::find(id).ok());
+    Ok(Source { recipe, stage })
+}
+
+/// Puts the flags' values in place of the recipe's.
+pub(super) fn change(recipe: &mut Recipe, raw: &RawRender) {
+    fn set<T: Copy>(value: &mut T, flag: Option<T>) {
+        if let Some(flag) = flag {
+            *value = flag;
+        }
+    }
+    let settings = &mut recipe.settings;
+    set(&mut settings.width, raw.size.map(|(width, _)| width));
+    set(&mut settings.height, raw.size.map(|(_, height)| height));
+    set(&mut settings.max_depth, raw.depth);
+    set(&mut settings.sampler, raw.sampler.map(Into::into));
+    set(&mut settings.seed, raw.seed);
+    set(&mut settings.estimate_error, raw.estimate_error.map(|switch| switch == RawSwitch::On));
+    set(&mut recipe.samples_per_pixel, raw.samples);
+    let camera = &mut recipe.camera;
+    set(&mut camera.look_from, raw.look_from);
+    set(&mut camera.look_at, raw.look_at);
+    set(&mut camera.vup, raw.vup);
+    set(&mut camera.vfov_degrees, raw.vfov);
+    set(&mut camera.defocus_angle_degrees, raw.defocus_angle);
+    if raw.focus_distance.is_some() {
+        camera.focus_distance = raw.focus_distance;
+    }
+}

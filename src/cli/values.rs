@@ -1,0 +1,106 @@
+//! Values of flags. A message says what is allowed; clap puts the value and the flag before it.
+
+use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
+use crate::render_cpu::Isa;
+use glam::DVec3;
+use std::ops::Range;
+
+/// Lanes as typed: `None` leaves the choice to the backend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Simd(pub Option<usize>);
+
+pub(super) fn parse_simd(text: &str) -> Result<Simd, String> {
+    match text {
+        "auto" => Ok(Simd(None)),
+        "off" | "1" => Ok(Simd(Some(1))),
+        "4" | "8" | "16" => text.parse().map(|lanes| Simd(Some(lanes))).map_err(|_| String::new()),
+        _ => Err("must be auto, off, 4, 8 or 16 lanes".to_owned()),
+    }
+}
+
+/// An instruction level as typed: `None` leaves the choice to the backend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Level(pub Option<Isa>);
+
+pub(super) fn parse_isa(text: &str) -> Result<Level, String> {
+    if text == "auto" {
+        return Ok(Level(None));
+    }
+    Isa::ALL.into_iter().find(|isa| isa.name() == text).map(|isa| Level(Some(isa))).ok_or_else(|| {
+        let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
+        format!("must be auto or one of {}", names.join(", "))
+    })
+}
+
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let pixels = |text: &str| text.parse::<u32>().ok().filter(|pixels| (1..=SIZE_LIMIT).contains(pixels));
+    text.split_once('x').and_then(|(width, height)| Some((pixels(width)?, pixels(height)?))).ok_or_else(
+        || format!("must be WIDTHxHEIGHT, each within 1 and {SIZE_LIMIT} pixels, such as 800x450"),
+    )
+}
+
+pub(super) fn parse_vector(text: &str) -> Result<DVec3, String> {
+    let parts: Vec<f64> =
+        text.split(',').map(|part| part.trim().parse()).collect::<Result<_, _>>().unwrap_or_default();
+    <[f64; 3]>::try_from(parts)
+        .map(DVec3::from)
+        .map_err(|_| "must be three numbers with commas between them, such as 13,2,3".to_owned())
+}
+
+pub(super) fn parse_number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "must be a number, such as 20 or 0.6".to_owned())
+}
+
+pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
+    positive(text, 1e9).ok_or_else(|| "must be above 0 and at most 1e9 seconds, such as 60".to_owned())
+}
+
+pub(super) fn parse_rmse(text: &str) -> Result<f64, String> {
+    positive(text, 100.0).ok_or_else(|| "must be above 0 and at most 100, such as 0.005".to_owned())
+}
+
+fn positive(text: &str, limit: f64) -> Option<f64> {
+    text.parse().ok().filter(|value: &f64| *value > 0.0 && *value <= limit)
+}
+
+pub(super) fn parse_sample_range(text: &str) -> Result<Range<u64>, String> {
+    let parse = || {
+        let (start, end) = text.split_once("..")?;
+        Some(start.trim().parse().ok()?..end.trim().parse().ok()?)
+    };
+    parse()
+        .filter(|range: &Range<u64>| range.start < range.end && range.end <= SAMPLE_LIMIT)
+        .ok_or_else(|| format!("must be A..B with A below B and B at most {SAMPLE_LIMIT}, such as 0..64"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read() {
+        assert_eq!(parse_size("800x450"), Ok((800, 450)));
+        assert_eq!(parse_vector("-2, 2,1e3"), Ok(DVec3::new(-2.0, 2.0, 1000.0)));
+        assert_eq!(parse_sample_range("64..128"), Ok(64..128));
+        assert_eq!(parse_simd("off"), Ok(Simd(Some(1))));
+        assert_eq!(parse_simd("16"), Ok(Simd(Some(16))));
+        assert_eq!(parse_isa("sse4.2"), Ok(Level(Some(Isa::Sse42))));
+    }
+
+    #[test]
+    fn nonsense_is_refused_with_what_is_allowed() {
+        for text in ["", "800", "800x", "x", "0x450", "800x16385", "99999999999x1", "-8x4"] {
+            assert!(parse_size(text).unwrap_err().contains("16384"), "{text}");
+        }
+        for text in ["", "1,2", "1,2,3,4", "a,b,c"] {
+            assert!(parse_vector(text).is_err(), "{text}");
+        }
+        for text in ["", "5", "5..5", "6..5", "0..4294967297", "-1..5", "a..b"] {
+            assert!(parse_sample_range(text).unwrap_err().contains("4294967296"), "{text}");
+        }
+        for text in ["0", "-1", "nan", "inf", "x", ""] {
+            assert!(parse_seconds(text).is_err() && parse_rmse(text).is_err(), "{text}");
+        }
+        assert!(parse_simd("3").is_err() && parse_isa("mmx").is_err());
+    }
+}

@@ -1,0 +1,120 @@
+//! Films from several files, added.
+
+use super::{CheckpointError, FilmError, FilmFile, SampleRanges, checkpoint, key};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Film files that cannot be added.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+pub enum MergeError {
+    /// No file was named.
+    #[error("no film was named; name the film files that are to be added")]
+    NoFiles,
+    /// A file is no film.
+    #[error(transparent)]
+    File(#[from] CheckpointError),
+    /// Two films of different jobs.
+    #[error(
+        "{} and {} are films of different jobs: {difference}; only films that differ in their samples alone can be added",
+        first.display(), other.display()
+    )]
+    OtherJob {
+        /// A file.
+        first: PathBuf,
+        /// A file whose film has another job.
+        other: PathBuf,
+        /// What differs.
+        difference: String,
+    },
+    /// Two films with samples in common.
+    #[error(
+        "{} and {} both hold the samples {}..{}; each sample may be added once, so leave one of them out",
+        first.display(), other.display(), range.start, range.end
+    )]
+    Overlap {
+        /// A file.
+        first: PathBuf,
+        /// A file that holds some of the same samples.
+        other: PathBuf,
+        /// The first samples that both hold.
+        range: Range<u64>,
+    },
+    /// Films that differ in shape.
+    #[error("{} and {} cannot be added: {reason}", first.display(), other.display())]
+    Film {
+        /// A file.
+        first: PathBuf,
+        /// The file that cannot be added to it.
+        other: PathBuf,
+        /// Why.
+        reason: FilmError,
+    },
+}
+
+/// Adds the films of several files. At most two of them are in memory at a time.
+///
+/// `same_job` is given the recipes of the first file and of another, and says what differs if their jobs do. The
+/// description is the first file's, with the samples of all and, if all files say them, their seconds added.
+///
+/// # Errors
+/// [`MergeError`], with the files that do not go together.
+pub fn merge_files<P: AsRef<Path>>(
+    paths: &[P],
+    same_job: impl Fn(&str, &str) -> Result<(), String>,
+) -> Result<FilmFile, MergeError> {
+    let [first, others @ ..] = paths else { return Err(MergeError::NoFiles) };
+    let first = first.as_ref();
+    let mut merged = checkpoint::load(first)?;
+    let mut seconds = seconds_of(&merged);
+    let mut added: Vec<(&Path, SampleRanges)> = vec![(first, merged.film.samples().clone())];
+    for other in others {
+        let other = other.as_ref();
+        let part = checkpoint::load(other)?;
+        same_job(merged.description.recipe(), part.description.recipe()).map_err(|difference| {
+            MergeError::OtherJob { first: first.to_owned(), other: other.to_owned(), difference }
+        })?;
+        for (earlier, samples) in &added {
+            if let Some(range) = part.film.samples().iter().find_map(|range| samples.overlap(&range)) {
+                let first = earlier.to_path_buf();
+                return Err(MergeError::Overlap { first, other: other.to_owned(), range });
+            }
+        }
+        merged.film.merge(&part.film).map_err(|reason| MergeError::Film {
+            first: first.to_owned(),
+            other: other.to_owned(),
+            reason,
+        })?;
+        seconds = seconds.zip(seconds_of(&part)).map(|(sum, more)| sum + more);
+        added.push((other, part.film.samples().clone()));
+    }
+    merged.description.set(key::SAMPLES, merged.film.sample_count());
+    if let Some(seconds) = seconds {
+        merged.description.set(key::SECONDS, seconds);
+    }
+    Ok(merged)
+}
+
+fn seconds_of(file: &FilmFile) -> Option<f64> {
+    file.description.get(key::SECONDS)?.parse().ok()
+}
+
+/// Whether two recipes have the same text, apart from lines that set `samples_per_pixel`.
+///
+/// # Errors
+/// The first lines that differ.
+pub fn same_recipe_text(first: &str, other: &str) -> Result<(), String> {
+    let lines = |text: &str| -> Vec<String> {
+        text.lines().filter(|line| !is_sample_count(line)).map(str::to_owned).collect()
+    };
+    let (first, other) = (lines(first), lines(other));
+    let count = first.len().max(other.len());
+    let line = |lines: &[String], i: usize| lines.get(i).cloned().unwrap_or_else(|| "nothing".into());
+    match (0..count).find(|i| first.get(*i) != other.get(*i)) {
+        None => Ok(()),
+        Some(i) => Err(format!("one recipe says `{}`, the other `{}`", line(&first, i), line(&other, i))),
+    }
+}
+
+fn is_sample_count(line: &str) -> bool {
+    line.trim_start().strip_prefix("samples_per_pixel").is_some_and(|rest| rest.trim_start().starts_with('='))
+}

@@ -1,0 +1,94 @@
+//! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe is a compressed one.
+
+use super::{Description, RECIPE_KEY, write_rows};
+use crate::film::Film;
+use crate::stages::Transfer;
+use std::io::{self, BufRead, Seek, Write};
+
+pub(super) fn write(
+    film: &Film,
+    transfer: Transfer,
+    description: &Description,
+    writer: &mut impl Write,
+) -> io::Result<()> {
+    let mut writer = FirstError { inner: writer, error: None };
+    let result = encode(film, transfer, description, &mut writer);
+    result.map_err(|error| writer.error.take().unwrap_or(error))
+}
+
+/// Remembers what the file system said, of which the encoder keeps the text alone.
+struct FirstError<W> {
+    inner: W,
+    error: Option<io::Error>,
+}
+
+impl<W: Write> FirstError<W> {
+    fn remember<T>(&mut self, result: io::Result<T>) -> io::Result<T> {
+        result.map_err(|error| {
+            let kind = error.kind();
+            self.error.get_or_insert(error);
+            kind.into()
+        })
+    }
+}
+
+impl<W: Write> Write for FirstError<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let result = self.inner.write(bytes);
+        self.remember(result)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        let result = self.inner.flush();
+        self.remember(result)
+    }
+}
+
+fn encode(
+    film: &Film,
+    transfer: Transfer,
+    description: &Description,
+    writer: &mut impl Write,
+) -> io::Result<()> {
+    let mut encoder = ::png::Encoder::new(writer, film.width(), film.height());
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    // Readers keep the two kinds of chunks apart, so one kind for all: else their order would be lost.
+    let latin_1 = description.entries().all(|(_, value)| value.chars().all(|c| c <= 'ÿ'));
+    for (key, value) in description.entries() {
+        let (key, value) = (key.to_owned(), value.to_owned());
+        if latin_1 { encoder.add_text_chunk(key, value)? } else { encoder.add_itxt_chunk(key, value)? }
+    }
+    let mut writer = encoder.write_header()?;
+    let mut recipe = ::png::text_metadata::ITXtChunk::new(RECIPE_KEY, description.recipe());
+    recipe.compressed = true;
+    recipe.compress_text()?;
+    writer.write_text_chunk(&recipe)?;
+    let mut rows = writer.stream_writer()?;
+    write_rows(film, transfer, &mut rows)?;
+    rows.finish()?;
+    writer.finish()?;
+    Ok(())
+}
+
+/// Most bytes that the texts of a file may have when unpacked.
+const TEXT_LIMIT: usize = 64 << 20;
+
+pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option<Description>> {
+    let limits = ::png::Limits { bytes: TEXT_LIMIT };
+    let reader = ::png::Decoder::new_with_limits(reader, limits).read_info()?;
+    let info = reader.info();
+    let Some(recipe) = info.utf8_text.iter().find(|chunk| chunk.keyword == RECIPE_KEY) else {
+        return Ok(None);
+    };
+    let mut recipe = recipe.clone();
+    recipe.decompress_text_with_limit(TEXT_LIMIT)?;
+    let mut description = Description::new(&recipe.get_text()?);
+    for chunk in &info.uncompressed_latin1_text {
+        description.set(&chunk.keyword, &chunk.text);
+    }
+    for chunk in &info.utf8_text {
+        description.set(&chunk.keyword, chunk.get_text()?);
+    }
+    Ok(Some(description))
+}

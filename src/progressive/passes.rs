@@ -1,0 +1,131 @@
+//! How many samples a pass adds.
+//!
+//! A pass is a range of samples whose length is a power of two and which starts at a multiple of its length,
+//! so that blocks of Sobol points stay whole. Its length follows from the time that passes take.
+
+use crate::film::SampleRanges;
+use std::ops::Range;
+use std::time::Duration;
+
+/// Chooses the ranges of passes.
+#[derive(Clone, Debug)]
+pub struct PassSizer {
+    smallest: u64,
+    length: u64,
+    seconds_per_sample: Option<f64>,
+}
+
+/// The longest pass, samples per pixel.
+const LENGTH_LIMIT: u64 = 1 << 16;
+
+impl PassSizer {
+    /// Starts small. With two halves a pass gives both the same number of samples.
+    pub fn new(half_count: usize) -> Self {
+        let smallest = half_count as u64;
+        PassSizer { smallest, length: smallest, seconds_per_sample: None }
+    }
+
+    /// Forgets what passes took: another backend has other times.
+    pub fn restart(&mut self) {
+        self.length = self.smallest;
+        self.seconds_per_sample = None;
+    }
+
+    /// Notes what a pass took; the next takes about `target`, at most twice as many samples as this one.
+    pub fn measured(&mut self, samples: u64, took: Duration, target: Duration) {
+        let per_sample = took.as_secs_f64() / samples.max(1) as f64;
+        self.seconds_per_sample = Some(per_sample);
+        let wanted = largest_power_of_two(target.as_secs_f64(), per_sample);
+        // After a pass that alignment kept short, the old length still stands.
+        let most = (2 * samples).max(self.length);
+        self.length = wanted.min(most).clamp(self.smallest, LENGTH_LIMIT);
+    }
+
+    /// The next pass within `planned` that leaves out what `held` has; `None` when nothing is missing.
+    /// With `time_left` it is cut to what should be done by then, and `None` if not even the smallest would.
+    pub fn next(
+        &self,
+        held: &SampleRanges,
+        planned: Range<u64>,
+        time_left: Option<Duration>,
+    ) -> Option<Range<u64>> {
+        if time_left.is_some_and(|left| left.is_zero()) {
+            return None;
+        }
+        let mut length = self.length;
+        if let (Some(left), Some(per_sample)) = (time_left, self.seconds_per_sample) {
+            let fits = largest_power_of_two(left.as_secs_f64(), per_sample);
+            if fits < self.smallest {
+                return None;
+            }
+            length = length.min(fits);
+        }
+        let gap = held.first_gap(planned, length)?;
+        let mut aligned = length;
+        while aligned > gap.end - gap.start || !gap.start.is_multiple_of(aligned) {
+            aligned /= 2;
+        }
+        Some(gap.start..gap.start + aligned)
+    }
+}
+
+/// The largest power of two of samples that fits into `seconds`, 0 if none does.
+fn largest_power_of_two(seconds: f64, per_sample: f64) -> u64 {
+    if per_sample <= 0.0 {
+        return LENGTH_LIMIT;
+    }
+    let samples = (seconds / per_sample).min(LENGTH_LIMIT as f64) as u64;
+    if samples == 0 { 0 } else { 1 << samples.ilog2() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FAST: Duration = Duration::from_millis(1);
+    const TARGET: Duration = Duration::from_secs(1);
+
+    fn passes(half_count: usize, held: SampleRanges, planned: Range<u64>) -> Vec<Range<u64>> {
+        let (mut sizer, mut held, mut passes) = (PassSizer::new(half_count), held, Vec::new());
+        while let Some(pass) = sizer.next(&held, planned.clone(), None) {
+            held.insert(pass.clone()).unwrap();
+            sizer.measured(pass.end - pass.start, FAST, TARGET);
+            passes.push(pass);
+        }
+        passes
+    }
+
+    #[test]
+    fn passes_double_and_end_at_the_plan() {
+        let found = passes(2, SampleRanges::default(), 0..200);
+        assert_eq!(found, [0..2, 2..4, 4..8, 8..16, 16..32, 32..64, 64..128, 128..192, 192..200]);
+    }
+
+    #[test]
+    fn passes_are_aligned_fill_every_gap_and_never_overlap() {
+        for half_count in [1, 2] {
+            for planned in [0..1, 0..77, 3..17, 64..1000, 5..6] {
+                let mut held = SampleRanges::default();
+                held.insert(6..9).unwrap();
+                held.insert(100..164).unwrap();
+                for pass in passes(half_count, held.clone(), planned.clone()) {
+                    let length = pass.end - pass.start;
+                    assert!(length.is_power_of_two() && pass.start % length == 0, "{pass:?}");
+                    held.insert(pass).unwrap();
+                }
+                assert_eq!(held.first_gap(planned, u64::MAX), None);
+            }
+        }
+    }
+
+    #[test]
+    fn slow_passes_stay_small_and_the_time_left_cuts_them() {
+        let mut sizer = PassSizer::new(2);
+        let held = SampleRanges::default();
+        sizer.measured(2, Duration::from_secs(20), TARGET);
+        assert_eq!(sizer.next(&held, 0..100, None), Some(0..2));
+        assert_eq!(sizer.next(&held, 0..100, Some(TARGET)), None);
+        sizer.measured(64, Duration::from_secs(1), TARGET);
+        assert_eq!(sizer.next(&held, 0..100, Some(TARGET / 4)), Some(0..16));
+    }
+}

@@ -1,0 +1,84 @@
+//! What the render thread and its readers share: the status and one picture.
+
+use super::{Phase, Status};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// A film resolved for display.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Which start it belongs to, as [`Status::run`].
+    pub run: u64,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Samples per pixel that it shows.
+    pub samples_per_pixel: u64,
+    /// Three bytes a pixel, top row first, with the job's transfer.
+    pub rgb8: Vec<u8>,
+}
+
+#[derive(Default)]
+pub(super) struct Shared {
+    status: Mutex<Status>,
+    changed: Condvar,
+    picture: Mutex<Option<Picture>>,
+    is_picture_wanted: AtomicBool,
+}
+
+impl Shared {
+    /// Replaces the status, unless that of a later start is there.
+    pub(super) fn publish(&self, status: &Status) {
+        let mut mine = lock(&self.status);
+        if status.run >= mine.run {
+            mine.clone_from(status);
+            self.changed.notify_all();
+        }
+    }
+
+    pub(super) fn status(&self) -> Status {
+        lock(&self.status).clone()
+    }
+
+    pub(super) fn wait(&self, timeout: Duration) -> Status {
+        let status = lock(&self.status);
+        if status.phase.is_over() {
+            return status.clone();
+        }
+        let (status, _) = self.changed.wait_timeout(status, timeout).unwrap_or_else(PoisonError::into_inner);
+        status.clone()
+    }
+
+    /// Notes that the render thread has died.
+    pub(super) fn died(&self) {
+        let mut status = lock(&self.status);
+        status.phase = Phase::Failed("the render thread broke off; its film is lost".to_owned());
+        self.changed.notify_all();
+    }
+
+    pub(super) fn take_picture(&self) -> Option<Picture> {
+        lock(&self.picture).take()
+    }
+
+    /// Asks for a picture; false if that had been asked before.
+    pub(super) fn want_picture(&self) -> bool {
+        !self.is_picture_wanted.swap(true, Ordering::AcqRel)
+    }
+
+    pub(super) fn is_picture_wanted(&self) -> bool {
+        self.is_picture_wanted.load(Ordering::Acquire)
+    }
+
+    pub(super) fn put_picture(&self, picture: Picture) {
+        let mut slot = lock(&self.picture);
+        *slot = Some(picture);
+        self.is_picture_wanted.store(false, Ordering::Release);
+    }
+}
+
+/// What these locks hold is whole after every statement, so a reader's panic does not spoil it.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

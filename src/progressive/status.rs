@@ -1,0 +1,120 @@
+//! What a progressive render says about itself while it runs.
+
+use super::EndReason;
+use crate::film::ErrorEstimate;
+use crate::render::{BackendInfo, Stats};
+use serde::Serialize;
+use std::time::Duration;
+
+/// Where a render stands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Phase {
+    /// Nothing has been asked for, or it was abandoned.
+    #[default]
+    Idle,
+    /// Tables, hierarchy and kernels are being built.
+    Preparing,
+    /// Samples are being added.
+    Tracing,
+    /// Waiting to be resumed.
+    Paused,
+    /// Over; the film can be had.
+    Done(EndReason),
+    /// Neither the backend nor its fallback could go on. The film holds what was rendered before.
+    Failed(String),
+}
+
+impl Phase {
+    /// Whether no more samples will come without a new command.
+    pub fn is_over(&self) -> bool {
+        matches!(self, Phase::Done(_) | Phase::Failed(_))
+    }
+}
+
+/// The error at one moment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HistoryPoint {
+    /// Samples per pixel in the film.
+    pub samples_per_pixel: u64,
+    /// Wall seconds of tracing since the start.
+    pub trace_seconds: f64,
+    /// Estimated RMSE, linear radiance.
+    pub rmse_estimate: f64,
+    /// Estimated relative MSE.
+    pub rel_mse_estimate: f64,
+}
+
+/// How many samples one backend has added since the start.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contribution {
+    /// The backend.
+    #[serde(flatten)]
+    pub backend: BackendInfo,
+    /// Samples per pixel.
+    pub samples_per_pixel: u64,
+}
+
+/// The numbers of a render. Everything counts from its start; only the film's figures include what it held
+/// before.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Status {
+    /// Which start this belongs to: 0 before the first, then one more each.
+    pub run: u64,
+    /// Where it stands.
+    pub phase: Phase,
+    /// The backend at work.
+    pub backend: Option<BackendInfo>,
+    /// Samples per pixel in the film.
+    pub samples_per_pixel: u64,
+    /// Samples per pixel that the film should have in the end.
+    pub planned_samples_per_pixel: u64,
+    /// Samples in the film that were NaN, infinite or negative.
+    pub rejected_samples: u64,
+    /// Sums over the passes.
+    pub stats: Stats,
+    /// Wall time of preparing.
+    pub prepare: Duration,
+    /// Wall time of passes.
+    pub trace: Duration,
+    /// Wall time since the start, without pauses.
+    pub elapsed: Duration,
+    /// The latest estimate of the film's error; it can be some passes old.
+    pub error: Option<ErrorEstimate>,
+    /// The error at powers of two of samples per pixel.
+    pub history: Vec<HistoryPoint>,
+    /// Who has added how much, in the order of first appearance.
+    pub contributions: Vec<Contribution>,
+    /// What went wrong and was dealt with, for the user to read.
+    pub messages: Vec<String>,
+}
+
+impl Status {
+    /// Paths a second of tracing.
+    pub fn paths_per_second(&self) -> f64 {
+        per_second(self.stats.paths, self.trace)
+    }
+
+    /// Rays a second of tracing.
+    pub fn rays_per_second(&self) -> f64 {
+        per_second(self.stats.rays, self.trace)
+    }
+
+    /// Share of lanes that were in use, `0..=1`.
+    pub fn lane_occupancy(&self) -> Option<f64> {
+        let Stats { busy_lanes, offered_lanes, .. } = self.stats;
+        (offered_lanes > 0).then(|| busy_lanes as f64 / offered_lanes as f64)
+    }
+
+    pub(super) fn credit(&mut self, backend: &BackendInfo, samples: u64) {
+        match self.contributions.iter_mut().find(|c| c.backend == *backend) {
+            Some(found) => found.samples_per_pixel += samples,
+            None => {
+                self.contributions.push(Contribution { backend: backend.clone(), samples_per_pixel: samples })
+            }
+        }
+    }
+}
+
+fn per_second(count: u64, time: Duration) -> f64 {
+    if time.is_zero() { 0.0 } else { count as f64 / time.as_secs_f64() }
+}

@@ -1,0 +1,380 @@
+//! The render thread: obeys commands, then renders a pass, and so on.
+
+use super::shared::{Picture, Shared};
+use super::{Factory, PassSizer, Phase, Plan, Status, Work};
+use crate::backends::BackendChoice;
+use crate::film::Film;
+use crate::progressive::{EndReason, HistoryPoint};
+use crate::render::{RenderError, RenderJob, Renderer};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, TryRecvError};
+use std::time::{Duration, Instant};
+
+pub(super) enum Command {
+    Start { run: u64, work: Box<Work>, cancel: Arc<AtomicBool> },
+    Abandon,
+    Pause,
+    Resume,
+    Stop,
+    Switch(BackendChoice),
+    SetPlan(Plan),
+    Inspect(Box<dyn FnOnce(&Film) + Send>),
+    Look,
+    Take(Sender<Option<Film>>),
+    Finish,
+}
+
+/// Estimating the error may take at most one part in this of the time.
+const ERROR_ESTIMATE_SHARE: u32 = 20;
+
+pub(super) struct Worker {
+    commands: Receiver<Command>,
+    shared: Arc<Shared>,
+    factory: Factory,
+    backend: Option<(BackendChoice, Box<dyn Renderer>)>,
+    render: Option<Render>,
+}
+
+/// The render at hand.
+struct Render {
+    job: RenderJob,
+    plan: Plan,
+    film: Film,
+    cancel: Arc<AtomicBool>,
+    choice: BackendChoice,
+    is_prepared: bool,
+    sizer: PassSizer,
+    next_history_samples: u64,
+    estimated_samples: u64,
+    estimated_at: Instant,
+    estimate_took: Duration,
+    pictured_samples: Option<u64>,
+    status: Status,
+}
+
+/// Tells the readers if the thread ends by a panic.
+struct DeathNote(Arc<Shared>);
+
+impl Drop for DeathNote {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.0.died();
+        }
+    }
+}
+
+impl Worker {
+    pub(super) fn new(commands: Receiver<Command>, shared: Arc<Shared>, factory: Factory) -> Self {
+        Worker { commands, shared, factory, backend: None, render: None }
+    }
+
+    pub(super) fn run(mut self) {
+        let _note = DeathNote(Arc::clone(&self.shared));
+        loop {
+            let is_working = self.render.as_ref().is_some_and(Render::is_working);
+            let command = if is_working {
+                match self.commands.try_recv() {
+                    Ok(command) => Some(command),
+                    Err(TryRecvError::Empty) => None,
+                    Err(TryRecvError::Disconnected) => Some(Command::Finish),
+                }
+            } else {
+                Some(self.commands.recv().unwrap_or(Command::Finish))
+            };
+            match command {
+                Some(Command::Finish) => return,
+                Some(Command::Take(taker)) => {
+                    // A taker who has gone away does not want it.
+                    let _ = taker.send(self.take_film());
+                    continue;
+                }
+                Some(command) => self.obey(command),
+                None => self.step(),
+            }
+            if let Some(render) = &mut self.render {
+                render.show(&self.shared);
+            }
+        }
+    }
+
+    fn obey(&mut self, command: Command) {
+        if let Command::Start { run, work, cancel } = command {
+            self.start(run, *work, cancel);
+            return;
+        }
+        let Some(render) = &mut self.render else { return };
+        let is_stopped = render.status.phase == Phase::Done(EndReason::Stopped);
+        match command {
+            Command::Abandon => {
+                self.abandon();
+                return;
+            }
+            Command::Pause if render.is_working() => render.status.phase = Phase::Paused,
+            Command::Resume if is_stopped || render.status.phase == Phase::Paused => render.go_on(),
+            Command::Stop if !render.status.phase.is_over() => render.end(EndReason::Stopped),
+            Command::Switch(choice) => render.change_backend(choice),
+            Command::SetPlan(plan) => {
+                render.plan = plan;
+                render.status.planned_samples_per_pixel = render.planned_count();
+                if matches!(render.status.phase, Phase::Done(_)) {
+                    render.go_on();
+                }
+            }
+            Command::Inspect(look) => look(&render.film),
+            _ => {}
+        }
+        self.shared.publish(&render.status);
+    }
+
+    fn start(&mut self, run: u64, work: Work, cancel: Arc<AtomicBool>) {
+        // The old film goes before the new one comes, so that both need not fit into memory.
+        self.render = None;
+        let Work { job, backend: choice, renderer, plan, film } = work;
+        if let Some(renderer) = renderer {
+            self.backend = Some((choice.clone(), renderer));
+        }
+        let render = Render::new(run, job, choice, plan, film, cancel);
+        self.shared.publish(&render.status);
+        self.render = Some(render);
+    }
+
+    fn take_film(&mut self) -> Option<Film> {
+        let Render { film, status, .. } = self.render.take()?;
+        if !status.phase.is_over() {
+            self.shared.publish(&Status { phase: Phase::Idle, ..status });
+        }
+        Some(film)
+    }
+
+    fn abandon(&mut self) {
+        if let Some(render) = self.render.take() {
+            self.shared.publish(&Status { phase: Phase::Idle, ..render.status });
+        }
+    }
+
+    /// Prepares if need be, else renders a pass.
+    fn step(&mut self) {
+        let Some(render) = &mut self.render else { return };
+        let begin = Instant::now();
+        let outcome = if render.is_prepared {
+            match &mut self.backend {
+                Some((_, renderer)) => render.pass(renderer.as_mut(), begin),
+                None => Ok(()),
+            }
+        } else {
+            render.prepare(&mut self.backend, &mut self.factory, begin)
+        };
+        render.status.elapsed += begin.elapsed();
+        match outcome {
+            Ok(()) => self.shared.publish(&render.status),
+            Err(RenderError::Cancelled) => self.abandon(),
+            Err(error) => {
+                // A renderer that failed is not asked again, not even for another job.
+                self.backend = None;
+                render.fail(&error.to_string());
+                self.shared.publish(&render.status);
+            }
+        }
+    }
+}
+
+impl Render {
+    fn new(
+        run: u64,
+        job: RenderJob,
+        choice: BackendChoice,
+        plan: Plan,
+        film: Option<Film>,
+        cancel: Arc<AtomicBool>,
+    ) -> Self {
+        let film = film.unwrap_or_else(|| job.new_film());
+        let mut render = Render {
+            sizer: PassSizer::new(film.halves().len()),
+            next_history_samples: (film.sample_count() + 1).next_power_of_two(),
+            estimated_samples: 0,
+            estimated_at: Instant::now(),
+            estimate_took: Duration::ZERO,
+            pictured_samples: None,
+            is_prepared: false,
+            status: Status { run, phase: Phase::Preparing, ..Status::default() },
+            job,
+            plan,
+            film,
+            cancel,
+            choice,
+        };
+        render.status.planned_samples_per_pixel = render.planned_count();
+        render.note_film();
+        render
+    }
+
+    fn is_working(&self) -> bool {
+        matches!(self.status.phase, Phase::Preparing | Phase::Tracing)
+    }
+
+    fn planned_count(&self) -> u64 {
+        let mut samples = self.film.samples().clone();
+        while let Some(gap) = samples.first_gap(self.plan.samples.clone(), u64::MAX) {
+            // A gap does not overlap what is there.
+            if samples.insert(gap).is_err() {
+                break;
+            }
+        }
+        samples.count()
+    }
+
+    fn go_on(&mut self) {
+        self.status.phase = if self.is_prepared { Phase::Tracing } else { Phase::Preparing };
+    }
+
+    fn end(&mut self, reason: EndReason) {
+        self.estimate_error();
+        self.status.phase = Phase::Done(reason);
+    }
+
+    /// Ends because no pass is left: all samples are there, or the time is over.
+    fn end_of_plan(&mut self) {
+        let is_whole = self.film.samples().first_gap(self.plan.samples.clone(), 1).is_none();
+        self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
+    }
+
+    fn change_backend(&mut self, choice: BackendChoice) {
+        if choice != self.choice {
+            self.choice = choice;
+            self.is_prepared = false;
+            self.sizer.restart();
+            if self.is_working() {
+                self.status.phase = Phase::Preparing;
+            }
+        }
+    }
+
+    /// Lets the fallback go on with the film, or gives up if that was the one that failed.
+    fn fail(&mut self, reason: &str) {
+        let fallback = BackendChoice::fallback();
+        if self.choice == fallback {
+            self.status.phase = Phase::Failed(reason.to_owned());
+        } else {
+            self.status.messages.push(format!("{reason}; the CPU goes on with the same picture"));
+            self.change_backend(fallback);
+        }
+    }
+
+    fn prepare(
+        &mut self,
+        backend: &mut Option<(BackendChoice, Box<dyn Renderer>)>,
+        factory: &mut Factory,
+        begin: Instant,
+    ) -> Result<(), RenderError> {
+        // A film with everything in it needs no renderer.
+        if self.next_pass().is_none() {
+            self.end_of_plan();
+            return Ok(());
+        }
+        if backend.as_ref().is_none_or(|(choice, _)| *choice != self.choice) {
+            match (factory(&self.choice), &backend) {
+                (Ok(renderer), _) => *backend = Some((self.choice.clone(), renderer)),
+                (Err(error), Some((old, _))) => {
+                    self.status.messages.push(format!("{error}; the {} goes on", old.name()));
+                    self.choice = old.clone();
+                }
+                (Err(error), None) => {
+                    self.fail(&error.to_string());
+                    return Ok(());
+                }
+            }
+        }
+        if let Some((_, renderer)) = backend {
+            renderer.prepare(&self.job)?;
+            self.status.backend = Some(renderer.info());
+            self.is_prepared = true;
+            self.status.phase = Phase::Tracing;
+            self.status.prepare += begin.elapsed();
+        }
+        Ok(())
+    }
+
+    /// The samples that are next; `None` when none are missing or there is no time left for them.
+    fn next_pass(&self) -> Option<std::ops::Range<u64>> {
+        let time_left = match self.plan.time_limit {
+            // A picture without a sample is of no use to anyone.
+            Some(limit) if self.film.sample_count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
+            _ => None,
+        };
+        self.sizer.next(self.film.samples(), self.plan.samples.clone(), time_left)
+    }
+
+    fn pass(&mut self, renderer: &mut dyn Renderer, begin: Instant) -> Result<(), RenderError> {
+        if self.plan.noise_reached(self.film.sample_count(), self.status.error) {
+            self.end(EndReason::NoiseTarget);
+            return Ok(());
+        }
+        let Some(range) = self.next_pass() else {
+            self.end_of_plan();
+            return Ok(());
+        };
+        let added = range.end - range.start;
+        let stats = renderer.accumulate(&self.job, range, &mut self.film, &self.cancel)?;
+        let took = begin.elapsed();
+
+        self.sizer.measured(added, took, self.plan.pass_target);
+        self.status.stats.add(&stats);
+        self.status.trace += took;
+        // A renderer that changes with use (an adapter lost, threads given up) says so.
+        let info = renderer.info();
+        self.status.credit(&info, added);
+        self.status.backend = Some(info);
+        self.note_film();
+        Ok(())
+    }
+
+    /// Brings the status up to date with the film.
+    fn note_film(&mut self) {
+        let samples = self.film.sample_count();
+        self.status.samples_per_pixel = samples;
+        self.status.rejected_samples = self.film.rejected();
+        let is_history = samples >= self.next_history_samples;
+        let is_due = self.estimated_at.elapsed() >= self.estimate_took * ERROR_ESTIMATE_SHARE;
+        if is_history || is_due {
+            self.estimate_error();
+        }
+        if is_history {
+            self.next_history_samples = (samples + 1).next_power_of_two();
+            if let Some(error) = self.status.error {
+                self.status.history.push(HistoryPoint {
+                    samples_per_pixel: samples,
+                    trace_seconds: self.status.trace.as_secs_f64(),
+                    rmse_estimate: error.rmse,
+                    rel_mse_estimate: error.rel_mse,
+                });
+            }
+        }
+    }
+
+    fn estimate_error(&mut self) {
+        if self.estimated_samples != self.film.sample_count() {
+            let begin = Instant::now();
+            self.status.error = self.film.error();
+            self.estimated_samples = self.film.sample_count();
+            self.estimate_took = begin.elapsed();
+            self.estimated_at = Instant::now();
+        }
+    }
+
+    /// Resolves a picture if someone waits for one that he has not seen.
+    fn show(&mut self, shared: &Shared) {
+        let samples = self.film.sample_count();
+        let is_new = self.pictured_samples != Some(samples);
+        if is_new && samples > 0 && shared.is_picture_wanted() && !self.cancel.load(Ordering::Relaxed) {
+            self.pictured_samples = Some(samples);
+            shared.put_picture(Picture {
+                run: self.status.run,
+                width: self.film.width(),
+                height: self.film.height(),
+                samples_per_pixel: samples,
+                rgb8: self.film.to_rgb8(self.job.rules().transfer),
+            });
+        }
+    }
+}

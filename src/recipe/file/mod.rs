@@ -1,0 +1,28 @@
+//! The scene file: a [`Recipe`] as TOML.
+//!
+//! ```toml
+//! [camera]
+//! look_from = [13.0, 2.0, 3.0]
+//! look_at = [0.0, 0.0, 0.0]
+//! vfov_degrees = 20.0
+//!
+//! [materials.ground]
+//! kind = "lambertian"
+//! albedo = [0.5, 0.5, 0.5]
+//!
+//! [[spheres]]
+//! center = [0.0, -1000.0, 0.0]
+//! radius = 1000.0
+//! material = "ground"
+//! ```
+//!
+//! Besides there are `[render]`, `[sky]` and, for stages, `[rules]`. A sphere may hold its material as an inline
+//! table. What is written and read back is the same recipe to the bit; its name is the file's and stands not in it.
+
+mod error;
+mod read;
+mod write;
+
+pub use error::{FileError, Reason};
+pub use read::{load, parse};
+pub use write::to_toml;

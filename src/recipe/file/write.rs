@@ -1,0 +1,148 @@
+//! From a recipe to TOML.
+
+use crate::recipe::Recipe;
+use crate::scene::{Camera, Material, Scene, Sphere};
+use crate::stages::Rules;
+use glam::DVec3;
+use std::fmt::Write;
+
+/// With more spheres than this each takes one line, and all stand first in the file.
+const LONG_FORM_LIMIT: usize = 40;
+
+/// The recipe as a scene file, apart from its name. Numbers have as few digits as give the same bits again.
+///
+/// A recipe that is not valid is written as it is; reading it back says what is wrong.
+pub fn to_toml(recipe: &Recipe) -> String {
+    let mut text = String::with_capacity(1000 + 100 * recipe.scene.spheres.len());
+    // Writing to a string cannot fail.
+    let _ = write_recipe(&mut text, recipe);
+    text
+}
+
+fn write_recipe(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
+    let is_long = recipe.scene.spheres.len() > LONG_FORM_LIMIT;
+    if is_long {
+        writeln!(out, "# Camera, render settings, sky and materials follow the spheres.")?;
+        write_sphere_lines(out, &recipe.scene)?;
+        writeln!(out)?;
+    }
+    write_camera(out, &recipe.camera)?;
+    write_render(out, recipe)?;
+    write_rules(out, &recipe.rules)?;
+    let sky = recipe.scene.sky;
+    writeln!(out, "\n[sky] # radiance, linear RGB")?;
+    writeln!(out, "bottom = {}", vector(sky.bottom))?;
+    writeln!(out, "top = {}", vector(sky.top))?;
+    write_materials(out, &recipe.scene)?;
+    if !is_long {
+        for sphere in &recipe.scene.spheres {
+            writeln!(out, "\n[[spheres]]")?;
+            writeln!(out, "center = {}", vector(sphere.center))?;
+            writeln!(out, "radius = {}", number(sphere.radius))?;
+            writeln!(out, "material = {}", quoted(material_name(&recipe.scene, sphere)))?;
+        }
+    }
+    Ok(())
+}
+
+fn write_camera(out: &mut String, camera: &Camera) -> std::fmt::Result {
+    writeln!(out, "[camera] # lengths in scene units")?;
+    writeln!(out, "look_from = {}", vector(camera.look_from))?;
+    writeln!(out, "look_at = {}", vector(camera.look_at))?;
+    writeln!(out, "vup = {}", vector(camera.vup))?;
+    writeln!(out, "vfov_degrees = {}", number(camera.vfov_degrees))?;
+    writeln!(out, "defocus_angle_degrees = {}", number(camera.defocus_angle_degrees))?;
+    match camera.focus_distance {
+        Some(distance) => writeln!(out, "focus_distance = {}", number(distance)),
+        None => Ok(()),
+    }
+}
+
+fn write_render(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
+    let settings = &recipe.settings;
+    writeln!(out, "\n[render]")?;
+    writeln!(out, "width = {} # pixels", settings.width)?;
+    writeln!(out, "height = {}", settings.height)?;
+    writeln!(out, "samples_per_pixel = {}", recipe.samples_per_pixel)?;
+    writeln!(out, "max_depth = {} # rays of a path", settings.max_depth)?;
+    writeln!(out, "sampler = {}", quoted(settings.sampler.name()))?;
+    writeln!(out, "seed = {}", settings.seed)?;
+    writeln!(out, "estimate_error = {}", settings.estimate_error)
+}
+
+/// Only the rules that differ from the finished renderer's.
+fn write_rules(out: &mut String, rules: &Rules) -> std::fmt::Result {
+    let table = |rules: &Rules| toml::Table::try_from(rules).unwrap_or_default();
+    let finished = table(&Rules::FINISHED);
+    let different: Vec<_> =
+        table(rules).into_iter().filter(|(key, value)| finished.get(key) != Some(value)).collect();
+    if different.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n[rules] # where they differ from the finished renderer's")?;
+    different.iter().try_for_each(|(key, value)| writeln!(out, "{key} = {value}"))
+}
+
+fn write_materials(out: &mut String, scene: &Scene) -> std::fmt::Result {
+    if scene.materials.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n[materials]")?;
+    for named in &scene.materials {
+        let keys = match named.material {
+            Material::Lambertian { albedo } => format!("albedo = {}", vector(albedo)),
+            Material::Metal { albedo, fuzz } => {
+                format!("albedo = {}, fuzz = {}", vector(albedo), number(fuzz))
+            }
+            Material::Dielectric { refraction_index } => {
+                format!("refraction_index = {}", number(refraction_index))
+            }
+        };
+        writeln!(out, "{} = {{ kind = \"{}\", {keys} }}", key(&named.name), named.material.kind())?;
+    }
+    Ok(())
+}
+
+fn write_sphere_lines(out: &mut String, scene: &Scene) -> std::fmt::Result {
+    writeln!(out, "spheres = [")?;
+    for sphere in &scene.spheres {
+        let (center, radius) = (vector(sphere.center), number(sphere.radius));
+        let material = quoted(material_name(scene, sphere));
+        writeln!(out, "  {{ center = {center}, radius = {radius}, material = {material} }},")?;
+    }
+    writeln!(out, "]")
+}
+
+fn material_name<'a>(scene: &'a Scene, sphere: &Sphere) -> &'a str {
+    scene.materials.get(sphere.material).map_or("", |named| &named.name)
+}
+
+fn vector(v: DVec3) -> String {
+    format!("[{}, {}, {}]", number(v.x), number(v.y), number(v.z))
+}
+
+/// As short as Rust's own shortest form, which TOML reads too, but for NaN.
+fn number(x: f64) -> String {
+    if x.is_nan() { "nan".to_owned() } else { format!("{x:?}") }
+}
+
+fn key(name: &str) -> String {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { quoted(name) }
+}
+
+/// A basic string of TOML.
+fn quoted(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 2);
+    out.push('"');
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => out.extend(['\\', c]),
+            // Writing to a string cannot fail.
+            c if c.is_control() => drop(write!(out, "\\u{:04X}", u32::from(c))),
+            c => out.push(c),
+        }
+    }
+    out.push('"');
+    out
+}

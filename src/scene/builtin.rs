@@ -1,1 +1,0 @@
-//! Scenes that need no file.

@@ -1,0 +1,90 @@
+//! The book's final render. (Section 14.1.)
+
+use super::random::{Draws, to_four_decimals};
+use crate::scene::{Camera, Material, Scene};
+use glam::DVec3;
+
+/// Chosen so that three of the 22 x 22 small spheres fall where the golden one stands and are left out,
+/// which leaves the 485 spheres that the book's own generator leaves.
+const SEED: u64 = 1;
+
+/// The camera of the final render.
+pub const BOOK_CAMERA: Camera = Camera {
+    look_from: DVec3::new(13.0, 2.0, 3.0),
+    look_at: DVec3::ZERO,
+    vup: DVec3::Y,
+    vfov_degrees: 20.0,
+    defocus_angle_degrees: 0.6,
+    focus_distance: Some(10.0),
+};
+
+/// The scene of the book's cover: 485 spheres, the same every time.
+pub fn book() -> Scene {
+    let mut scene = Scene::default();
+    let ground = scene.add_material("ground", Material::Lambertian { albedo: DVec3::splat(0.5) });
+    let glass = scene.add_material("glass", Material::Dielectric { refraction_index: 1.5 });
+    let brown = scene.add_material("brown", Material::Lambertian { albedo: DVec3::new(0.4, 0.2, 0.1) });
+    let gold = scene.add_material("gold", Material::Metal { albedo: DVec3::new(0.7, 0.6, 0.5), fuzz: 0.0 });
+
+    scene.add_sphere(DVec3::new(0.0, -1000.0, 0.0), 1000.0, ground);
+    scene.add_sphere(DVec3::new(0.0, 1.0, 0.0), 1.0, glass);
+    scene.add_sphere(DVec3::new(-4.0, 1.0, 0.0), 1.0, brown);
+    scene.add_sphere(DVec3::new(4.0, 1.0, 0.0), 1.0, gold);
+
+    for cell in 0..22 * 22_u32 {
+        let mut draws = Draws::new(SEED, u64::from(cell));
+        let corner = DVec3::new(f64::from(cell / 22) - 11.0, 0.2, f64::from(cell % 22) - 11.0);
+        let choice = draws.unit();
+        let offset = DVec3::new(0.9 * draws.unit(), 0.0, 0.9 * draws.unit());
+        let center = (corner + offset).map(to_four_decimals);
+        if center.distance(DVec3::new(4.0, 0.2, 0.0)) <= 0.9 {
+            continue;
+        }
+        let material = if choice < 0.8 {
+            let mut channel = || to_four_decimals(draws.unit() * draws.unit());
+            let albedo = DVec3::new(channel(), channel(), channel());
+            scene.add_material(format!("matte-{cell}"), Material::Lambertian { albedo })
+        } else if choice < 0.95 {
+            let mut channel = || to_four_decimals(draws.within(0.5, 1.0));
+            let albedo = DVec3::new(channel(), channel(), channel());
+            let fuzz = to_four_decimals(draws.within(0.0, 0.5));
+            scene.add_material(format!("metal-{cell}"), Material::Metal { albedo, fuzz })
+        } else {
+            glass
+        };
+        scene.add_sphere(center, 0.2, material);
+    }
+    scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_book_has_485_spheres_in_the_books_proportions() {
+        let scene = book();
+        assert_eq!(scene.spheres.len(), 485);
+        let small: Vec<_> = scene.spheres.iter().filter(|sphere| sphere.radius == 0.2).collect();
+        assert_eq!(small.len(), 481);
+        let share = |kind: &str| {
+            let count = small.iter().filter(|sphere| scene.material_of(sphere).kind() == kind).count();
+            count as f64 / small.len() as f64
+        };
+        // Four standard errors of a share among 481.
+        for (kind, expected) in [("lambertian", 0.8), ("metal", 0.15), ("dielectric", 0.05)] {
+            let tolerance = 4.0 * f64::sqrt(expected * (1.0 - expected) / 481.0);
+            assert!((share(kind) - expected).abs() < tolerance, "{kind}: {}", share(kind));
+        }
+    }
+
+    #[test]
+    fn small_spheres_keep_clear_of_the_golden_one() {
+        let scene = book();
+        let golden_foot = DVec3::new(4.0, 0.2, 0.0);
+        for sphere in scene.spheres.iter().filter(|sphere| sphere.radius == 0.2) {
+            assert!(sphere.center.distance(golden_foot) > 0.9);
+            assert_eq!(sphere.center.y, 0.2);
+        }
+    }
+}

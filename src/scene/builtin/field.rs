@@ -1,0 +1,136 @@
+//! A field of any number of spheres, for measuring how time grows with them.
+
+use super::random::{Draws, to_four_decimals};
+use crate::scene::{Camera, Material, Scene};
+use glam::DVec3;
+use std::ops::RangeInclusive;
+
+/// How many small spheres a field may have.
+pub const FIELD_COUNT_LIMITS: RangeInclusive<u64> = 1..=10_000_000;
+
+const SEED: u64 = 20;
+
+/// Materials are shared: these and the ground's, whatever the number of spheres.
+const MATTE_COUNT: usize = 44;
+const METAL_COUNT: usize = 15;
+const GLASS_COUNT: usize = 4;
+
+/// Side of the square cell that each sphere has to itself, scene units.
+const CELL: f64 = 1.0;
+
+/// `count` small spheres on one large one, and a camera that looks over them.
+///
+/// Each stands in its own cell of a square grid, so none overlap, and the field is as wide as their number
+/// asks for. Colours run in patches over it. `count` is taken into [`FIELD_COUNT_LIMITS`]; the work and the
+/// memory (40 bytes each) are in proportion to it.
+pub fn field(count: u64) -> (Scene, Camera) {
+    let count = count.clamp(*FIELD_COUNT_LIMITS.start(), *FIELD_COUNT_LIMITS.end());
+    let columns = (count as f64).sqrt().ceil() as u64;
+    let half_width = 0.5 * CELL * columns as f64;
+    // So wide that the field is a gently curved part of it.
+    let ground_radius = (100.0 * half_width).max(1000.0);
+    let ground_center = DVec3::new(0.0, -ground_radius, 0.0);
+
+    let mut scene = Scene::default();
+    let ground = scene.add_material("ground", Material::Lambertian { albedo: DVec3::new(0.45, 0.44, 0.42) });
+    scene.add_sphere(ground_center, ground_radius, ground);
+    add_palette(&mut scene);
+    scene.spheres.reserve_exact(count as usize);
+
+    for index in 0..count {
+        let mut draws = Draws::new(SEED, index);
+        let radius = to_four_decimals(draws.within(0.18, 0.42));
+        let room = 0.5 * CELL - radius;
+        let mut along = |cell: u64| (cell as f64 + 0.5) * CELL - half_width + draws.within(-room, room);
+        let (x, z) = (along(index % columns), along(index / columns));
+        let toward = DVec3::new(x, ground_radius, z).normalize();
+        let center = (ground_center + (ground_radius + radius) * toward).map(to_four_decimals);
+        scene.add_sphere(center, radius, 1 + palette_index(x, z, &mut draws));
+    }
+
+    // The middle ground stays in view while the far edge recedes.
+    let height = 3.0 * (half_width / 16.0).sqrt().max(0.5);
+    let camera = Camera {
+        look_from: DVec3::new(0.35 * half_width, height, half_width + 2.0 * height),
+        look_at: DVec3::new(0.0, 0.0, 0.25 * half_width),
+        vfov_degrees: 35.0,
+        ..Camera::BOOK
+    };
+    (scene, camera)
+}
+
+fn add_palette(scene: &mut Scene) {
+    for index in 0..MATTE_COUNT {
+        let turn = index as f64 / MATTE_COUNT as f64;
+        let albedo = hue(turn, 0.75, 0.85 - 0.3 * (index % 3) as f64 / 2.0);
+        scene.add_material(format!("matte-{index}"), Material::Lambertian { albedo });
+    }
+    for index in 0..METAL_COUNT {
+        let turn = 0.02 + 0.6 * index as f64 / METAL_COUNT as f64;
+        let fuzz = [0.0, 0.1, 0.35][index % 3];
+        scene.add_material(format!("metal-{index}"), Material::Metal { albedo: hue(turn, 0.3, 0.92), fuzz });
+    }
+    for (index, refraction_index) in [1.33, 1.5, 1.7, 2.4].into_iter().enumerate() {
+        scene.add_material(format!("glass-{index}"), Material::Dielectric { refraction_index });
+    }
+}
+
+/// A material of the palette for a sphere at `(x, z)`: neighbours have colours of neighbouring hue.
+fn palette_index(x: f64, z: f64, draws: &mut Draws) -> usize {
+    let pick = |turn: f64, count: usize| ((turn.rem_euclid(1.0) * count as f64) as usize).min(count - 1);
+    // Triangle waves, not sines: the same bits on every machine.
+    let wave = |position: f64, length: f64| (2.0 * (position / length).rem_euclid(1.0) - 1.0).abs();
+    let patch = 0.6 * wave(x + 0.3 * z, 29.0) + 0.6 * wave(z - 0.4 * x, 41.0) + draws.within(-0.07, 0.07);
+    match draws.unit() {
+        kind if kind < 0.72 => pick(patch, MATTE_COUNT),
+        kind if kind < 0.92 => MATTE_COUNT + pick(draws.unit(), METAL_COUNT),
+        _ => MATTE_COUNT + METAL_COUNT + pick(draws.unit(), GLASS_COUNT),
+    }
+}
+
+/// Linear RGB of the hue `turn` (0 red, 1/3 green, 2/3 blue), `saturation` and `value` in `0..=1`.
+fn hue(turn: f64, saturation: f64, value: f64) -> DVec3 {
+    let channel = |offset: f64| {
+        let distance = (6.0 * (turn + offset).rem_euclid(1.0) - 3.0).abs();
+        let share = (distance - 1.0).clamp(0.0, 1.0);
+        to_four_decimals(value * (1.0 - saturation * (1.0 - share)))
+    };
+    DVec3::new(channel(0.0), channel(2.0 / 3.0), channel(1.0 / 3.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_has_its_count_and_few_materials() {
+        for count in [1, 2, 3, 17, 1000, 100_000] {
+            let (scene, camera) = field(count);
+            assert_eq!(scene.spheres.len() as u64, count + 1);
+            assert_eq!(scene.materials.len(), 64);
+            scene.validate().expect("valid");
+            camera.validate().expect("valid");
+        }
+    }
+
+    #[test]
+    fn spheres_of_a_field_touch_the_ground_and_not_each_other() {
+        let (scene, _) = field(900);
+        let (ground, small) = scene.spheres.split_first().expect("a ground");
+        for (index, sphere) in small.iter().enumerate() {
+            let gap = sphere.center.distance(ground.center) - ground.radius - sphere.radius;
+            assert!(gap.abs() < 2e-4, "{index}: {gap}");
+            for other in &small[..index] {
+                let gap = sphere.center.distance(other.center) - sphere.radius - other.radius;
+                assert!(gap > -1e-3, "{index}: {gap}");
+            }
+        }
+    }
+
+    #[test]
+    fn hues_run_from_red_over_green_to_blue() {
+        assert_eq!(hue(0.0, 1.0, 1.0), DVec3::X);
+        assert_eq!(hue(1.0 / 3.0, 1.0, 1.0), DVec3::Y);
+        assert_eq!(hue(2.0 / 3.0, 1.0, 1.0), DVec3::Z);
+    }
+}

@@ -1,0 +1,161 @@
+//! Scenes that need no file, and the registry that finds them.
+
+mod book;
+mod chapters;
+mod field;
+mod random;
+
+pub use book::{BOOK_CAMERA, book};
+pub use chapters::{
+    LeftSphere, empty, matte_on_ground, metals, one_sphere, three_spheres, touching_spheres,
+    view_from_the_side,
+};
+pub use field::{FIELD_COUNT_LIMITS, field};
+
+use super::{Camera, Scene};
+use std::fmt;
+
+/// A scene that is generated on demand, and the numbers that suit it.
+#[derive(Clone, Copy)]
+pub struct BuiltinScene {
+    /// What the user calls it.
+    pub name: &'static str,
+    /// One line about it.
+    pub about: &'static str,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Samples per pixel.
+    pub samples_per_pixel: u64,
+    /// Most rays of a path, the camera's included.
+    pub max_depth: u32,
+    /// Makes the scene and the camera that looks at it. The same every time.
+    pub build: fn() -> (Scene, Camera),
+}
+
+impl BuiltinScene {
+    /// A [`field`] of the default size.
+    pub const FIELD: BuiltinScene = BuiltinScene {
+        name: "field",
+        about: "ten thousand small spheres on a wide ground; field:N has N of them",
+        width: 800,
+        height: 450,
+        samples_per_pixel: 128,
+        max_depth: 24,
+        build: || field(10_000),
+    };
+
+    /// All of them, the default first.
+    pub const ALL: &'static [BuiltinScene] = &[
+        BuiltinScene {
+            name: "three-spheres",
+            about: "hollow glass, matte and fuzzy metal side by side: the default (11.5)",
+            width: 800,
+            height: 450,
+            samples_per_pixel: 200,
+            max_depth: 24,
+            build: || (three_spheres(LeftSphere::HollowGlass), Camera::BOOK),
+        },
+        BuiltinScene {
+            name: "book",
+            about: "the book's final render: 485 spheres and a lens (14.1)",
+            width: 1200,
+            height: 675,
+            samples_per_pixel: 500,
+            max_depth: 50,
+            build: || (book(), BOOK_CAMERA),
+        },
+        Self::FIELD,
+        BuiltinScene {
+            name: "two-spheres",
+            about: "a grey matte ball on a grey matte ground: light transport and nothing else (9)",
+            width: 800,
+            height: 450,
+            samples_per_pixel: 128,
+            max_depth: 50,
+            build: || (matte_on_ground(), Camera::BOOK),
+        },
+        BuiltinScene {
+            name: "metals",
+            about: "a matte ball between a smooth and a brushed mirror (10.6)",
+            width: 800,
+            height: 450,
+            samples_per_pixel: 128,
+            max_depth: 50,
+            build: || (metals(0.3, 1.0), Camera::BOOK),
+        },
+        BuiltinScene {
+            name: "close-up",
+            about: "the three spheres from the side, through a wide lens (13.2)",
+            width: 800,
+            height: 450,
+            samples_per_pixel: 256,
+            max_depth: 50,
+            build: || {
+                let camera = Camera {
+                    defocus_angle_degrees: 10.0,
+                    focus_distance: Some(3.4),
+                    ..view_from_the_side(20.0)
+                };
+                (three_spheres(LeftSphere::HollowGlass), camera)
+            },
+        },
+        BuiltinScene {
+            name: "touching-spheres",
+            about: "a blue and a red ball that fill a right angle exactly (12.1)",
+            width: 800,
+            height: 450,
+            samples_per_pixel: 128,
+            max_depth: 50,
+            build: || (touching_spheres(), Camera::BOOK),
+        },
+    ];
+
+    /// The scene of this name.
+    pub fn find(name: &str) -> Option<&'static BuiltinScene> {
+        Self::ALL.iter().find(|scene| scene.name == name)
+    }
+}
+
+impl fmt::Debug for BuiltinScene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("BuiltinScene").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_scene_is_valid_and_the_same_each_time() {
+        for builtin in BuiltinScene::ALL {
+            let (scene, camera) = (builtin.build)();
+            scene.validate().expect(builtin.name);
+            camera.validate().expect(builtin.name);
+            assert_eq!((builtin.build)(), (scene, camera), "{}", builtin.name);
+        }
+    }
+
+    #[test]
+    fn names_are_unique_and_found() {
+        let names: HashSet<_> = BuiltinScene::ALL.iter().map(|scene| scene.name).collect();
+        assert_eq!(names.len(), BuiltinScene::ALL.len());
+        for scene in BuiltinScene::ALL {
+            assert_eq!(BuiltinScene::find(scene.name).map(|found| found.name), Some(scene.name));
+            assert!(!scene.about.is_empty());
+        }
+        assert!(BuiltinScene::find("no such scene").is_none());
+    }
+
+    #[test]
+    fn no_material_is_left_unused() {
+        for builtin in BuiltinScene::ALL {
+            let (scene, _) = (builtin.build)();
+            let used: HashSet<_> = scene.spheres.iter().map(|sphere| sphere.material).collect();
+            assert_eq!(used.len(), scene.materials.len(), "{}", builtin.name);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Names that the user may have meant.
+
+/// At most this many are offered.
+const OFFERED: usize = 4;
+
+/// Those of `names` that look like `wanted`, the likeliest first. Empty if none does.
+pub(crate) fn similar_names(
+    wanted: &str,
+    names: impl IntoIterator<Item = &'static str>,
+) -> Vec<&'static str> {
+    let wanted = wanted.to_lowercase();
+    let tolerance = 1 + wanted.chars().count() / 3;
+    let mut near: Vec<(usize, &'static str)> = names
+        .into_iter()
+        .filter_map(|name| {
+            let is_part = wanted.len() >= 3 && (name.contains(&wanted) || wanted.contains(name));
+            let edits = edit_distance(&wanted, name);
+            (is_part || edits <= tolerance).then_some((edits, name))
+        })
+        .collect();
+    near.sort();
+    near.into_iter().map(|(_, name)| name).take(OFFERED).collect()
+}
+
+/// The end of a message about an unknown name.
+pub(crate) fn or_nearest(near: &[&str]) -> String {
+    match near {
+        [] => "--list shows all".to_owned(),
+        near => format!("did you mean {}? --list shows all", near.join(" or ")),
+    }
+}
+
+/// Levenshtein's distance: insertions, removals and exchanges of one character.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, from) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, to) in b.iter().enumerate() {
+            let exchange = diagonal + usize::from(from != *to);
+            diagonal = row[j + 1];
+            row[j + 1] = exchange.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_levenshteins() {
+        for (a, b, expected) in
+            [("", "abc", 3), ("kitten", "sitting", 3), ("same", "same", 0), ("ab", "ba", 2)]
+        {
+            assert_eq!(edit_distance(a, b), expected, "{a} {b}");
+            assert_eq!(edit_distance(b, a), expected, "{b} {a}");
+        }
+    }
+
+    #[test]
+    fn slips_and_beginnings_are_recognised() {
+        let names = ["glass-refract", "glass-tir", "glass-schlick", "sky", "metal"];
+        assert_eq!(similar_names("matal", names), ["metal"]);
+        assert_eq!(similar_names("glass", names).len(), 3);
+        assert_eq!(similar_names("SKY", names), ["sky"]);
+        assert!(similar_names("xylophone", names).is_empty());
+    }
+}

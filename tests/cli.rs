@@ -1,0 +1,424 @@
+//! The program from outside: what it writes, says and returns.
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn weekender(directory: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    command.current_dir(directory).args(arguments).stdin(Stdio::null());
+    command
+}
+
+fn run(directory: &Path, arguments: &[&str]) -> Output {
+    weekender(directory, arguments).output().unwrap()
+}
+
+/// Runs a small batch render that must succeed.
+fn render(directory: &Path, arguments: &[&str]) -> Output {
+    let output = run(directory, &[&["--batch", "--size", "32x18", "--threads", "2"], arguments].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    output
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn names(directory: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(directory)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+fn temp() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn film(path: PathBuf) -> weekender::film::Film {
+    weekender::film::checkpoint::load(&path).unwrap().film
+}
+
+/// Bad input: exit code 2, a message with all of `parts`, and no new file.
+fn refused(arguments: &[&str], parts: &[&str]) {
+    refused_in(&temp(), arguments, parts);
+}
+
+fn refused_in(directory: &TempDir, arguments: &[&str], parts: &[&str]) {
+    let before = names(directory.path());
+    let output = run(directory.path(), arguments);
+    let message = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    for part in parts {
+        assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
+    }
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert_eq!(names(directory.path()), before, "{arguments:?} left something behind");
+}
+
+#[test]
+fn the_default_picture_is_named_after_its_scene() {
+    let directory = temp();
+    let output = render(directory.path(), &["--samples", "2"]);
+    assert_eq!(names(directory.path()), ["three-spheres.png"]);
+    let summary = text(&output.stdout);
+    for part in ["three-spheres, 32x18", "2 per pixel", "number of samples", "three-spheres.png", "threads"] {
+        assert!(summary.contains(part), "{summary}");
+    }
+    assert!(output.stderr.is_empty(), "quiet when redirected: {}", text(&output.stderr));
+}
+
+#[test]
+fn the_ending_decides_the_format() {
+    let directory = temp();
+    for (name, magic) in [("a.png", &b"\x89PNG"[..]), ("b.ppm", b"P6"), ("c.exr", b"\x76\x2f\x31\x01")] {
+        render(directory.path(), &["--samples", "1", "--out", name]);
+        assert!(std::fs::read(directory.path().join(name)).unwrap().starts_with(magic), "{name}");
+    }
+}
+
+#[test]
+fn without_batch_it_names_the_flag() {
+    refused(&[], &["--batch"]);
+}
+
+#[test]
+fn values_out_of_range_are_refused_with_value_and_limit() {
+    let cases: [(&[&str], &[&str]); 28] = [
+        (&["--size", "0x10"], &["0x10", "16384"]),
+        (&["--size", "100000x100000"], &["100000x100000", "16384"]),
+        (&["--size", "800"], &["800", "WIDTHxHEIGHT"]),
+        (&["--samples", "0"], &["0", "4294967296"]),
+        (&["--samples", "-3"], &["-3"]),
+        (&["--samples", "many"], &["many"]),
+        (&["--depth", "0"], &["0", "10000"]),
+        (&["--depth", "10001"], &["10001", "10000"]),
+        (&["--vfov", "0"], &["vfov", "0.01", "179"]),
+        (&["--vfov", "180"], &["180", "179"]),
+        (&["--vfov", "nan"], &["NaN", "finite"]),
+        (&["--vfov", "wide"], &["wide", "number"]),
+        (&["--defocus-angle", "180"], &["180", "179"]),
+        (&["--defocus-angle", "-1"], &["-1", "179"]),
+        (&["--focus-distance", "0"], &["focus_distance is 0"]),
+        (&["--focus-distance", "inf"], &["inf", "finite"]),
+        (&["--look-from", "1,2,3", "--look-at", "1,2,3"], &["[1, 2, 3]", "direction"]),
+        (&["--look-from", "1,2"], &["1,2", "three numbers"]),
+        (&["--look-from", "nan,0,0"], &["look_from.x is NaN"]),
+        (&["--time-limit", "0"], &["0", "seconds"]),
+        (&["--time-limit", "inf"], &["inf", "1e9"]),
+        (&["--noise-target", "-0.1"], &["-0.1", "above 0"]),
+        (&["--noise-target", "0.1", "--estimate-error", "off"], &["--noise-target", "--estimate-error on"]),
+        (&["--sample-range", "8..8"], &["8..8", "A below B"]),
+        (&["--sample-range", "0..8", "--samples", "9"], &["--sample-range", "--samples"]),
+        (&["--threads", "0"], &["0", "1024"]),
+        (&["--threads", "100000"], &["100000", "1024"]),
+        (&["--seed", "-1"], &["-1", "4294967295"]),
+    ];
+    for (arguments, parts) in cases {
+        refused(&[&["--batch"], arguments].concat(), parts);
+    }
+}
+
+#[test]
+fn names_that_do_not_exist_are_refused() {
+    refused(&["--batch", "--scene", "three-spheeres"], &["three-spheeres", "three-spheres"]);
+    refused(&["--batch", "--scene", "field:0"], &["0"]);
+    refused(&["--batch", "--stage", "glass-schlik"], &["glass-schlik", "glass-schlick"]);
+    refused(&["--batch", "--scene", "book", "--stage", "book"], &["--scene", "--stage"]);
+    refused(&["--batch", "--device", "tpu"], &["tpu", "cpu"]);
+    refused(&["--batch", "--device", "gpu"], &["gpu", "--device cpu"]);
+    refused(&["--batch", "--simd", "3"], &["3", "16"]);
+    refused(&["--batch", "--isa", "mmx"], &["mmx", "avx2"]);
+    refused(&["--batch", "--device", "reference", "--simd", "8"], &["--simd", "reference"]);
+    refused(&["--batch", "--no-such-flag"], &["--no-such-flag"]);
+}
+
+#[test]
+fn what_the_processor_lacks_is_refused_with_what_it_has() {
+    let foreign = if cfg!(target_arch = "x86_64") { "neon" } else { "avx2" };
+    refused(&["--batch", "--isa", foreign], &[foreign, "baseline"]);
+    refused(&["--batch", "--isa", "baseline", "--simd", "16"], &["16 lanes", "baseline"]);
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_found_before_rendering() {
+    let endless = ["--batch", "--samples", "4294967296", "--size", "1600x900"];
+    let with = |more: &[&'static str]| [&endless[..], more].concat();
+    refused(&with(&["--out", "x.jpg"]), &["x.jpg", ".png", ".ppm", ".exr"]);
+    refused(&with(&["--out", "x"]), &["x", ".png"]);
+    refused(&with(&["--out", "nowhere/x.png"]), &["nowhere/x.png"]);
+    refused(&with(&["--checkpoint", "nowhere/x.exr"]), &["nowhere/x.exr"]);
+    refused(&with(&["--checkpoint", "x.png"]), &["--checkpoint", "x.png", ".exr"]);
+    refused(&with(&["--json", "nowhere/x.json"]), &["nowhere/x.json"]);
+    refused(&with(&["--save-scene", "nowhere/x.toml"]), &["nowhere/x.toml"]);
+    refused(&with(&["--out", "x.exr", "--checkpoint", "x.exr"]), &["--out", "--checkpoint", "x.exr"]);
+    refused(&with(&["--stage", "all"]), &["--out DIR"]);
+    refused(&["--batch", "--stage", "all", "--out", "d", "--checkpoint", "x.exr"], &["--checkpoint"]);
+}
+
+#[test]
+fn scene_files_are_refused_with_their_reason() {
+    let directory = temp();
+    let write = |content: &str| std::fs::write(directory.path().join("s.toml"), content).unwrap();
+    let camera = "[camera]\nlook_from = [0.0, 0.0, 1.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 90.0\n";
+    let sphere = |radius: &str, material: &str| {
+        format!("{camera}[[spheres]]\ncenter = [0.0, 0.0, 0.0]\nradius = {radius}\nmaterial = {material}\n")
+    };
+    let grey = "{ kind = \"lambertian\", albedo = [0.5, 0.5, 0.5] }";
+    let cases: [(String, &[&str]); 11] = [
+        ("camera = ".to_owned(), &["s.toml"]),
+        (format!("{camera}zoom = 3\n"), &["zoom", "5"]),
+        (sphere("0.0", grey), &["radius", "0"]),
+        (sphere("-1.0", grey), &["radius", "-1"]),
+        (sphere("nan", grey), &["radius", "NaN"]),
+        (sphere("inf", grey), &["radius", "inf"]),
+        (sphere("1.0", "\"nothing\""), &["nothing"]),
+        (sphere("1.0", "{ kind = \"metal\", albedo = [1.0, 1.0, 1.0], fuzz = -1.0 }"), &["fuzz", "-1"]),
+        (sphere("1.0", "{ kind = \"lambertian\", albedo = [2.0, 0.0, 0.0] }"), &["albedo", "2"]),
+        (camera.replace("90.0", "180.0"), &["vfov", "180", "179"]),
+        (camera.replace("1.0]", "0.0]"), &["look_from", "look_at"]),
+    ];
+    for (content, parts) in cases {
+        write(&content);
+        refused_in(&directory, &["--batch", "--scene", "s.toml"], parts);
+    }
+    std::fs::write(directory.path().join("s.toml"), [0xff, 0xfe, 0]).unwrap();
+    refused_in(&directory, &["--batch", "--scene", "s.toml"], &["s.toml"]);
+    refused_in(&directory, &["--batch", "--scene", "missing.toml"], &["missing.toml"]);
+    refused_in(&directory, &["--batch", "--scene", "."], &["."]);
+}
+
+#[test]
+fn a_saved_scene_renders_the_same_film() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    for from in [["--scene", "book"], ["--stage", "gamut"], ["--stage", "shadow-acne"]] {
+        let saved =
+            run(directory.path(), &[&from[..], &["--save-scene", "s.toml", "--size", "32x18"]].concat());
+        assert!(saved.status.success(), "{}", text(&saved.stderr));
+        render(directory.path(), &[&from[..], &["--samples", "4", "--checkpoint", "a.exr"]].concat());
+        render(directory.path(), &["--scene", "s.toml", "--samples", "4", "--checkpoint", "b.exr"]);
+        assert_eq!(film(at("a.exr")), film(at("b.exr")), "{from:?}");
+    }
+}
+
+#[test]
+fn a_resumed_film_equals_an_uninterrupted_one() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    render(directory.path(), &["--samples", "37", "--checkpoint", "whole.exr"]);
+    render(directory.path(), &["--samples", "10", "--checkpoint", "part.exr"]);
+    // The film knows its scene and size: nothing of that need be said again.
+    let output = run(
+        directory.path(),
+        &["--batch", "--resume", "part.exr", "--samples", "37", "--checkpoint", "part.exr", "--json", "-"],
+    );
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(film(at("part.exr")), film(at("whole.exr")));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["scene"], "three-spheres");
+    assert_eq!(json["samples_per_pixel"], 37);
+    assert_eq!(json["added_samples_per_pixel"], 27);
+}
+
+#[test]
+fn films_of_other_pictures_are_not_resumed() {
+    let directory = temp();
+    render(directory.path(), &["--samples", "2", "--checkpoint", "film.exr"]);
+    std::fs::write(directory.path().join("broken.exr"), "not a film").unwrap();
+    let resume = ["--batch", "--resume", "film.exr"];
+    let with = |more: &[&'static str]| [&resume[..], more].concat();
+    refused_in(&directory, &with(&["--size", "16x9"]), &["16x9", "32x18"]);
+    refused_in(&directory, &with(&["--seed", "5"]), &["seed is 5"]);
+    refused_in(&directory, &with(&["--depth", "3"]), &["depth is 3"]);
+    refused_in(&directory, &with(&["--vfov", "30"]), &["camera"]);
+    refused_in(&directory, &with(&["--sampler", "independent"]), &["independent", "sobol"]);
+    refused_in(&directory, &with(&["--estimate-error", "off"]), &["estimate-error is off"]);
+    refused_in(&directory, &with(&["--scene", "book", "--size", "32x18"]), &["another picture"]);
+    refused_in(&directory, &["--batch", "--resume", "broken.exr"], &["broken.exr"]);
+    refused_in(&directory, &["--batch", "--resume", "missing.exr"], &["missing.exr"]);
+    refused_in(&directory, &["--batch", "--resume", "film.png"], &["--resume", ".exr"]);
+}
+
+#[test]
+fn parts_add_up_to_the_whole() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    render(directory.path(), &["--samples", "24", "--out", "whole.exr"]);
+    for (range, name) in [("0..8", "a.exr"), ("8..13", "b.exr"), ("13..24", "c.exr")] {
+        render(directory.path(), &["--sample-range", range, "--out", name]);
+    }
+    let merge = run(directory.path(), &["merge", "c.exr", "a.exr", "b.exr", "--out", "all.exr"]);
+    assert!(merge.status.success(), "{}", text(&merge.stderr));
+    assert!(text(&merge.stdout).contains("0..24"), "{}", text(&merge.stdout));
+    assert_eq!(film(at("all.exr")), film(at("whole.exr")));
+
+    refused_in(
+        &directory,
+        &["merge", "a.exr", "whole.exr", "--out", "x.exr"],
+        &["a.exr", "whole.exr", "0..8"],
+    );
+    render(directory.path(), &["--sample-range", "24..32", "--seed", "9", "--out", "other.exr"]);
+    refused_in(&directory, &["merge", "a.exr", "other.exr", "--out", "x.exr"], &["other.exr", "seed is 0"]);
+    refused_in(&directory, &["merge", "a.exr", "b.exr", "--out", "x.gif"], &["x.gif", ".exr"]);
+    refused_in(&directory, &["merge", "--out", "x.exr"], &["FILM"]);
+    refused_in(&directory, &["merge", "a.exr", "none.exr", "--out", "x.exr"], &["none.exr"]);
+}
+
+#[test]
+fn json_has_its_keys() {
+    let directory = temp();
+    render(directory.path(), &["--samples", "16", "--seed", "7", "--json", "figures.json"]);
+    let json: Value =
+        serde_json::from_slice(&std::fs::read(directory.path().join("figures.json")).unwrap()).unwrap();
+    for (key, value) in [
+        ("schema", Value::from(1)),
+        ("scene", Value::from("three-spheres")),
+        ("width", Value::from(32)),
+        ("height", Value::from(18)),
+        ("seed", Value::from(7)),
+        ("sampler", Value::from("sobol")),
+        ("samples_per_pixel", Value::from(16)),
+        ("rejected_samples", Value::from(0)),
+        ("ended_by", Value::from("samples")),
+        ("backend", Value::from("cpu")),
+        ("files", Value::from(vec!["three-spheres.png"])),
+    ] {
+        assert_eq!(json[key], value, "{key}");
+    }
+    for key in [
+        "prepare_seconds",
+        "trace_seconds",
+        "write_seconds",
+        "total_seconds",
+        "paths_per_second",
+        "rays_per_second",
+        "rmse_estimate",
+        "lanes",
+        "threads",
+    ] {
+        assert!(json[key].is_number(), "{key}: {}", json[key]);
+    }
+    let history = json["history"].as_array().unwrap();
+    assert_eq!(history.last().unwrap()["samples_per_pixel"], 16);
+
+    let output = render(directory.path(), &["--samples", "1", "--estimate-error", "off", "--json", "-"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["rmse_estimate"].is_null());
+    assert!(text(&output.stderr).contains("three-spheres"), "the summary makes way for the JSON");
+}
+
+#[test]
+fn time_limit_and_noise_target_end_a_render() {
+    let directory = temp();
+    let ended = |arguments: &[&str]| {
+        let output = render(directory.path(), &[arguments, &["--json", "-"]].concat());
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let begin = Instant::now();
+    let json = ended(&["--time-limit", "0.3"]);
+    assert_eq!(json["ended_by"], "time_limit");
+    assert!(begin.elapsed() < PATIENCE && json["total_seconds"].as_f64().unwrap() < 10.0);
+    let json = ended(&["--noise-target", "0.05", "--time-limit", "100"]);
+    assert_eq!(json["ended_by"], "noise_target");
+    assert!(json["rmse_estimate"].as_f64().unwrap() <= 0.05);
+    assert_eq!(ended(&["--samples", "3", "--time-limit", "100"])["ended_by"], "samples");
+}
+
+#[test]
+fn every_stage_renders_into_the_directory() {
+    let directory = temp();
+    let output =
+        render(directory.path(), &["--stage", "all", "--samples", "1", "--out", "gallery", "--json", "-"]);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let stages = weekender::stages::Stage::ALL;
+    assert_eq!(json["stages"].as_array().unwrap().len(), stages.len());
+    assert_eq!(names(&directory.path().join("gallery")).len(), stages.len());
+}
+
+#[test]
+fn the_list_names_scenes_stages_and_devices() {
+    let output = run(temp().path(), &["--list"]);
+    assert!(output.status.success());
+    let list = text(&output.stdout);
+    for part in ["three-spheres", "book", "glass-schlick", "11.4", "baseline", "reference", "(auto)"] {
+        assert!(list.contains(part), "{list}");
+    }
+}
+
+#[test]
+fn help_tells_units_and_ranges() {
+    let output = run(temp().path(), &["--help"]);
+    assert!(output.status.success());
+    let help = text(&output.stdout);
+    for part in ["degrees", "16384", "--sample-range", "merge", "Seconds of rendering"] {
+        assert!(help.contains(part), "{help}");
+    }
+}
+
+#[test]
+fn progress_can_be_asked_for_where_there_is_no_terminal() {
+    let output = render(temp().path(), &["--samples", "2", "--progress", "on"]);
+    assert!(text(&output.stderr).contains("write"), "{}", text(&output.stderr));
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_writes_picture_and_checkpoint() {
+    let directory = temp();
+    let mut child = weekender(
+        directory.path(),
+        &[
+            "--batch",
+            "--size",
+            "64x36",
+            "--samples",
+            "4294967296",
+            "--checkpoint",
+            "film.exr",
+            "--progress",
+            "on",
+        ],
+    )
+    .stdout(Stdio::null())
+    .stderr(Stdio::piped())
+    .spawn()
+    .unwrap();
+    // Its first words come after it has begun to listen.
+    let mut stderr = std::io::BufReader::new(child.stderr.take().unwrap());
+    std::io::BufRead::read_line(&mut stderr, &mut String::new()).unwrap();
+    std::thread::sleep(Duration::from_millis(500));
+    let killed = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+
+    let begin = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
+        }
+        if begin.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("Ctrl-C did not end it");
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    assert_eq!(status.code(), Some(130));
+    assert_eq!(names(directory.path()), ["film.exr", "three-spheres.png"]);
+    let samples = film(directory.path().join("film.exr")).sample_count();
+    assert!(samples > 0);
+
+    // What was kept goes on.
+    let more = (samples + 2).to_string();
+    let resumed =
+        run(directory.path(), &["--batch", "--resume", "film.exr", "--samples", &more, "--out", "more.exr"]);
+    assert!(resumed.status.success(), "{}", text(&resumed.stderr));
+    assert_eq!(film(directory.path().join("more.exr")).sample_count(), samples + 2);
+}

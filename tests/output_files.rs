@@ -1,0 +1,243 @@
+//! Pictures in files: what is in them, what they say, and what happens when they cannot be written.
+
+#![allow(clippy::unwrap_used)]
+
+use image::{ImageFormat, ImageReader};
+use std::fs;
+use std::io;
+use std::path::Path;
+use weekender::film::{Film, checkpoint, fixed_point};
+use weekender::output::{
+    Description, OutputError, OutputFormat, check_writable, key, read_description, replace_file, write_image,
+};
+use weekender::stages::Transfer;
+
+fn film() -> Film {
+    let (width, height) = (13, 7);
+    let mut film = Film::new(width, height, 2);
+    for half in 0..2 {
+        for (i, sum) in film.halves_mut()[half].iter_mut().enumerate() {
+            let x = i as f64 / 80.0;
+            *sum = fixed_point([x, x * x, 1.0 - 0.5 * x]).unwrap();
+        }
+    }
+    film.record(0..2, 0).unwrap();
+    film
+}
+
+fn description() -> Description {
+    let mut description =
+        Description::new("# a recipe\n[render]\nwidth = 13\n\n[materials.\"Glas: grün\"]\nkind = \"metal\"");
+    description.set(key::SOFTWARE, "Weekender 0.1.0");
+    description.set(key::SCENE, "three-spheres");
+    description.set(key::CAMERA, "from 0,0,0 at 0,0,-1: 90 degrees");
+    description.set("Note", "");
+    description
+}
+
+fn names(directory: &Path) -> Vec<String> {
+    let mut names: Vec<_> = fs::read_dir(directory)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn the_ending_decides() {
+    for (name, format) in
+        [("a.png", OutputFormat::Png), ("dir.exr/a.PPM", OutputFormat::P6), ("a.png.Exr", OutputFormat::Exr)]
+    {
+        assert_eq!(OutputFormat::from_path(Path::new(name)).unwrap(), format);
+    }
+    for name in ["a.jpg", "a", ".png", "", "png"] {
+        let error = OutputFormat::from_path(Path::new(name)).unwrap_err();
+        assert!(matches!(error, OutputError::UnknownEnding { .. }));
+        let message = error.to_string();
+        assert!([".png", ".ppm", ".exr", name].iter().all(|known| message.contains(known)), "{message}");
+    }
+}
+
+#[test]
+fn eight_bit_pictures_are_read_back_by_another_reader() {
+    let directory = tempfile::tempdir().unwrap();
+    for (name, format) in [("a.png", ImageFormat::Png), ("a.ppm", ImageFormat::Pnm)] {
+        for transfer in [Transfer::Gamma2, Transfer::Linear, Transfer::LinearAboveGamma2] {
+            let path = directory.path().join(name);
+            write_image(&path, &film(), transfer, &description()).unwrap();
+            let mut reader = ImageReader::open(&path).unwrap();
+            reader.set_format(format);
+            let image = reader.decode().unwrap();
+            assert_eq!((image.width(), image.height()), (13, 7));
+            assert_eq!(image.into_rgb8().into_raw(), film().to_rgb8(transfer), "{name} {transfer:?}");
+        }
+    }
+}
+
+#[test]
+fn an_exr_is_the_linear_picture_and_the_film() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a.exr");
+    write_image(&path, &film(), Transfer::Gamma2, &description()).unwrap();
+    let image = exr::prelude::read_first_rgba_layer_from_file(
+        &path,
+        |size, _| (size, vec![[0.0_f32; 4]; size.area()]),
+        |(size, pixels), at, (r, g, b, a): (f32, f32, f32, f32)| {
+            pixels[at.y() * size.width() + at.x()] = [r, g, b, a];
+        },
+    )
+    .unwrap();
+    let (size, pixels) = image.layer_data.channel_data.pixels;
+    assert_eq!((size.width(), size.height()), (13, 7));
+    for (pixel, mean) in pixels.iter().zip(film().means()) {
+        assert_eq!(pixel[..3], mean);
+    }
+    assert_eq!(checkpoint::load(&path).unwrap().film, film());
+}
+
+#[test]
+fn a_picture_says_what_was_said_of_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut foreign = description();
+    foreign.set("Place", "東京 or Köln");
+    let mut latin = description();
+    latin.set("Place", "Köln");
+    let large_recipe: String =
+        (0..100_000).map(|i| format!("center = [{i}, {}, 0]\n", i * 7919 % 1013)).collect();
+    let large = Description::new(&large_recipe);
+    for (case, description) in [description(), foreign, latin, large, Description::new("")].iter().enumerate()
+    {
+        for format in OutputFormat::ALL {
+            let path = directory.path().join(format!("a{}", format.ending()));
+            write_image(&path, &film(), Transfer::Gamma2, description).unwrap();
+            let read = read_description(&path).unwrap();
+            assert!(
+                read == *description,
+                "case {case}, {format:?}: {:?}",
+                read.entries().collect::<Vec<_>>()
+            );
+            // The name does not matter.
+            let renamed = directory.path().join("renamed");
+            fs::rename(&path, &renamed).unwrap();
+            assert!(read_description(&renamed).unwrap() == *description);
+        }
+    }
+}
+
+#[test]
+fn pictures_of_others_say_nothing() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a");
+    let pixels = image::RgbImage::new(2, 2);
+    for format in [ImageFormat::Png, ImageFormat::Pnm] {
+        pixels.save_with_format(&path, format).unwrap();
+        assert!(matches!(read_description(&path), Err(OutputError::NoDescription { .. })));
+    }
+    exr::prelude::write_rgb_file(&path, 3, 2, |_, _| (0.1_f32, 0.2_f32, 0.3_f32)).unwrap();
+    assert!(matches!(read_description(&path), Err(OutputError::NoDescription { .. })));
+    for bytes in [&b""[..], b"P6", b"P6\n# x: y\n", b"text"] {
+        fs::write(&path, bytes).unwrap();
+        assert!(matches!(read_description(&path), Err(OutputError::NoDescription { .. })));
+    }
+    fs::write(&path, b"\x89PNG\r\n\x1a\n").unwrap();
+    assert!(matches!(read_description(&path), Err(OutputError::Read { .. })));
+    assert!(matches!(read_description(directory.path()), Err(OutputError::Read { .. })));
+}
+
+#[test]
+fn a_file_is_replaced_whole_or_not_at_all() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("a.png");
+    fs::write(&path, "old").unwrap();
+    let error = replace_file(&path, |writer| {
+        io::Write::write_all(writer, &[7; 1 << 20])?;
+        Err(io::ErrorKind::StorageFull.into())
+    })
+    .unwrap_err();
+    let message = error.to_string();
+    assert!(message.contains("a.png") && message.contains("free some space"), "{message}");
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+    assert_eq!(names(directory.path()), ["a.png"]);
+    replace_file(&path, |writer| io::Write::write_all(writer, b"new")).unwrap();
+    assert_eq!(fs::read(&path).unwrap(), b"new");
+    assert_eq!(names(directory.path()), ["a.png"]);
+}
+
+#[test]
+fn what_cannot_be_written_is_found_beforehand() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    fs::create_dir(at("directory.png")).unwrap();
+    fs::write(at("file"), "").unwrap();
+    fs::write(at("read-only.png"), "old").unwrap();
+    let mut permissions = fs::metadata(at("read-only.png")).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(at("read-only.png"), permissions).unwrap();
+    for (name, reason) in [
+        ("missing/a.png", "create its directory"),
+        ("directory.png", "name a file in that directory"),
+        ("file/a.png", "choose another place"),
+        ("read-only.png", "marked read-only"),
+        (&"long".repeat(200), "choose another name"),
+        ("nul\0.png", "choose another name"),
+    ] {
+        let message = check_writable(&at(name)).unwrap_err().to_string();
+        assert!(message.contains(reason) && message.contains(name), "{message}");
+        assert!(replace_file(&at(name), |_| Ok(())).is_err());
+    }
+    assert!(check_writable(Path::new("")).is_err());
+    assert_eq!(fs::read(at("read-only.png")).unwrap(), b"old");
+
+    fs::write(at("a.png"), "old").unwrap();
+    check_writable(&at("a.png")).unwrap();
+    check_writable(&at("new.png")).unwrap();
+    assert_eq!(fs::read(at("a.png")).unwrap(), b"old");
+    assert_eq!(names(directory.path()), ["a.png", "directory.png", "file", "read-only.png"]);
+}
+
+#[cfg(unix)]
+mod unix {
+    use super::*;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+
+    fn mode(path: &Path) -> u32 {
+        fs::metadata(path).unwrap().permissions().mode() & 0o777
+    }
+
+    #[test]
+    fn permissions_are_the_usual_or_the_old_ones() {
+        let directory = tempfile::tempdir().unwrap();
+        let (usual, ours) = (directory.path().join("usual"), directory.path().join("ours"));
+        fs::write(&usual, "").unwrap();
+        replace_file(&ours, |_| Ok(())).unwrap();
+        assert_eq!(mode(&ours), mode(&usual));
+        fs::set_permissions(&ours, fs::Permissions::from_mode(0o640)).unwrap();
+        replace_file(&ours, |_| Ok(())).unwrap();
+        assert_eq!(mode(&ours), 0o640);
+    }
+
+    #[test]
+    fn a_link_stays_and_its_target_is_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let (target, link) = (directory.path().join("target"), directory.path().join("link"));
+        fs::write(&target, "old").unwrap();
+        symlink(&target, &link).unwrap();
+        replace_file(&link, |writer| io::Write::write_all(writer, b"new")).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&target).unwrap(), b"new");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_full_disk_is_an_error_with_the_file_s_name() {
+        let directory = tempfile::tempdir().unwrap();
+        for format in OutputFormat::ALL {
+            let path = directory.path().join(format!("full{}", format.ending()));
+            symlink("/dev/full", &path).unwrap();
+            let message =
+                write_image(&path, &film(), Transfer::Gamma2, &description()).unwrap_err().to_string();
+            assert!(message.contains("full") && message.contains("free some space"), "{message}");
+        }
+    }
+}

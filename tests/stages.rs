@@ -1,0 +1,192 @@
+//! The registry of stages: complete, in order, valid, and each with what a lesson needs.
+
+use std::collections::HashSet;
+use weekender::recipe::Recipe;
+use weekender::scene::Material;
+use weekender::stages::{DielectricLaws, Rules, Shading, Stage, Surface, Transfer};
+
+const IDS: [&str; 27] = [
+    "ppm-tiny",
+    "ppm-gradient",
+    "sky",
+    "red-sphere",
+    "normals",
+    "normals-world",
+    "aliased",
+    "antialiased",
+    "diffuse",
+    "diffuse-limited",
+    "shadow-acne",
+    "lambertian-linear",
+    "lambertian-gamma",
+    "gamut",
+    "metal",
+    "metal-fuzzy",
+    "glass-refract",
+    "glass-tir",
+    "glass-schlick",
+    "hollow-glass",
+    "three-spheres",
+    "fov-wide",
+    "fov-narrow",
+    "view-distant",
+    "view-close",
+    "defocus",
+    "book",
+];
+
+fn stage(id: &str) -> &'static Stage {
+    Stage::find(id).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn recipe(id: &str) -> Recipe {
+    stage(id).recipe()
+}
+
+/// Ids are stable: files and command lines use them.
+#[test]
+fn all_stages_are_there_in_the_books_order() {
+    assert_eq!(Stage::ALL.iter().map(|stage| stage.id).collect::<Vec<_>>(), IDS);
+    let number = |stage: &Stage| -> Vec<u32> {
+        stage.section.split('.').map(|part| part.parse().expect("a number")).collect()
+    };
+    assert!(Stage::ALL.is_sorted_by_key(number));
+}
+
+#[test]
+fn every_stage_can_be_rendered() {
+    for stage in Stage::ALL {
+        let recipe = stage.recipe();
+        assert_eq!(recipe.name, stage.id);
+        recipe.job().expect(stage.id);
+        recipe.check_samples().expect(stage.id);
+        assert_eq!(recipe, stage.recipe(), "{} differs from itself", stage.id);
+    }
+}
+
+#[test]
+fn every_stage_teaches() {
+    for stage in Stage::ALL {
+        for text in [stage.what_is_new, stage.why, stage.look_for] {
+            assert!((40..400).contains(&text.len()), "{}: {text}", stage.id);
+            assert!(text.ends_with('.'), "{}: {text}", stage.id);
+            assert!(!text.contains("  "), "{}: {text}", stage.id);
+        }
+        assert!(!stage.title.is_empty() && !stage.title.ends_with('.'), "{}", stage.id);
+    }
+    let texts: HashSet<_> = Stage::ALL.iter().map(|stage| stage.title).collect();
+    assert_eq!(texts.len(), Stage::ALL.len());
+}
+
+#[test]
+fn pairs_are_mutual() {
+    let mut pairs = 0;
+    for stage in Stage::ALL {
+        let Some(other) = stage.pair else { continue };
+        assert_ne!(other, stage.id);
+        assert_eq!(self::stage(other).pair, Some(stage.id));
+        pairs += 1;
+    }
+    assert_eq!(pairs, 14);
+}
+
+#[test]
+fn stages_follow_one_another() {
+    for pair in Stage::ALL.windows(2) {
+        assert_eq!(pair[0].next(), Some(&pair[1]));
+        assert_eq!(pair[1].previous(), Some(&pair[0]));
+    }
+    assert_eq!(Stage::ALL[0].previous(), None);
+    assert_eq!(stage("book").next(), None);
+}
+
+#[test]
+fn links_lead_to_the_books_sections() {
+    let book = "https://raytracing.github.io/books/RayTracingInOneWeekend.html";
+    for (id, anchor) in [
+        ("sky", "rays,asimplecamera,andbackground/sendingraysintothescene"),
+        ("glass-refract", "dielectrics/snell'slaw"),
+        ("book", "wherenext?/afinalrender"),
+    ] {
+        assert_eq!(stage(id).url(), format!("{book}#{anchor}"));
+    }
+    assert_eq!(stage("glass-tir").chapter(), "11");
+}
+
+#[test]
+fn unknown_ids_are_answered_with_a_guess() {
+    let message = |id: &str| Stage::find(id).expect_err("unknown").to_string();
+    assert_eq!(
+        message("shadow-akne"),
+        "there is no stage \"shadow-akne\"; did you mean shadow-acne? --list shows all"
+    );
+    for id in ["glass-refract", "glass-tir", "glass-schlick", "hollow-glass"] {
+        assert!(message("glass").contains(id), "{}", message("glass"));
+    }
+    assert_eq!(message("quux-corge"), "there is no stage \"quux-corge\"; --list shows all");
+}
+
+/// A comparison teaches most when one thing differs.
+#[test]
+fn paired_stages_differ_in_what_they_teach() {
+    let (limited, acne) = (recipe("diffuse-limited"), recipe("shadow-acne"));
+    assert_eq!(acne.rules, Rules { surface: Surface::Acne, ..limited.rules });
+    assert_eq!(Recipe { name: limited.name.clone(), rules: limited.rules, ..acne }, limited);
+
+    let (linear, gamma) = (recipe("lambertian-linear"), recipe("lambertian-gamma"));
+    assert_eq!(Rules { transfer: Transfer::Gamma2, ..linear.rules }, gamma.rules);
+    assert_eq!(linear.scene, gamma.scene);
+
+    let (refract, schlick) = (recipe("glass-refract"), recipe("glass-schlick"));
+    assert_eq!(refract.scene, schlick.scene);
+    assert_eq!(refract.rules, Rules { dielectric: DielectricLaws::RefractOnly, ..schlick.rules });
+
+    let (wide, narrow) = (recipe("fov-wide"), recipe("fov-narrow"));
+    assert_eq!(wide.scene, narrow.scene);
+    assert_eq!((wide.camera.vfov_degrees, narrow.camera.vfov_degrees), (90.0, 30.0));
+
+    let (sharp, blurred) = (recipe("view-close"), recipe("defocus"));
+    assert_eq!((sharp.camera.defocus_angle_degrees, blurred.camera.defocus_angle_degrees), (0.0, 10.0));
+    assert_eq!(sharp.scene, blurred.scene);
+
+    let (aliased, antialiased) = (recipe("aliased"), recipe("antialiased"));
+    assert_eq!((aliased.samples_per_pixel, antialiased.samples_per_pixel), (1, 64));
+    assert_eq!(aliased.rules, Rules { antialiasing: false, ..antialiased.rules });
+}
+
+#[test]
+fn stages_have_the_books_rules() {
+    let gamma_from = IDS.iter().position(|id| *id == "lambertian-gamma").expect("there");
+    for (index, stage) in Stage::ALL.iter().enumerate() {
+        let transfer = match stage.id {
+            "gamut" => Transfer::LinearAboveGamma2,
+            _ if index < gamma_from => Transfer::Linear,
+            _ => Transfer::Gamma2,
+        };
+        let recipe = stage.recipe();
+        assert_eq!(recipe.rules.transfer, transfer, "{}", stage.id);
+        assert_eq!(recipe.rules.antialiasing, recipe.samples_per_pixel > 1, "{}", stage.id);
+        assert_eq!(recipe.rules.reflectance_strips, stage.id == "gamut");
+        let gradient = recipe.rules.shading == Shading::ImageGradient;
+        assert_eq!(gradient, stage.id.starts_with("ppm-"));
+    }
+    for id in ["metal", "hollow-glass", "three-spheres", "defocus", "book"] {
+        assert_eq!(recipe(id).rules, Rules::default(), "{id}");
+    }
+    assert_eq!(recipe("diffuse-limited").settings.max_depth, 5);
+    let tiny = recipe("ppm-tiny").settings;
+    assert_eq!((tiny.width, tiny.height), (16, 9));
+    let glass = recipe("glass-tir").scene.materials.into_iter().find(|named| named.name == "left");
+    let index = Material::Dielectric { refraction_index: 1.0 / 1.33 };
+    assert_eq!(glass.map(|named| named.material), Some(index));
+}
+
+#[test]
+fn scenes_that_are_stages_too_are_the_same() {
+    for name in ["three-spheres", "book"] {
+        assert_eq!(Recipe::builtin(name).expect("a scene"), recipe(name));
+    }
+    let measured = recipe("three-spheres");
+    assert_eq!((measured.settings.width, measured.settings.height), (800, 450));
+    assert_eq!((measured.samples_per_pixel, measured.settings.max_depth), (200, 24));
+}
