@@ -71,17 +71,53 @@ fn layouts_agree() {
     same_layout!(module, GpuCamera, "Camera", eye, tau, u, focus_tau, v, scale_x, w, scale_y, offset, size);
     same_layout!(module, GpuAnchoredSphere, "AnchoredSphere", anchor, curvature, inward, radius);
     same_layout!(
-        module, GpuJob, "Job", camera, sky_middle, extent, sky_slope, max_depth, seed, opaque_count,
-        two_root_count, anchored_count, width, height, tile_width, visit_limit, few_spheres, few_anchored
+        module,
+        GpuJob,
+        "Job",
+        camera,
+        sky_middle,
+        extent,
+        sky_slope,
+        max_depth,
+        seed,
+        opaque_count,
+        two_root_count,
+        anchored_count,
+        width,
+        height,
+        tile_width,
+        visit_limit,
+        few_spheres,
+        few_anchored
     );
     same_layout!(
-        module, GpuDispatch, "Dispatch", first_tile, tile_count, block_count, ray_limit, first_row, row_count,
-        sample_count, transfer
+        module,
+        GpuDispatch,
+        "Dispatch",
+        first_tile,
+        tile_count,
+        block_count,
+        ray_limit,
+        first_row,
+        row_count,
+        sample_count,
+        transfer
     );
     same_layout!(module, GpuBlock, "Block", half, counter, step, count);
     same_layout!(
-        module, GpuRow, "Row", reference, curvature, albedo, weight, radius, index, inverse_index,
-        normal_share, inward, is_anchored
+        module,
+        GpuRow,
+        "Row",
+        reference,
+        curvature,
+        albedo,
+        weight,
+        radius,
+        index,
+        inverse_index,
+        normal_share,
+        inward,
+        is_anchored
     );
     same_layout!(module, GpuNode, "Node", low, first, high, count);
     same_layout!(module, GpuPixelSum, "PixelSum", red, green, blue);

@@ -249,9 +249,7 @@ impl Gpu {
         });
         let layouts = Layouts::new(&device);
         let gpu = Gpu { adapter: info.clone(), device, queue, layouts, faults };
-        gpu.faults
-            .check()
-            .map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
+        gpu.faults.check().map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
         Ok(gpu)
     }
 

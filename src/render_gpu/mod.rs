@@ -275,7 +275,8 @@ impl GpuRenderer {
             ));
         }
         let film_size = row_size * u64::from(slab_rows);
-        let copied = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let copied =
+            wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
         let order = gpu.buffer(
             "dispatch",
             size_of::<GpuDispatch>() as u64,
@@ -498,8 +499,7 @@ impl GpuRenderer {
         let size = pixels * PIXEL_SIZE;
         readback::read(&self.gpu, &prepared.film, size, &prepared.staging, PIXEL_SIZE, |_, bytes| {
             sums.extend(bytes.chunks_exact(PIXEL_SIZE as usize).map(|pixel| {
-                let channel =
-                    |i: usize| pixel[8 * i..8 * i + 8].try_into().map_or(0, u64::from_le_bytes);
+                let channel = |i: usize| pixel[8 * i..8 * i + 8].try_into().map_or(0, u64::from_le_bytes);
                 PixelSum([channel(0), channel(1), channel(2)])
             }));
         })?;
@@ -523,15 +523,13 @@ impl GpuRenderer {
         picture.map_err(failed)
     }
 
-    fn resolved(
-        &mut self,
-        prepared: &Prepared,
-        film: &Film,
-        transfer: Transfer,
-    ) -> Result<Vec<u32>, String> {
+    fn resolved(&mut self, prepared: &Prepared, film: &Film, transfer: Transfer) -> Result<Vec<u32>, String> {
         let (width, height) = (film.width(), film.height());
         if prepared.slab_rows < height {
-            return Err(format!("{height} rows are in the film, but the adapter binds {}", prepared.slab_rows));
+            return Err(format!(
+                "{height} rows are in the film, but the adapter binds {}",
+                prepared.slab_rows
+            ));
         }
         let kernel = self.kernels.get(&self.gpu, EntryPoint::Resolve, &Overrides::default(), 0)?;
         let pixels = width as usize * height as usize;

@@ -146,8 +146,7 @@ mod tests {
                 }
                 all.sort_unstable();
                 let half_count = if halves { 2 } else { 1 };
-                let mut expected: Vec<_> =
-                    (37..1111_u32).map(|i| (i % half_count, i / half_count)).collect();
+                let mut expected: Vec<_> = (37..1111_u32).map(|i| (i % half_count, i / half_count)).collect();
                 expected.sort_unstable();
                 assert_eq!(all, expected, "{halves} {piece}");
             }

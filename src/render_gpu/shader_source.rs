@@ -131,10 +131,7 @@ pub fn prelude() -> String {
     unsigned("INFINITE_KEY", f32::INFINITY.to_bits());
     unsigned("MISS_KEY", u32::MAX);
     unsigned("NEGATIVE_ZERO_BITS", (-0.0_f32).to_bits());
-    unsigned(
-        "RADIANCE_TOTAL_LIMIT_BITS",
-        ((3.0 * RADIANCE_LIMIT * FIXED_POINT_SCALE) as f32).to_bits(),
-    );
+    unsigned("RADIANCE_TOTAL_LIMIT_BITS", ((3.0 * RADIANCE_LIMIT * FIXED_POINT_SCALE) as f32).to_bits());
     for shading in [Shading::ImageGradient, Shading::FirstHitRed, Shading::Normals, Shading::Path] {
         let name = match shading {
             Shading::ImageGradient => "SHADING_IMAGE_GRADIENT",
