@@ -125,7 +125,7 @@ fn blocks_of_other_samples_agree() {
     let (width, height) = (96, 56);
     let side = 8;
     let mut z = Vec::new();
-    let mut film_of = |renderer: &mut dyn Renderer, seed| {
+    let film_of = |renderer: &mut dyn Renderer, seed| {
         let settings = RenderSettings {
             width,
             height,

@@ -31,7 +31,8 @@ fn every_shader_is_valid_to_tint() {
         let directory = tempfile::tempdir().unwrap();
         let file = directory.path().join(format!("{}.wgsl", entry_point.name()));
         std::fs::write(&file, source(entry_point)).unwrap();
-        let Ok(output) = std::process::Command::new("tint").arg(&file).output() else {
+        let Ok(output) = std::process::Command::new("tint").args(["--format", "wgsl"]).arg(&file).output()
+        else {
             println!("tint is not installed");
             return;
         };

@@ -94,23 +94,31 @@ fn names_software(name: &str) -> bool {
     ["llvmpipe", "softpipe", "swiftshader", "swrast", "basic render"].iter().any(|s| name.contains(s))
 }
 
-fn all_adapters() -> Vec<(AdapterInfo, wgpu::Adapter)> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends: wgpu::Backends::PRIMARY | wgpu::Backends::GL,
-        // Debug builds would load a driver's validation layers, which slow everything down.
-        flags: wgpu::InstanceFlags::empty(),
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
-    let found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-    let mut adapters: Vec<_> =
-        found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect();
+/// Adapters, best first. GL is looked at only where nothing better has what is asked for: it would name the same
+/// hardware again, and its libraries print complaints of their own.
+fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, wgpu::Adapter)> {
+    let mut adapters = adapters_of(wgpu::Backends::PRIMARY);
+    if !adapters.iter().any(|(info, _)| info.lacks.is_none() && wanted(info)) {
+        adapters.extend(adapters_of(wgpu::Backends::GL));
+    }
     adapters.sort_by_key(|(info, _)| info.rank());
     adapters
 }
 
+fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        // Debug builds would load a driver's validation layers, which slow everything down.
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let found = pollster::block_on(instance.enumerate_adapters(backends));
+    found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect()
+}
+
 /// All adapters of this machine, that which is chosen by itself first. Software stands behind hardware.
 pub fn adapters() -> Vec<AdapterInfo> {
-    all_adapters().into_iter().map(|(info, _)| info).collect()
+    all_adapters(|_| true).into_iter().map(|(info, _)| info).collect()
 }
 
 /// The first failure of a device: what comes after it is its consequence.
@@ -206,12 +214,12 @@ impl Gpu {
     /// # Errors
     /// [`GpuError`] with the adapters that there are.
     pub fn open(wanted: Option<&str>, allow_software: bool) -> Result<Self, GpuError> {
-        let candidates = all_adapters();
-        let listed = || candidates.iter().map(|(info, _)| info.to_string()).collect::<Vec<_>>();
         let matches = |info: &AdapterInfo| {
             let text = info.to_string().to_lowercase();
             wanted.is_none_or(|wanted| text.contains(&wanted.to_lowercase()))
         };
+        let candidates = all_adapters(matches);
+        let listed = || candidates.iter().map(|(info, _)| info.to_string()).collect::<Vec<_>>();
         if candidates.is_empty() {
             return Err(GpuError::None);
         }
@@ -313,7 +321,12 @@ impl Gpu {
         self.faults.check()?;
         match polled {
             Ok(_) => Ok(()),
-            Err(error) => Err(format!("waiting for the device: {error}")),
+            Err(error) => {
+                // A loss is told to the callback at the next poll.
+                let _ = self.device.poll(wgpu::PollType::Poll);
+                self.faults.check()?;
+                Err(format!("waiting for the device: {error}"))
+            }
         }
     }
 }

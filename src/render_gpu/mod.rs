@@ -326,8 +326,8 @@ impl GpuRenderer {
         let settings = *prepared.job.settings();
         let [tile_width, tile_height] = tile_size(settings.width, settings.height);
         let tiles = settings.width.div_ceil(tile_width) * row_count.div_ceil(tile_height);
-        let pixels = u64::from(settings.width) * u64::from(row_count);
         let tile_pixels = u64::from(tile_width) * u64::from(tile_height);
+        let pixels = u64::from(tiles) * tile_pixels;
         self.clear(&prepared.film);
 
         let mut left = Blocks::of_range(range.clone(), &settings, prepared.block_limit);
@@ -350,8 +350,10 @@ impl GpuRenderer {
                     }
                     return Err(RenderError::Cancelled);
                 }
+                // Evenly, so that no dispatch is left with a few tiles.
+                let tiles_left = u64::from(tiles - first_tile);
                 let affordable = (prepared.budget.paths() / (tile_pixels * samples).max(1)).max(1);
-                let tile_count = u64::from(tiles - first_tile).min(affordable) as u32;
+                let tile_count = tiles_left.div_ceil(tiles_left.div_ceil(affordable)) as u32;
                 let order = GpuDispatch {
                     first_tile,
                     tile_count,

@@ -46,11 +46,12 @@ impl Budget {
     pub fn learn(&mut self, paths: u64, took: Duration) {
         let ratio = self.target.as_secs_f64() / took.as_secs_f64().max(1e-9);
         let fitting = paths as f64 * ratio;
+        // A dispatch far below the budget says how long it takes to start one, not how much one can do.
+        let least = if 2.0 * (paths as f64) < self.paths { self.paths } else { self.paths / 2.0 };
         self.paths = if ratio < 0.5 {
             self.paths.min(paths as f64) / 2.0
         } else {
-            // A short dispatch does not say how long a long one takes, so that none shrinks the budget below.
-            fitting.clamp(self.paths / 2.0, self.paths * GROWTH_LIMIT)
+            fitting.clamp(least, self.paths * GROWTH_LIMIT)
         }
         .clamp(64.0, 1e12);
     }
