@@ -4,8 +4,10 @@
 //! prints one row of a table: the median of RUNS after a warm-up, tracing alone.
 //! `gpu_bench size SCENE...` prints how large each scene's kernel is, general and specialised.
 
-use naga::back::{pipeline_constants::process_overrides, spv};
+use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Arena, Block, Expression, Function, Handle, Literal, Statement};
+use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
@@ -25,8 +27,7 @@ fn main() -> anyhow::Result<()> {
     }
 }
 
-/// A built-in scene, `field:N`, or a stage-like simplification: `sky`, `matte` and `pinhole-glass` have less and
-/// less in them.
+/// A built-in scene or `field:N`.
 fn job(scene: &str, [width, height, max_depth]: [u32; 3]) -> anyhow::Result<RenderJob> {
     let (spheres, camera): (_, Camera) = match scene.strip_prefix("field:") {
         Some(count) => field(count.parse()?),
@@ -93,8 +94,9 @@ fn trace(arguments: &[String]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Number of SPIR-V instructions of a kernel, after overrides are put in and branches that they decide are cut.
-fn instructions(overrides: &Overrides) -> anyhow::Result<usize> {
+/// Number of operations of a kernel in naga's representation, all calls inlined, after overrides are put in and the branches that
+/// they decide are cut.
+fn kernel_size(overrides: &Overrides) -> anyhow::Result<usize> {
     let text = source(EntryPoint::PathTrace);
     let module = naga::front::wgsl::parse_str(&text)?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module)?;
@@ -112,67 +114,141 @@ fn instructions(overrides: &Overrides) -> anyhow::Result<usize> {
     let entry = Some((naga::ShaderStage::Compute, EntryPoint::PathTrace.name()));
     let (module, _) = process_overrides(&module, &info, entry, &constants)?;
     let mut module = module.into_owned();
-    for function in module
-        .functions
-        .iter_mut()
-        .map(|(_, f)| f)
-        .chain(module.entry_points.iter_mut().map(|e| &mut e.function))
-    {
-        let expressions = &function.expressions;
-        let mut body = std::mem::take(&mut function.body);
-        cut(&mut body, expressions);
-        function.body = body;
-    }
-    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
-    let info = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module)?;
-    let options = spv::PipelineOptions {
-        shader_stage: naga::ShaderStage::Compute,
-        entry_point: EntryPoint::PathTrace.name().to_owned(),
-    };
-    let words = spv::write_vec(&module, &info, &spv::Options::default(), Some(&options))?;
-    // Past the header, each instruction's first word has its length in the upper half.
-    let (mut at, mut count) = (5, 0);
-    while at < words.len() {
-        at += (words[at] >> 16).max(1) as usize;
-        count += 1;
-    }
-    Ok(count)
-}
-
-/// Replaces branches whose condition is known by the side that is taken, as every driver's compiler does.
-fn cut(block: &mut naga::Block, expressions: &naga::Arena<naga::Expression>) {
-    let mut kept = naga::Block::new();
-    for (statement, span) in std::mem::take(block).span_into_iter() {
-        match statement {
-            naga::Statement::If { condition, mut accept, mut reject } => {
-                cut(&mut accept, expressions);
-                cut(&mut reject, expressions);
-                match expressions[condition] {
-                    naga::Expression::Literal(naga::Literal::Bool(true)) => kept.extend_block(accept),
-                    naga::Expression::Literal(naga::Literal::Bool(false)) => kept.extend_block(reject),
-                    _ => kept.push(naga::Statement::If { condition, accept, reject }, span),
-                }
-            }
-            naga::Statement::Loop { mut body, mut continuing, break_if } => {
-                cut(&mut body, expressions);
-                cut(&mut continuing, expressions);
-                kept.push(naga::Statement::Loop { body, continuing, break_if }, span);
-            }
-            naga::Statement::Block(mut inner) => {
-                cut(&mut inner, expressions);
-                kept.push(naga::Statement::Block(inner), span);
-            }
-            other => kept.push(other, span),
+    let known = Known { constants: module.constants.clone(), globals: module.global_expressions.clone() };
+    let entries = module.entry_points.iter_mut().map(|entry| &mut entry.function);
+    for function in module.functions.iter_mut().map(|(_, function)| function).chain(entries) {
+        // What one pass finds lets the next find more.
+        for _ in 0..3 {
+            let mut body = std::mem::take(&mut function.body);
+            let mut stores = HashMap::new();
+            known.stores(&body, function, &mut stores);
+            known.cut(&mut body, function, &stores);
+            function.body = body;
         }
     }
-    *block = kept;
+    Ok(module.entry_points.iter().map(|entry| operations(&entry.function.body, &module)).sum())
+}
+
+/// Operations of a block, with every function that it calls put in at every call.
+fn operations(block: &Block, module: &naga::Module) -> usize {
+    let of = |statement: &Statement| match statement {
+        Statement::Emit(range) => range.clone().count(),
+        Statement::Call { function, .. } => operations(&module.functions[*function].body, module),
+        Statement::If { accept, reject, .. } => 1 + operations(accept, module) + operations(reject, module),
+        Statement::Loop { body, continuing, .. } => {
+            1 + operations(body, module) + operations(continuing, module)
+        }
+        Statement::Block(inner) => operations(inner, module),
+        _ => 1,
+    };
+    block.iter().map(of).sum()
+}
+
+/// Values that are known once overrides are put in.
+struct Known {
+    constants: Arena<naga::Constant>,
+    globals: Arena<Expression>,
+}
+
+/// The values that are stored to a variable.
+type Stores = HashMap<Handle<naga::LocalVariable>, Vec<Handle<Expression>>>;
+
+impl Known {
+    fn literal(&self, function: &Function, expression: Handle<Expression>) -> Option<Literal> {
+        match function.expressions[expression] {
+            Expression::Literal(literal) => Some(literal),
+            Expression::Constant(constant) => match self.globals[self.constants[constant].init] {
+                Expression::Literal(literal) => Some(literal),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    fn truth(&self, function: &Function, stores: &Stores, condition: Handle<Expression>) -> Option<bool> {
+        match function.expressions[condition] {
+            Expression::Unary { op: naga::UnaryOperator::LogicalNot, expr } => {
+                self.truth(function, stores, expr).map(|truth| !truth)
+            }
+            Expression::Binary { op, left, right } => {
+                let equal = self.literal(function, left)? == self.literal(function, right)?;
+                match op {
+                    naga::BinaryOperator::Equal => Some(equal),
+                    naga::BinaryOperator::NotEqual => Some(!equal),
+                    _ => None,
+                }
+            }
+            Expression::Load { pointer } => match function.expressions[pointer] {
+                Expression::LocalVariable(variable) => match stores.get(&variable)?.as_slice() {
+                    [only] => self.truth(function, stores, *only),
+                    _ => None,
+                },
+                _ => None,
+            },
+            _ => match self.literal(function, condition)? {
+                Literal::Bool(truth) => Some(truth),
+                _ => None,
+            },
+        }
+    }
+
+    fn stores(&self, block: &Block, function: &Function, stores: &mut Stores) {
+        for statement in block.iter() {
+            match statement {
+                Statement::Store { pointer, value } => {
+                    if let Expression::LocalVariable(variable) = function.expressions[*pointer] {
+                        stores.entry(variable).or_default().push(*value);
+                    }
+                }
+                Statement::If { accept, reject, .. } => {
+                    self.stores(accept, function, stores);
+                    self.stores(reject, function, stores);
+                }
+                Statement::Loop { body, continuing, .. } => {
+                    self.stores(body, function, stores);
+                    self.stores(continuing, function, stores);
+                }
+                Statement::Block(inner) => self.stores(inner, function, stores),
+                _ => {}
+            }
+        }
+    }
+
+    /// Replaces branches whose condition is known by the side that is taken, as every driver's compiler does.
+    fn cut(&self, block: &mut Block, function: &Function, stores: &Stores) {
+        let mut kept = Block::new();
+        for (statement, span) in std::mem::take(block).span_into_iter() {
+            match statement {
+                Statement::If { condition, mut accept, mut reject } => {
+                    self.cut(&mut accept, function, stores);
+                    self.cut(&mut reject, function, stores);
+                    match self.truth(function, stores, condition) {
+                        Some(true) => kept.extend_block(accept),
+                        Some(false) => kept.extend_block(reject),
+                        None => kept.push(Statement::If { condition, accept, reject }, span),
+                    }
+                }
+                Statement::Loop { mut body, mut continuing, break_if } => {
+                    self.cut(&mut body, function, stores);
+                    self.cut(&mut continuing, function, stores);
+                    kept.push(Statement::Loop { body, continuing, break_if }, span);
+                }
+                Statement::Block(mut inner) => {
+                    self.cut(&mut inner, function, stores);
+                    kept.push(Statement::Block(inner), span);
+                }
+                other => kept.push(other, span),
+            }
+        }
+        *block = kept;
+    }
 }
 
 fn size(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
     let tables = Tables::<f32>::new(&job);
     let [general, specialised] = [Overrides::general(&job, &tables), Overrides::specialised(&job, &tables)]
-        .map(|o| (instructions(&o), o));
+        .map(|o| (kernel_size(&o), o));
     let (specialised, overrides) = specialised;
     println!(
         "| {scene} | {} | {} | {} |",
