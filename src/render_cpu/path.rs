@@ -20,7 +20,7 @@ use super::work::{LaneState, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::render::SamplerKind;
 use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
-use crate::tables::{NEAR_ZERO, Tables};
+use crate::tables::{NEAR_ZERO, Real, Tables};
 
 /// Code that a kernel may carry, as bits of its constant parameter.
 pub mod needs {
@@ -34,6 +34,8 @@ pub mod needs {
     pub const HIERARCHY: u32 = 8;
     /// Stage rules.
     pub const RULES: u32 = 16;
+    /// Everything.
+    pub const ALL: u32 = 31;
 }
 
 /// Packets that take turns. Fewer leave the processor waiting (2: -10 %, 1: -35 %), more gain nothing.
@@ -110,6 +112,68 @@ pub fn trace<L: Lanes, const NEEDS: u32>(l: L, tables: &Tables<L::Real>, work: &
     }
 }
 
+/// A packet of one lane, for a record of what it does.
+pub struct SinglePath<L: Lanes> {
+    packet: Packet<L>,
+    stack: Stack,
+}
+
+impl<L: Lanes> SinglePath<L> {
+    /// Takes the first sample of `work`.
+    #[inline(always)]
+    pub fn start(l: L, tables: &Tables<L::Real>, work: &mut Work) -> Self {
+        let mut packet = Packet::idle(l);
+        shade::<L, { needs::ALL }>(l, tables, &mut packet, work, &mut TileStats::default());
+        SinglePath { packet, stack: EMPTY_STACK }
+    }
+
+    /// Whether there is a ray to trace.
+    pub fn is_alive(&self) -> bool {
+        L::bits(self.packet.alive) != 0
+    }
+
+    /// Whether the path was absorbed where it is.
+    pub fn is_absorbed(&self) -> bool {
+        L::bits(self.packet.absorbed) != 0
+    }
+
+    /// Where the ray starts.
+    pub fn origin(&self) -> V3<L::F> {
+        self.packet.rays.origin
+    }
+
+    /// Where it goes.
+    pub fn direction(&self) -> V3<L::F> {
+        self.packet.rays.direction
+    }
+
+    /// What its light counts for.
+    pub fn throughput(&self) -> V3<L::F> {
+        self.packet.throughput
+    }
+
+    /// Traces the ray and sends it on. Returns the number of the sphere that it met and the distance.
+    #[inline(always)]
+    pub fn advance(&mut self, l: L, tables: &Tables<L::Real>, work: &mut Work) -> (u32, f64) {
+        let mut stats = TileStats::default();
+        intersect::<L, { needs::ALL }>(l, tables, &mut self.packet, &mut self.stack, &mut stats);
+        let mut sphere = [0; MAX_LANES];
+        let mut distance = [L::Real::default(); MAX_LANES];
+        L::store_u(self.packet.nearest.sphere, &mut sphere);
+        L::store(L::from_key(self.packet.nearest.key), &mut distance);
+        shade::<L, { needs::ALL }>(l, tables, &mut self.packet, work, &mut stats);
+        (sphere[0], distance[0].to_f64())
+    }
+
+    /// Ends an absorbed path.
+    #[inline(always)]
+    pub fn finish(&mut self, l: L, tables: &Tables<L::Real>, work: &mut Work) {
+        if self.is_alive() {
+            self.advance(l, tables, work);
+        }
+    }
+}
+
 /// Finds what the rays of a packet meet first. Returns the lanes that are alive.
 #[inline(always)]
 fn intersect<L: Lanes, const NEEDS: u32>(
@@ -163,6 +227,38 @@ fn intersect<L: Lanes, const NEEDS: u32>(
     alive
 }
 
+/// Which row of the table each lane looks up.
+enum Rows<L: Lanes> {
+    /// Few enough that a column fits a register.
+    Permuted(L::U),
+    /// By their number in memory.
+    Gathered([u32; MAX_LANES]),
+}
+
+impl<L: Lanes> Rows<L> {
+    #[inline(always)]
+    fn of(_: L, tables: &Tables<L::Real>, numbers: L::U) -> Self {
+        if tables.rows.len() <= L::PERMUTED_ROWS {
+            return Rows::Permuted(numbers);
+        }
+        let mut stored = [0; MAX_LANES];
+        L::store_u(numbers, &mut stored);
+        Rows::Gathered(stored)
+    }
+
+    /// Columns `4 group ..`.
+    #[inline(always)]
+    fn columns(&self, l: L, tables: &Tables<L::Real>, group: usize) -> [L::F; 4] {
+        match self {
+            Rows::Permuted(numbers) => {
+                let column = |offset: usize| l.permute(&tables.columns[4 * group + offset], *numbers);
+                [column(0), column(1), column(2), column(3)]
+            }
+            Rows::Gathered(stored) => l.gather(&tables.rows, stored, group),
+        }
+    }
+}
+
 /// Ends paths or sends them on, and starts the next sample in lanes whose path has ended.
 #[inline(always)]
 fn shade<L: Lanes, const NEEDS: u32>(
@@ -180,16 +276,15 @@ fn shade<L: Lanes, const NEEDS: u32>(
     let direction = packet.rays.direction;
 
     // What was hit, and where.
-    let mut rows = [0; MAX_LANES];
-    L::store_u(L::select_u(miss, l.splat_u(0), hit), &mut rows);
-    let [cx, cy, cz, curvature] = l.gather(&tables.rows, &rows, 0);
-    let [red, green, blue, weight] = l.gather(&tables.rows, &rows, 1);
-    let [radius, index, inverse_index, normal_share] = l.gather(&tables.rows, &rows, 2);
+    let rows = Rows::of(l, tables, L::select_u(miss, l.splat_u(0), hit));
+    let [cx, cy, cz, curvature] = rows.columns(l, tables, 0);
+    let [red, green, blue, weight] = rows.columns(l, tables, 1);
+    let [radius, index, inverse_index, normal_share] = rows.columns(l, tables, 2);
     let reference = V3 { x: cx, y: cy, z: cz };
     let t = L::from_key(packet.nearest.key);
     let mut point = surface_point(l, &packet.rays, t, reference, curvature, radius);
     if NEEDS & needs::ANCHORED != 0 && !tables.anchored.is_empty() {
-        let [mx, my, mz, is_anchored] = l.gather(&tables.rows, &rows, 3);
+        let [mx, my, mz, is_anchored] = rows.columns(l, tables, 3);
         let inward = V3 { x: mx, y: my, z: mz };
         let far = anchored_surface_point(l, &packet.rays, t, reference, inward, curvature);
         let is_anchored = L::lt(zero, is_anchored);
