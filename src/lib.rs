@@ -11,6 +11,7 @@ pub mod progressive;
 pub mod recipe;
 pub mod render;
 pub mod render_cpu;
+pub mod render_gpu;
 pub mod sampling;
 pub mod scene;
 pub mod stages;

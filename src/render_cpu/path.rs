@@ -20,7 +20,7 @@ use super::work::{LaneState, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::render::SamplerKind;
 use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
-use crate::tables::{Real, Tables};
+use crate::tables::{NEAR_ZERO, Real, Tables};
 
 /// Code that a kernel may carry, as bits of its constant parameter.
 pub mod needs {
@@ -40,9 +40,6 @@ pub mod needs {
 
 /// Packets that take turns. Fewer leave the processor waiting (2: -10 %, 1: -35 %), more gain nothing.
 const PACKETS: usize = 4;
-
-/// Below this squared length, the normal plus a unit vector is a rounding error, and the normal stands in.
-const NEAR_ZERO: f64 = 1e-14;
 
 struct Packet<L: Lanes> {
     rays: Rays<L>,

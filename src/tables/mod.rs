@@ -16,6 +16,12 @@ use hierarchy::Hierarchy;
 /// and the hierarchy with 48, by a tenth; between 12 and 32 they were alike.
 const HIERARCHY_MIN_SPHERES: usize = 24;
 
+/// In place of a sphere's number: no sphere.
+pub const NONE: u32 = u32::MAX;
+
+/// Below this squared length, the normal plus a unit vector is a rounding error, and the normal stands in.
+pub const NEAR_ZERO: f64 = 1e-14;
+
 /// A sphere is anchored when rounding at its radius, `f32::EPSILON / 2` of it, exceeds this share of the
 /// scene's smallest length. At that point the perpendicular form's distances are off by some `1e-4` of that
 /// length.
