@@ -201,17 +201,17 @@ pub fn view_ray(camera: &Camera, width: u32, height: u32, x: f64, y: f64) -> (DV
 }
 
 /// How two renderers differ on the same samples.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Paired {
-    pub samples: u64,
     pub bias: f64,
+    #[expect(dead_code, reason = "printed")]
     pub rms: f64,
     /// Share of the samples with a channel that is off by more than 1e-3.
     pub outliers: f64,
-    pub outlier_count: u64,
     /// Root mean square of the samples that are no outliers.
     pub inlier_rms: f64,
     /// Root mean square of the pixels' means.
+    #[expect(dead_code, reason = "printed")]
     pub pixel_rms: f64,
 }
 
@@ -243,11 +243,9 @@ pub fn paired(job: &RenderJob, samples: u64, a: &mut CpuRenderer, b: &mut CpuRen
     let values = (3 * paths) as f64;
     let pixel_squares: f64 = pixel_sums.iter().flatten().map(|x| (x / samples as f64).powi(2)).sum();
     Paired {
-        samples: paths,
         bias: sum / values,
         rms: (squares / values).sqrt(),
         outliers: outliers as f64 / paths as f64,
-        outlier_count: outliers,
         inlier_rms: (inlier_squares / values).sqrt(),
         pixel_rms: (pixel_squares / (3 * pixels) as f64).sqrt(),
     }
