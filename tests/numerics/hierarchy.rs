@@ -17,6 +17,11 @@ use weekender::tables::hierarchy::Hierarchy;
 fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> Vec<Sphere> {
     let mut spheres: Vec<Sphere> = Vec::with_capacity(count);
     for index in 0..count {
+        if index % 8 == 7 {
+            // The same sphere again: a tie.
+            spheres.push(spheres[index - 1 - (random.bits() % 7) as usize]);
+            continue;
+        }
         let radius = random.log_within(radii[0], radii[1]);
         let center = match index % 8 {
             0 if index > 0 => spheres[index - 1].center,
@@ -36,7 +41,7 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
     let index = (random.bits() % spheres.len() as u64) as usize;
     let target = spheres[index];
     let aim = target.center + random.direction() * target.radius * random.within(0.0, 1.001);
-    match random.bits() % 4 {
+    match random.bits() % 5 {
         // From the surface of a sphere outwards, or inwards.
         kind @ (0 | 1) => {
             let from = ray(l, target.center, random.direction());
@@ -62,6 +67,14 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
                 aim - DVec3::from_array(direction) * spread * random.log_within(0.1, 100.0),
                 DVec3::from_array(direction),
             )
+        }
+        // From afar past the point where a sphere touches its box, nearly along another axis.
+        3 => {
+            let axis = (random.bits() % 3) as usize;
+            let [touching, along] = [DVec3::AXES[axis], DVec3::AXES[(axis + 1) % 3]];
+            let aim = target.center + touching * target.radius * (1.0 + random.within(-1e-6, 1e-6));
+            let direction = along + random.direction() * random.log_within(1e-9, 1e-3);
+            ray(l, aim - direction * target.radius * random.log_within(1.0, 1e4), direction)
         }
         // From afar.
         _ => {

@@ -150,7 +150,7 @@ fn ground_errors<L: Lanes>(l: L, radius: f64) -> [f64; 2] {
         let rays = ray(l, origin, DVec3::new(level * turn.cos(), down, level * turn.sin()));
         let (o, d) = (vector::<L>(rays.origin), vector::<L>(rays.direction));
         let exact = exact_ground_root(o, d, radius).unwrap();
-        let t = distance::<L>(anchored_root(l, &rays, sphere, l.splat_u(NUMBER))).expect("a hit");
+        let t = distance::<L>(anchored_root(l, &rays, sphere, l.splat_u(NUMBER))).unwrap();
         largest[0] = largest[0].max((t - exact).abs());
         let point = anchored_surface_point(
             l,
@@ -313,10 +313,10 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
         left: l.splat_u(NONE),
         inside: number,
     };
-    let chord = distance::<L>(nearest_root(l, &inner, &sphere, number)).expect("the chord's end is met");
+    let chord = distance::<L>(nearest_root(l, &inner, &sphere, number)).unwrap();
     let [center, radius] = [center.as_vec3().as_dvec3(), DVec3::splat(f64::from(radius as f32))];
     let exact = exact_roots(vector::<L>(inner.origin), vector::<L>(inner.direction), center, radius.x);
-    let [_, far] = exact.expect("a chord");
+    let [_, far] = exact.unwrap();
     Some((chord / far - 1.0).abs())
 }
 
@@ -363,7 +363,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
     let rounded_center = vector::<L>(v3(l, center));
     let mut largest = [0.0_f64; 2];
     for _ in 0..1000 {
-        let t = distance::<L>(nearest_root(l, &rays, &sphere, number)).expect("the other side");
+        let t = distance::<L>(nearest_root(l, &rays, &sphere, number)).unwrap();
         let point = surface_at(l, &rays, t, center, radius);
         let away = vector::<L>(point.position) - rounded_center;
         largest[0] = largest[0].max((away.length() / radius - 1.0).abs());

@@ -49,8 +49,8 @@ fn assert_twins<L: Lanes>(l: L) {
         let same = |found: L::U, what: &str, expected: &dyn Fn(usize) -> u32| {
             let mut row = [0; MAX_LANES];
             L::store_u(found, &mut row);
-            for lane in 0..L::WIDTH {
-                assert_eq!(row[lane], expected(lane), "{what}, lane {lane} of {}", L::WIDTH);
+            for (lane, word) in row.into_iter().enumerate().take(L::WIDTH) {
+                assert_eq!(word, expected(lane), "{what}, lane {lane} of {}", L::WIDTH);
             }
         };
         same(rng::mix32(l, la), "mix32", &|i| sampling::mix32(a[i]));
