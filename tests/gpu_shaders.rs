@@ -1,4 +1,5 @@
 //! The shaders' text: valid to naga (and tint, where it is installed), and laid out as the host has it.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::HashMap;

@@ -5,7 +5,7 @@
 //! them render the same bits, which tests hold them to.
 
 use super::Isa;
-use super::lanes::{Permute, Lanes4, Lanes8, Lanes16, Reference, Scalar};
+use super::lanes::{Lanes4, Lanes8, Lanes16, Permute, Reference, Scalar};
 use super::path::{needs, trace};
 use super::record::{PathRecord, record};
 use super::work::{TileStats, Work};

@@ -516,14 +516,19 @@ macro_rules! simd_lanes {
     };
 }
 
+simd_lanes!(Lanes4, 4, f32x4, u32x4, i32x4, mask32x4, gather4, ROWS_4, permute_4, "Four lanes of `f32`.");
+simd_lanes!(Lanes8, 8, f32x8, u32x8, i32x8, mask32x8, gather8, ROWS_8, permute_8, "Eight lanes of `f32`.");
 simd_lanes!(
-    Lanes4, 4, f32x4, u32x4, i32x4, mask32x4, gather4, ROWS_4, permute_4, "Four lanes of `f32`."
-);
-simd_lanes!(
-    Lanes8, 8, f32x8, u32x8, i32x8, mask32x8, gather8, ROWS_8, permute_8, "Eight lanes of `f32`."
-);
-simd_lanes!(
-    Lanes16, 16, f32x16, u32x16, i32x16, mask32x16, gather16, ROWS_16, permute_16, "Sixteen lanes of `f32`."
+    Lanes16,
+    16,
+    f32x16,
+    u32x16,
+    i32x16,
+    mask32x16,
+    gather16,
+    ROWS_16,
+    permute_16,
+    "Sixteen lanes of `f32`."
 );
 
 /// A level's instructions for choosing among the numbers of a register. A level without them has 0 rows, and
@@ -569,7 +574,8 @@ mod x86 {
             kernel!(
                 #[inline(always)]
                 fn permute(token: Avx2, column: f32x8<Avx2>, indices: u32x8<Avx2>) -> f32x8<Avx2> {
-                    std::arch::x86_64::_mm256_permutevar8x32_ps(column.into(), indices.into()).simd_into(token)
+                    std::arch::x86_64::_mm256_permutevar8x32_ps(column.into(), indices.into())
+                        .simd_into(token)
                 }
             );
             permute(self, column, indices)
