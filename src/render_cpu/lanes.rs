@@ -190,7 +190,8 @@ pub fn mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
 /// `b - a s`.
 #[inline(always)]
 pub fn neg_mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
-    V3 { x: L::neg_mul_add(a.x, s, b.x), y: L::neg_mul_add(a.y, s, b.y), z: L::neg_mul_add(a.z, s, b.z) }
+    // The factor that changes most is negated: a negated direction would be kept in registers of its own.
+    V3 { x: L::neg_mul_add(s, a.x, b.x), y: L::neg_mul_add(s, a.y, b.y), z: L::neg_mul_add(s, a.z, b.z) }
 }
 
 /// Where `m`, `a`; else `b`.

@@ -55,7 +55,7 @@ struct Packet<L: Lanes> {
     sums: [L::U; 3],
     /// Lanes that have work.
     alive: L::M,
-    /// Lanes whose path was absorbed: it ends at its next shading and is not counted as a ray.
+    /// Lanes whose path was absorbed: it ends at its next shading, adds nothing and is not counted as a ray.
     absorbed: L::M,
     slots: [u32; MAX_LANES],
 }
@@ -299,15 +299,13 @@ fn shade<L: Lanes, const NEEDS: u32>(
         front = front & !L::eq_u(packet.rays.inside, hit);
     }
     let outward = point.outward;
-    let normal = V3 {
-        x: L::select(front, outward.x, -outward.x),
-        y: L::select(front, outward.y, -outward.y),
-        z: L::select(front, outward.z, -outward.z),
-    };
+    let side = L::select(front, one, l.constant(-1.0));
+    let normal = outward.scale(side);
 
     // Light that arrives.
-    let mut ended = miss | L::eq_u(packet.bounce, l.splat_u(tables.settings.max_depth - 1));
-    let mut lit = miss;
+    let is_last = L::eq_u(packet.bounce, l.splat_u(tables.settings.max_depth - 1));
+    let mut ended = miss | is_last | packet.absorbed;
+    let mut lit = miss & !packet.absorbed;
     let sky = |middle: L::Real, slope: L::Real| {
         L::max(zero, L::mul_add(l.splat(slope), direction.y, l.splat(middle)))
     };
@@ -363,7 +361,7 @@ fn shade<L: Lanes, const NEEDS: u32>(
         pinhole_rays(l, &tables.camera, packet.screen, jitter)
     };
 
-    let incidence = L::max(zero, L::min(one, L::select(front, -outward_cosine, outward_cosine)));
+    let incidence = L::max(zero, L::min(one, -(outward_cosine * side)));
     let surface = Surface { weight, index, inverse_index, normal_share };
     let mut bounced = if NEEDS & needs::GLASS != 0 {
         scatter::<L, true>(l, &surface, rules.dielectric, direction, normal, incidence, front, unit, u0)
@@ -381,11 +379,11 @@ fn shade<L: Lanes, const NEEDS: u32>(
             albedo = V3 { x: reflectance, y: reflectance, z: reflectance };
         }
     }
-    let vanishes = L::lt(dot::<L>(bounced.direction, bounced.direction), l.constant(NEAR_ZERO));
-    bounced.direction = select3::<L>(vanishes, normal, bounced.direction);
-
     let next = select3::<L>(ended, camera.direction, bounced.direction);
-    let next = next.scale(one / L::sqrt(dot::<L>(next, next)));
+    let length2 = dot::<L>(next, next);
+    let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
+    let next = select3::<L>(vanishes, normal, next);
+    let next = next.scale(L::select(vanishes, one, one / L::sqrt(length2)));
     // A fuzzy reflection into the surface is absorbed.
     let absorbed = bounced.is_metal & !L::lt(zero, dot::<L>(next, normal)) & !ended;
     let inward = (front & bounced.refracts) | !(front | bounced.refracts);
@@ -398,11 +396,10 @@ fn shade<L: Lanes, const NEEDS: u32>(
         inside: L::select_u(inward & !ended, hit, none),
     };
     packet.throughput = V3 {
-        x: L::select(absorbed, zero, L::select(ended, one, throughput.x)),
-        y: L::select(absorbed, zero, L::select(ended, one, throughput.y)),
-        z: L::select(absorbed, zero, L::select(ended, one, throughput.z)),
+        x: L::select(ended, one, throughput.x),
+        y: L::select(ended, one, throughput.y),
+        z: L::select(ended, one, throughput.z),
     };
-    packet.bounce = L::select_u(absorbed, l.splat_u(tables.settings.max_depth - 1), packet.bounce);
     packet.absorbed = absorbed;
 }
 
