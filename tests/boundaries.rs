@@ -17,7 +17,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("tables", &["scene", "stages", "film", "render"]),
     ("render_cpu", &["stages", "film", "render", "record", "sampling", "tables"]),
     ("render_gpu", &["stages", "film", "render", "record", "sampling", "tables"]),
-    ("backends", &["render", "render_cpu", "render_gpu"]),
+    ("backends", &["film", "render", "render_cpu", "render_gpu"]),
     ("progressive", &["film", "render", "backends"]),
     ("failure", &[]),
     (

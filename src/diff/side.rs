@@ -32,9 +32,12 @@ pub enum SideError {
     Cpu(#[from] CpuError),
     /// There is no GPU to be had.
     #[error(
-        "the side gpu cannot be had: {0}. To compare what is there, choose other sides, such as --sides cpu,reference or --sides cpu,baseline"
+        "the side gpu cannot be had: {reason}. Other sides can be compared: --sides cpu,reference or --sides cpu,baseline"
     )]
-    Gpu(#[from] GpuError),
+    Gpu {
+        /// Why, with the adapters that there are.
+        reason: GpuError,
+    },
 }
 
 impl Side {
@@ -61,7 +64,8 @@ impl Side {
                 tracer: Tracer::Cpu(CpuRenderer::reference(None)?, None),
             },
             SideChoice::Gpu(options) => {
-                let renderer = GpuRenderer::new(options.clone())?;
+                let renderer =
+                    GpuRenderer::new(options.clone()).map_err(|reason| SideError::Gpu { reason })?;
                 Side {
                     name: "gpu".to_owned(),
                     about: format!("gpu, {}", renderer.adapter()),

@@ -90,12 +90,14 @@ fn row(
         Quantity::Departure => "then",
         Quantity::Radiance => "radiance",
     };
-    let difference = match quantity {
-        // A side that has no distance has met nothing, which the row before says.
-        Quantity::Distance if values.iter().any(Option::is_none) => f64::INFINITY,
-        _ => amount(told.job, told.paths, bounce, quantity),
+    // Where a side has no value, the row of what it met says why.
+    let difference = amount(told.job, told.paths, bounce, quantity);
+    let sign = if values.iter().all(Option::is_some) {
+        sign(difference, told.tolerance, paint)
+    } else {
+        " ".to_owned()
     };
-    let [a, b] = values.map(|value| cut(&value.unwrap_or_else(|| "-".to_owned()), COLUMN));
+    let [a, b] = values.map(|value| cut(&value.unwrap_or_default(), COLUMN));
     let is = |found: Option<super::compare::Difference>| {
         found.filter(|found| (found.bounce, found.quantity) == (bounce, quantity))
     };
@@ -104,10 +106,9 @@ fn row(
     line(
         text,
         &format!(
-            "{}{}{a:COLUMN$} {} {b}",
+            "{}{}{a:COLUMN$} {sign} {b}",
             paint.paint(Tone::Bad, mark),
             paint.paint(tone, &format!("{label:width$}", width = LABEL - 2)),
-            sign(difference, told.tolerance, paint)
         ),
     );
     if let Some(difference) = marked {
@@ -158,8 +159,8 @@ fn value(told: &Told, path: &PathRecord, bounce: usize, quantity: Quantity) -> O
         Quantity::Object => Some(match ray.hit {
             None => "the sky".to_owned(),
             Some(hit) => match told.material(hit.sphere) {
-                Some((name, kind)) => format!("sphere {}: {name} ({kind})", hit.sphere),
-                None => format!("sphere {}", hit.sphere),
+                Some((name, kind)) => format!("#{} {name} ({kind})", hit.sphere),
+                None => format!("#{}", hit.sphere),
             },
         }),
         Quantity::Distance => ray.hit.map(|hit| number(hit.distance).trim_start().to_owned()),
@@ -207,7 +208,7 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 
 fn line(text: &mut String, content: &str) {
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{content}");
+    let _ = writeln!(text, "{}", content.trim_end());
 }
 
 #[cfg(test)]
