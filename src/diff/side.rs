@@ -20,7 +20,7 @@ pub struct Side {
 
 enum Tracer {
     /// With the level of its records; `None` is the reference.
-    Cpu(CpuRenderer, Option<Isa>),
+    Cpu(Box<CpuRenderer>, Option<Isa>),
     Gpu(Box<GpuRenderer>),
 }
 
@@ -55,13 +55,13 @@ impl Side {
                 Side {
                     name: format!("cpu {isa}"),
                     about: format!("cpu {isa}, f32, multiply and add {rounding}"),
-                    tracer: Tracer::Cpu(renderer, Some(isa)),
+                    tracer: Tracer::Cpu(Box::new(renderer), Some(isa)),
                 }
             }
             SideChoice::Reference => Side {
                 name: "reference".to_owned(),
                 about: "reference, f64 on the CPU".to_owned(),
-                tracer: Tracer::Cpu(CpuRenderer::reference(None)?, None),
+                tracer: Tracer::Cpu(Box::new(CpuRenderer::reference(None)?), None),
             },
             SideChoice::Gpu(options) => {
                 let renderer =
@@ -99,7 +99,7 @@ impl Side {
         let settings = job.settings();
         let mut film = Film::try_new(settings.width, settings.height, settings.half_count())?;
         let renderer: &mut dyn Renderer = match &mut self.tracer {
-            Tracer::Cpu(renderer, _) => renderer,
+            Tracer::Cpu(renderer, _) => renderer.as_mut(),
             Tracer::Gpu(renderer) => renderer.as_mut(),
         };
         renderer.accumulate(job, sample..sample + 1, &mut film, &AtomicBool::new(false))?;

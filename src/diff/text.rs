@@ -128,7 +128,10 @@ pub fn closing(told: &Told, comparison: &Comparison, paint: Paint) -> String {
     line(&mut text, &format!("{label}{a:COLUMN$} {sign} {b}"));
     let [a, b] = told.paths.map(|path| path.radiance);
     let by = vector([b[0] - a[0], b[1] - a[1], b[2] - a[2]]);
-    let share = format!("{:.1e} of the larger", comparison.radiance);
+    let share = match comparison.radiance {
+        share if share < 1e-3 => format!("{share:.1e} of the larger"),
+        share => format!("{:.1} % of the larger", 100.0 * share),
+    };
     line(&mut text, &format!("{:LABEL$}{by:COLUMN$}   {share}", "difference"));
     let tone = if comparison.first.is_some() { Tone::Bad } else { Tone::Good };
     for (index, part) in wrapped(&told.verdict(comparison), WIDTH - LABEL).iter().enumerate() {
