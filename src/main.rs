@@ -16,6 +16,6 @@ fn run() -> Result<ExitCode, Failure> {
         Request::SaveScene(options) => batch::save_scene(&options),
         Request::Merge(options) => batch::merge(&options),
         Request::Diff(options) => diff::run(&options),
-        Request::Batch(options) => batch::run(options),
+        Request::Batch(options) => batch::run(*options),
     }
 }

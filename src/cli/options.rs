@@ -205,16 +205,16 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
         _ => None,
     };
     match save_scene {
-        Some(options) if !raw.batch => Ok(Request::SaveScene(options)),
+        Some(options) if !raw.batch => Ok(Request::SaveScene(Box::new(options))),
         _ if !raw.batch => Ok(Request::Window),
-        save_scene => Ok(Request::Batch(BatchOptions {
+        save_scene => Ok(Request::Batch(Box::new(BatchOptions {
             renders,
             directory,
             save_scene,
             backend,
             progress: raw.progress,
             json: raw.json.map(json_target),
-        })),
+        }))),
     }
 }
 
