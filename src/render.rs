@@ -282,6 +282,11 @@ pub trait Renderer: Send {
         Duration::ZERO
     }
 
+    /// What the prepared job's kernel contains, and what making it took, in words.
+    fn kernel(&self) -> String {
+        String::new()
+    }
+
     /// Builds what tracing `job` needs (tables, hierarchy, kernels). Later calls for an equal job do nothing.
     ///
     /// # Errors

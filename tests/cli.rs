@@ -134,7 +134,8 @@ fn names_that_do_not_exist_are_refused() {
     refused(&["--batch", "--stage", "glass-schlik"], &["glass-schlik", "glass-schlick"]);
     refused(&["--batch", "--scene", "book", "--stage", "book"], &["--scene", "--stage"]);
     refused(&["--batch", "--device", "tpu"], &["tpu", "cpu"]);
-    refused(&["--batch", "--device", "gpu"], &["gpu", "--device cpu"]);
+    refused(&["--batch", "--adapter", "no-such-adapter"], &["adapter"]);
+    refused(&["--batch", "--device", "cpu", "--adapter", "any"], &["--adapter", "--device cpu"]);
     refused(&["--batch", "--simd", "3"], &["3", "16"]);
     refused(&["--batch", "--isa", "mmx"], &["mmx", "avx2"]);
     refused(&["--batch", "--device", "reference", "--simd", "8"], &["--simd", "reference"]);

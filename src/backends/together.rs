@@ -105,6 +105,10 @@ impl Renderer for Together {
         self.messages.drain(..).chain(members).collect()
     }
 
+    fn kernel(&self) -> String {
+        self.members.iter().map(|member| member.renderer.kernel()).collect::<Vec<_>>().join(" | ")
+    }
+
     fn hierarchy_time(&self) -> Duration {
         self.members.iter().map(|member| member.renderer.hierarchy_time()).sum()
     }

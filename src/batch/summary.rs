@@ -57,6 +57,7 @@ pub(super) struct Summary {
     device: Option<String>,
     lanes: Option<usize>,
     threads: Option<usize>,
+    kernel: String,
     samples_per_pixel: u64,
     sample_ranges: String,
     added_samples_per_pixel: u64,
@@ -105,6 +106,7 @@ impl Summary {
             device: backend.map(|info| info.device.clone()),
             lanes: backend.map(|info| info.lanes),
             threads: backend.map(|info| info.threads),
+            kernel: status.kernel.clone(),
             samples_per_pixel: status.samples_per_pixel,
             sample_ranges: film.map_or_else(String::new, |film| film.samples().to_string()),
             added_samples_per_pixel: status.contributions.iter().map(|part| part.samples_per_pixel).sum(),
@@ -146,6 +148,7 @@ impl fmt::Display for Summary {
         if let (Some(backend), Some(device)) = (self.backend, &self.device) {
             let [lanes, threads] = [self.lanes, self.threads].map(Option::unwrap_or_default);
             writeln!(f, "backend  {backend} {device}, {lanes} lanes, {threads} threads")?;
+            writeln!(f, "kernel   {}", self.kernel)?;
         }
         if self.backends.len() > 1 {
             let part = |c: &Contribution| {

@@ -74,6 +74,8 @@ pub struct Status {
     pub stats: Stats,
     /// Wall time of preparing.
     pub prepare: Duration,
+    /// What the kernel in use contains, in words.
+    pub kernel: String,
     /// Of that, wall time of building the hierarchy.
     pub hierarchy: Duration,
     /// Wall time of passes.

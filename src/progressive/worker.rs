@@ -309,6 +309,7 @@ impl Render {
             Ok(mut ready) => {
                 self.status.backend = Some(ready.renderer.info());
                 self.status.say(ready.renderer.take_messages());
+                self.status.kernel = ready.renderer.kernel();
                 self.status.hierarchy += ready.renderer.hierarchy_time();
                 self.status.prepare += ready.took;
                 self.choice = upcoming.choice.clone();
@@ -374,6 +375,7 @@ impl Render {
             renderer.prepare(&self.job)?;
             self.status.backend = Some(renderer.info());
             self.status.say(renderer.take_messages());
+            self.status.kernel = renderer.kernel();
             self.status.hierarchy += renderer.hierarchy_time();
             self.is_prepared = true;
             self.status.phase = Phase::Tracing;

@@ -36,10 +36,35 @@ pub fn needs_of<R>(features: &Features, tables: &Tables<R>) -> u32 {
         | bit(features.stage_rules, needs::RULES)
 }
 
+/// What a kernel has code for, in words.
+pub fn contents(needed: u32) -> String {
+    let parts = [
+        (needs::GLASS, "glass"),
+        (needs::LENS, "lens"),
+        (needs::ANCHORED, "anchored spheres"),
+        (needs::HIERARCHY, "hierarchy"),
+        (needs::RULES, "stage rules"),
+    ];
+    let present: Vec<&str> =
+        parts.iter().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| *name).collect();
+    if present.is_empty() { "opaque spheres, pinhole".to_owned() } else { present.join(", ") }
+}
+
+/// The least kernel that has the code `needed`, at a level's own lane count; the general one at the others.
+pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
+    let variants: &[u32] = match (isa, lanes == isa.native_lanes()) {
+        (Isa::Sse42 | Isa::Neon, true) => &[GLASS],
+        (Isa::Avx2 | Isa::Avx512, true) => &[OPAQUE, GLASS, FINISHED],
+        _ => &[],
+    };
+    variants.iter().copied().find(|variant| within(needed, *variant)).unwrap_or(GENERAL)
+}
+
 /// A kernel of a level and lane count that has at least the code `needed`.
 /// `None` if the processor lacks the level or the level has no such lane count.
 pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     let level = Level::new();
+    let offered = offered(isa, lanes, needed);
     match (isa, lanes) {
         (Isa::Baseline, 1) => {
             Some(Box::new(|tables, work| trace::<_, GENERAL>(Scalar::<false>, tables, work)))
@@ -49,7 +74,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
             let simd = level.as_sse4_2()?;
             match lanes {
                 1 => Some(scalar::<_, false>(simd)),
-                4 if within(needed, GLASS) => Some(four::<_, GLASS>(simd)),
+                4 if offered == GLASS => Some(four::<_, GLASS>(simd)),
                 4 => Some(four::<_, GENERAL>(simd)),
                 8 => Some(eight::<_, GENERAL>(simd)),
                 _ => None,
@@ -61,9 +86,9 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
             match lanes {
                 1 => Some(scalar::<_, true>(simd)),
                 4 => Some(four::<_, GENERAL>(simd)),
-                8 if within(needed, OPAQUE) => Some(eight::<_, OPAQUE>(simd)),
-                8 if within(needed, GLASS) => Some(eight::<_, GLASS>(simd)),
-                8 if within(needed, FINISHED) => Some(eight::<_, FINISHED>(simd)),
+                8 if offered == OPAQUE => Some(eight::<_, OPAQUE>(simd)),
+                8 if offered == GLASS => Some(eight::<_, GLASS>(simd)),
+                8 if offered == FINISHED => Some(eight::<_, FINISHED>(simd)),
                 8 => Some(eight::<_, GENERAL>(simd)),
                 16 => Some(sixteen::<_, GENERAL>(simd)),
                 _ => None,
@@ -72,10 +97,10 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
         #[cfg(target_arch = "x86_64")]
         (Isa::Avx512, 16) => {
             let simd = level.as_avx512()?;
-            Some(match needed {
-                n if within(n, OPAQUE) => sixteen::<_, OPAQUE>(simd),
-                n if within(n, GLASS) => sixteen::<_, GLASS>(simd),
-                n if within(n, FINISHED) => sixteen::<_, FINISHED>(simd),
+            Some(match offered {
+                OPAQUE => sixteen::<_, OPAQUE>(simd),
+                GLASS => sixteen::<_, GLASS>(simd),
+                FINISHED => sixteen::<_, FINISHED>(simd),
                 _ => sixteen::<_, GENERAL>(simd),
             })
         }
@@ -84,7 +109,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
             let simd = level.as_neon()?;
             match lanes {
                 1 => Some(scalar::<_, true>(simd)),
-                4 if within(needed, GLASS) => Some(four::<_, GLASS>(simd)),
+                4 if offered == GLASS => Some(four::<_, GLASS>(simd)),
                 4 => Some(four::<_, GENERAL>(simd)),
                 8 => Some(eight::<_, GENERAL>(simd)),
                 _ => None,

@@ -136,6 +136,18 @@ impl Renderer for CpuRenderer {
         }
     }
 
+    fn kernel(&self) -> String {
+        let Some(job) = &self.job else { return String::new() };
+        match (self.packets, &self.prepared) {
+            (Some((isa, lanes)), Some(Prepared::Single(tables, _))) => {
+                let needed = kernels::needs_of(&job.features(), tables);
+                kernels::contents(kernels::offered(isa, lanes, needed))
+            }
+            (_, Some(_)) => kernels::contents(path::needs::ALL),
+            (_, None) => String::new(),
+        }
+    }
+
     fn hierarchy_time(&self) -> Duration {
         match &self.prepared {
             Some(Prepared::Single(tables, _)) => tables.hierarchy_time,

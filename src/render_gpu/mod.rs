@@ -127,6 +127,8 @@ pub struct GpuReport {
     pub features: String,
     /// What compiling it took.
     pub compile_time: Duration,
+    /// What building the hierarchy took.
+    pub hierarchy_time: Duration,
     /// Dispatches so far.
     pub dispatches: u64,
     /// What they took together.
@@ -171,6 +173,7 @@ pub struct GpuRenderer {
     words_group: wgpu::BindGroup,
     prepared: Option<Prepared>,
     report: GpuReport,
+    messages: Vec<String>,
 }
 
 fn failed(reason: String) -> RenderError {
@@ -191,6 +194,12 @@ impl GpuRenderer {
         let words_group = gpu.bind(&gpu.layouts.words, &[&nothing]);
         let timer = if timers.len() == QUEUE_DEPTH { "timestamp queries" } else { "wall clock" };
         let report = GpuReport { timer, ..GpuReport::default() };
+        let messages = if gpu.adapter.is_software {
+            let adapter = &gpu.adapter;
+            vec![format!("{adapter} is no GPU: the processor does its work, slower than with --device cpu")]
+        } else {
+            Vec::new()
+        };
         Ok(GpuRenderer {
             gpu,
             options,
@@ -199,6 +208,7 @@ impl GpuRenderer {
             words_group,
             prepared: None,
             report,
+            messages,
         })
     }
 
@@ -225,6 +235,7 @@ impl GpuRenderer {
         let gpu = &self.gpu;
         gpu.faults.check()?;
         let tables = Tables::<f32>::new(job);
+        self.report.hierarchy_time = tables.hierarchy_time;
         if let Some(depth) = tables.hierarchy.as_ref().map(|h| h.depth()).filter(|d| *d > STACK_SIZE) {
             return Err(format!(
                 "the hierarchy has {depth} levels, the kernel room for {STACK_SIZE}; render this scene on the CPU"
@@ -665,6 +676,19 @@ impl Renderer for GpuRenderer {
             lanes: layout::WORKGROUP_SIZE as usize,
             threads: 1,
         }
+    }
+
+    fn take_messages(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.messages)
+    }
+
+    fn hierarchy_time(&self) -> Duration {
+        self.report.hierarchy_time
+    }
+
+    fn kernel(&self) -> String {
+        let GpuReport { features, compile_time, timer, .. } = &self.report;
+        format!("{features}; compiled in {:.3} s; dispatches timed by {timer}", compile_time.as_secs_f64())
     }
 
     fn prepare(&mut self, job: &RenderJob) -> Result<(), RenderError> {
