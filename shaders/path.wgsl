@@ -44,6 +44,9 @@ fn trace(position: vec2u, slot: u32) -> Traced {
             if RAYS {
                 nearest = intersect(path.ray);
             }
+            if RECORD {
+                record_ray(rays, path, nearest);
+            }
             rays++;
         }
 

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
-use weekender::{app, batch};
+use weekender::{app, batch, diff};
 
 fn main() -> ExitCode {
     run().unwrap_or_else(|failure| failure.report())
@@ -15,6 +15,7 @@ fn run() -> Result<ExitCode, Failure> {
         Request::List => batch::list(),
         Request::SaveScene(options) => batch::save_scene(&options),
         Request::Merge(options) => batch::merge(&options),
+        Request::Diff(options) => diff::run(&options),
         Request::Batch(options) => batch::run(*options),
     }
 }

@@ -5,7 +5,10 @@ mod raw;
 mod sources;
 mod values;
 
-pub use options::{BatchOptions, JsonTarget, MergeOptions, RenderOptions, SaveSceneOptions};
+pub use options::{
+    BatchOptions, DiffOptions, JsonTarget, MergeOptions, PathChoice, RenderOptions, SaveSceneOptions,
+    SideChoice,
+};
 pub use raw::ProgressChoice;
 pub use sources::CliError;
 
@@ -25,6 +28,8 @@ pub enum Request {
     SaveScene(Box<SaveSceneOptions>),
     /// Add films.
     Merge(MergeOptions),
+    /// Compare a path.
+    Diff(Box<DiffOptions>),
     /// Render to files.
     Batch(Box<BatchOptions>),
 }
@@ -37,6 +42,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     let raw = Raw::try_parse_from(arguments).map_err(Failure::CommandLine)?;
     match raw.command {
         Some(RawCommand::Merge { films, out }) => Ok(Request::Merge(MergeOptions { films, out })),
+        Some(RawCommand::Diff(raw)) => {
+            options::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)
+        }
         None if raw.render.list => Ok(Request::List),
         None => options::request(raw.render).map_err(Failure::input),
     }

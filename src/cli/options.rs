@@ -1,15 +1,15 @@
 //! Options that can be carried out, and how flags become them.
 
 use super::Request;
-use super::raw::{ProgressChoice, RawDevice, RawRender};
+use super::raw::{ProgressChoice, RawDevice, RawDiff, RawRender};
 use super::sources::{self, CliError, Source};
-use super::values::{Level, Simd};
+use super::values::{Level, RawSide, Simd};
 use crate::backends::BackendChoice;
 use crate::output::OutputFormat;
 use crate::progressive::Plan;
 use crate::recipe::Recipe;
 use crate::render::{RenderJob, SAMPLE_LIMIT};
-use crate::render_cpu::CpuOptions;
+use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
 use crate::stages::Stage;
 use std::path::{Path, PathBuf};
@@ -78,11 +78,114 @@ pub struct MergeOptions {
     pub out: PathBuf,
 }
 
+/// A path that is traced twice and compared.
+#[derive(Clone, Debug)]
+pub struct DiffOptions {
+    /// What the job is called.
+    pub scene: String,
+    /// The job; that of a search is small unless a size was asked for.
+    pub job: RenderJob,
+    /// Which path.
+    pub path: PathChoice,
+    /// Who traces it.
+    pub sides: [SideChoice; 2],
+    /// Largest difference that counts as none, as a share of the larger value.
+    pub tolerance: f64,
+    /// Where both paths go as JSON.
+    pub json: Option<JsonTarget>,
+}
+
+/// Who traces a path that is compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SideChoice {
+    /// `f32` on the CPU.
+    Cpu(CpuOptions),
+    /// `f64` on the CPU.
+    Reference,
+    /// A compute shader.
+    Gpu(GpuOptions),
+}
+
+/// Which path is compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PathChoice {
+    /// This one.
+    Given {
+        /// Column and row, within the picture.
+        pixel: [u32; 2],
+        /// Index of the sample.
+        sample: u64,
+    },
+    /// That which differs most among samples `0 .. samples` of all pixels.
+    Find {
+        /// Samples of every pixel.
+        samples: u64,
+    },
+}
+
+/// Width that a search makes a picture at most, pixels.
+const FIND_WIDTH: u32 = 200;
+
+/// What `weekender diff` is asked for.
+pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
+    if raw.picture.stage.as_deref() == Some("all") {
+        let reason = "one path is compared; choose one stage";
+        return Err(CliError::Together { flag: "diff", other: "--stage all", reason });
+    }
+    for (flag, is_given, side, other) in [
+        ("--adapter", raw.adapter.is_some(), RawSide::Gpu, "gpu among --sides"),
+        ("--isa", raw.isa.0.is_some(), RawSide::Cpu, "cpu among --sides"),
+    ] {
+        if is_given && !raw.sides.contains(&side) {
+            return Err(CliError::Needs { flag, other, reason: "it is for that side alone; leave it out" });
+        }
+    }
+    let Source { mut recipe, stage } = sources::find(&raw.picture, None)?;
+    sources::change(&mut recipe, &raw.picture, raw.estimate_error);
+    let settings = &mut recipe.settings;
+    if raw.find.is_some() && raw.picture.size.is_none() && settings.width > FIND_WIDTH {
+        let height = f64::from(settings.height) * f64::from(FIND_WIDTH) / f64::from(settings.width);
+        (settings.width, settings.height) = (FIND_WIDTH, (height.round() as u32).max(1));
+    }
+    let (width, height) = (settings.width, settings.height);
+    let path = match (raw.find, raw.pixel) {
+        (Some(samples), _) => PathChoice::Find { samples },
+        (None, pixel) => {
+            let [x, y] = pixel.unwrap_or_default();
+            if x >= width || y >= height {
+                return Err(CliError::Pixel { x, y, width, height });
+            }
+            PathChoice::Given { pixel: [x, y], sample: raw.sample }
+        }
+    };
+    let sides = raw.sides.map(|side| match side {
+        RawSide::Cpu => SideChoice::Cpu(CpuOptions { isa: raw.isa.0, ..CpuOptions::default() }),
+        RawSide::Baseline => {
+            SideChoice::Cpu(CpuOptions { isa: Some(Isa::Baseline), ..CpuOptions::default() })
+        }
+        RawSide::Reference => SideChoice::Reference,
+        RawSide::Gpu => SideChoice::Gpu(GpuOptions {
+            adapter: raw.adapter.clone(),
+            // Whoever names a software adapter wants it.
+            allow_software: raw.adapter.is_some(),
+            ..GpuOptions::default()
+        }),
+    });
+    Ok(DiffOptions {
+        scene: stage.map_or(recipe.name.clone(), |stage| stage.id.to_owned()),
+        job: recipe.job()?,
+        path,
+        sides,
+        tolerance: raw.tolerance,
+        json: raw.json.map(json_target),
+    })
+}
+
 /// What the flags ask for, but `--list` and the subcommands.
 pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
     let backend = backend(&raw)?;
     check_film_names(&raw)?;
-    let (renders, directory) = if raw.stage.as_deref() == Some("all") {
+    let (renders, directory) = if raw.picture.stage.as_deref() == Some("all") {
         let directory = directory_of_all(&raw)?;
         let renders = Stage::ALL
             .iter()
@@ -93,7 +196,7 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
             .collect::<Result<_, _>>()?;
         (renders, Some(directory))
     } else {
-        let source = sources::find(&raw)?;
+        let source = sources::find(&raw.picture, raw.resume.as_deref())?;
         let out = raw.out.clone().unwrap_or_else(|| default_name(&source));
         (vec![render(source, &raw, out)?], None)
     };
@@ -116,7 +219,8 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
 }
 
 fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
-    sources::change(&mut source.recipe, raw);
+    sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
     let job = source.recipe.job()?;
     if raw.noise_target.is_some() && !source.recipe.settings.estimate_error {
         return Err(CliError::Needs {

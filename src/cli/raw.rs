@@ -1,8 +1,8 @@
 //! The flags as they are typed. What they mean together is found out in `options`.
 
 use super::values::{
-    Level, Simd, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds, parse_simd,
-    parse_size, parse_vector,
+    Level, RawSide, Simd, parse_isa, parse_number, parse_pixel, parse_rmse, parse_sample_range,
+    parse_seconds, parse_sides, parse_simd, parse_size, parse_tolerance, parse_vector,
 };
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -31,6 +31,10 @@ pub(super) enum RawCommand {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
+    /// Show one path as two backends trace it, side by side, and where they part
+    ///
+    /// The exit code is 0 where the two agree, 1 where they differ and 2 where they could not be compared.
+    Diff(Box<RawDiff>),
 }
 
 #[derive(Debug, Args)]
@@ -42,52 +46,8 @@ pub(super) struct RawRender {
     #[arg(long)]
     pub list: bool,
 
-    /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "stage", help_heading = "Picture")]
-    pub scene: Option<String>,
-    /// A stage of the book; "all" renders every one into the directory --out
-    #[arg(long, value_name = "ID", help_heading = "Picture")]
-    pub stage: Option<String>,
-    /// Width and height in pixels, each 1 to 16384 [default: the scene's]
-    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Picture")]
-    pub size: Option<(u32, u32)>,
-    /// Most rays of a path, the camera's included, 1 to 10000 [default: the scene's]
-    #[arg(long, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(1..=i64::from(DEPTH_LIMIT)),
-          allow_hyphen_values = true, help_heading = "Picture")]
-    pub depth: Option<u32>,
-    /// Where random numbers come from: scrambled Sobol points, or independent ones as in the book
-    /// [default: sobol, or the scene's]
-    #[arg(long, value_enum, help_heading = "Picture")]
-    pub sampler: Option<RawSampler>,
-    /// Chooses among pictures that differ in noise alone, 0 to 4294967295 [default: 0, or the scene's]
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..),
-          allow_hyphen_values = true, help_heading = "Picture")]
-    pub seed: Option<u32>,
-
-    /// The eye, scene units
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
-          help_heading = "Camera (default: the scene's)")]
-    pub look_from: Option<DVec3>,
-    /// A point in the middle of the picture, scene units
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
-          help_heading = "Camera (default: the scene's)")]
-    pub look_at: Option<DVec3>,
-    /// What is up in the picture; its length does not matter
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
-          help_heading = "Camera (default: the scene's)")]
-    pub vup: Option<DVec3>,
-    /// Vertical field of view, 0.01 to 179 degrees
-    #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
-          help_heading = "Camera (default: the scene's)")]
-    pub vfov: Option<f64>,
-    /// Angle of the cone from the focus point to the lens, 0 (a pinhole) to below 179 degrees
-    #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
-          help_heading = "Camera (default: the scene's)")]
-    pub defocus_angle: Option<f64>,
-    /// Distance to the plane that is sharp, more than 0 scene units
-    #[arg(long, value_name = "UNITS", value_parser = parse_number, allow_hyphen_values = true,
-          help_heading = "Camera (default: the scene's)")]
-    pub focus_distance: Option<f64>,
+    #[command(flatten)]
+    pub picture: RawPicture,
 
     /// Samples per pixel, 1 to 4294967296 [default: the scene's; no limit with --time-limit or --noise-target]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
@@ -152,6 +112,101 @@ pub(super) struct RawRender {
     /// Progress on standard error; auto: when it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
+}
+
+/// What is rendered, for rendering and comparing alike.
+#[derive(Debug, Args)]
+pub(super) struct RawPicture {
+    /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "stage", help_heading = "Picture")]
+    pub scene: Option<String>,
+    /// A stage of the book; "all" renders every one into the directory --out
+    #[arg(long, value_name = "ID", help_heading = "Picture")]
+    pub stage: Option<String>,
+    /// Width and height in pixels, each 1 to 16384 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Picture")]
+    pub size: Option<(u32, u32)>,
+    /// Most rays of a path, the camera's included, 1 to 10000 [default: the scene's]
+    #[arg(long, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(1..=i64::from(DEPTH_LIMIT)),
+          allow_hyphen_values = true, help_heading = "Picture")]
+    pub depth: Option<u32>,
+    /// Where random numbers come from: scrambled Sobol points, or independent ones as in the book
+    /// [default: sobol, or the scene's]
+    #[arg(long, value_enum, help_heading = "Picture")]
+    pub sampler: Option<RawSampler>,
+    /// Chooses among pictures that differ in noise alone, 0 to 4294967295 [default: 0, or the scene's]
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..),
+          allow_hyphen_values = true, help_heading = "Picture")]
+    pub seed: Option<u32>,
+
+    /// The eye, scene units
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub look_from: Option<DVec3>,
+    /// A point in the middle of the picture, scene units
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub look_at: Option<DVec3>,
+    /// What is up in the picture; its length does not matter
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub vup: Option<DVec3>,
+    /// Vertical field of view, 0.01 to 179 degrees
+    #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub vfov: Option<f64>,
+    /// Angle of the cone from the focus point to the lens, 0 (a pinhole) to below 179 degrees
+    #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub defocus_angle: Option<f64>,
+    /// Distance to the plane that is sharp, more than 0 scene units
+    #[arg(long, value_name = "UNITS", value_parser = parse_number, allow_hyphen_values = true,
+          help_heading = "Camera (default: the scene's)")]
+    pub focus_distance: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RawDiff {
+    /// The pixel, from 0,0 at the upper left
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "find",
+          conflicts_with = "find", help_heading = "Path")]
+    pub pixel: Option<[u32; 2]>,
+    /// The sample's number, from 0
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(0..SAMPLE_LIMIT),
+          allow_hyphen_values = true, default_value = "0", conflicts_with = "find", help_heading = "Path")]
+    pub sample: u64,
+    /// Look through this many samples of every pixel for the one that differs most; without --size the picture
+    /// is made at most 200 pixels wide for it
+    #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+          num_args = 0..=1, default_missing_value = "4", help_heading = "Path")]
+    pub find: Option<u64>,
+
+    /// Who is compared: two of cpu (the level --isa), baseline (multiply and add rounded apart), reference (f64)
+    /// and gpu
+    #[arg(long, value_name = "A,B", value_parser = parse_sides, default_value = "cpu,gpu",
+          help_heading = "Comparison")]
+    pub sides: [RawSide; 2],
+    /// Largest difference that counts as none, as a share of the larger value
+    #[arg(long, value_name = "SHARE", value_parser = parse_tolerance, allow_hyphen_values = true,
+          default_value = "1e-4", help_heading = "Comparison")]
+    pub tolerance: f64,
+    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
+    pub adapter: Option<String>,
+    /// Instruction level of the side cpu: auto, baseline, sse4.2, avx2, avx512, neon
+    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
+          help_heading = "Comparison")]
+    pub isa: Level,
+    /// Write both paths and the verdict as JSON; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
+    pub json: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub picture: RawPicture,
+    /// As for rendering: whether samples are kept in two halves, which decides their numbers
+    /// [default: on, or the scene's]
+    #[arg(long, value_enum, help_heading = "Picture")]
+    pub estimate_error: Option<RawSwitch>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,6 +1,6 @@
 //! Where a picture comes from: a built-in scene, a stage, a scene file or a film; and what flags change in it.
 
-use super::raw::{RawRender, RawSwitch};
+use super::raw::{RawPicture, RawSwitch};
 use crate::film::key;
 use crate::output::{OutputError, read_description};
 use crate::recipe::{Recipe, SceneNameError, file};
@@ -49,6 +49,18 @@ pub enum CliError {
         /// Why, and what to do.
         reason: &'static str,
     },
+    /// A pixel beside the picture.
+    #[error("--pixel is {x},{y}, but the picture has {width}x{height} pixels: the last is {},{}", width - 1, height - 1)]
+    Pixel {
+        /// Column.
+        x: u32,
+        /// Row.
+        y: u32,
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
     /// Two files of one name.
     #[error("{first} and {second} are both {}; give them different names", path.display())]
     SameFile {
@@ -80,8 +92,8 @@ pub(super) struct Source {
 }
 
 /// The source that the flags name, before other flags change it.
-pub(super) fn find(raw: &RawRender) -> Result<Source, CliError> {
-    match (&raw.stage, &raw.scene, &raw.resume) {
+pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<Source, CliError> {
+    match (&raw.stage, &raw.scene, resume) {
         (Some(id), _, _) => {
             let stage = Stage::find(id)?;
             Ok(Source { recipe: stage.recipe(), stage: Some(stage) })
@@ -108,7 +120,7 @@ fn of_film(path: &Path) -> Result<Source, CliError> {
 }
 
 /// Puts the flags' values in place of the recipe's.
-pub(super) fn change(recipe: &mut Recipe, raw: &RawRender) {
+pub(super) fn change(recipe: &mut Recipe, raw: &RawPicture, estimate_error: Option<RawSwitch>) {
     fn set<T: Copy>(value: &mut T, flag: Option<T>) {
         if let Some(flag) = flag {
             *value = flag;
@@ -120,8 +132,7 @@ pub(super) fn change(recipe: &mut Recipe, raw: &RawRender) {
     set(&mut settings.max_depth, raw.depth);
     set(&mut settings.sampler, raw.sampler.map(Into::into));
     set(&mut settings.seed, raw.seed);
-    set(&mut settings.estimate_error, raw.estimate_error.map(|switch| switch == RawSwitch::On));
-    set(&mut recipe.samples_per_pixel, raw.samples);
+    set(&mut settings.estimate_error, estimate_error.map(|switch| switch == RawSwitch::On));
     let camera = &mut recipe.camera;
     set(&mut camera.look_from, raw.look_from);
     set(&mut camera.look_at, raw.look_at);

@@ -73,6 +73,45 @@ pub(super) fn parse_sample_range(text: &str) -> Result<Range<u64>, String> {
         .ok_or_else(|| format!("must be A..B with A below B and B at most {SAMPLE_LIMIT}, such as 0..64"))
 }
 
+/// Who traces a path that is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum RawSide {
+    Cpu,
+    Baseline,
+    Reference,
+    Gpu,
+}
+
+impl RawSide {
+    const ALL: [(&'static str, RawSide); 4] = [
+        ("cpu", RawSide::Cpu),
+        ("baseline", RawSide::Baseline),
+        ("reference", RawSide::Reference),
+        ("gpu", RawSide::Gpu),
+    ];
+}
+
+pub(super) fn parse_sides(text: &str) -> Result<[RawSide; 2], String> {
+    let side = |name: &str| RawSide::ALL.into_iter().find(|(known, _)| *known == name.trim()).map(|(_, s)| s);
+    text.split_once(',').and_then(|(a, b)| Some([side(a)?, side(b)?])).ok_or_else(|| {
+        let names = RawSide::ALL.map(|(name, _)| name).join(", ");
+        format!("must be two of {names} with a comma between them, such as cpu,reference")
+    })
+}
+
+pub(super) fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
+    text.split_once(',')
+        .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]))
+        .ok_or_else(|| "must be a column and a row with a comma between them, such as 120,45".to_owned())
+}
+
+pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|share: &f64| (0.0..=1.0).contains(share))
+        .ok_or_else(|| "must be within 0 and 1, such as 1e-4".to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,6 +124,9 @@ mod tests {
         assert_eq!(parse_simd("off"), Ok(Simd(Some(1))));
         assert_eq!(parse_simd("16"), Ok(Simd(Some(16))));
         assert_eq!(parse_isa("sse4.2"), Ok(Level(Some(Isa::Sse42))));
+        assert_eq!(parse_pixel("3, 4"), Ok([3, 4]));
+        assert_eq!(parse_sides("baseline,gpu"), Ok([RawSide::Baseline, RawSide::Gpu]));
+        assert_eq!(parse_tolerance("0"), Ok(0.0));
     }
 
     #[test]
@@ -102,5 +144,14 @@ mod tests {
             assert!(parse_seconds(text).is_err() && parse_rmse(text).is_err(), "{text}");
         }
         assert!(parse_simd("3").is_err() && parse_isa("mmx").is_err());
+        for text in ["", "1", "1,", "-1,2", "1,2,3", "a,b"] {
+            assert!(parse_pixel(text).is_err(), "{text}");
+        }
+        for text in ["", "cpu", "cpu,tpu", "cpu,gpu,reference"] {
+            assert!(parse_sides(text).unwrap_err().contains("baseline"), "{text}");
+        }
+        for text in ["", "-1", "nan", "2"] {
+            assert!(parse_tolerance(text).is_err(), "{text}");
+        }
     }
 }

@@ -7,8 +7,9 @@
 use super::Isa;
 use super::lanes::{Lanes4, Lanes8, Lanes16, Permute, Reference, Scalar};
 use super::path::{needs, trace};
-use super::record::{PathRecord, record};
+use super::record::record;
 use super::work::{TileStats, Work};
+use crate::record::PathRecord;
 use crate::render::Features;
 use crate::tables::Tables;
 use fearless_simd::{Level, Simd};

@@ -13,8 +13,9 @@ pub mod sphere;
 mod tiles;
 pub mod work;
 
+pub use crate::record::{PathRecord, RecordedHit, RecordedRay};
 pub use isa::Isa;
-pub use record::{PathRecord, RecordedHit, RecordedRay, record_path};
+pub use record::record_path;
 
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};

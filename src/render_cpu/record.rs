@@ -7,42 +7,10 @@ use super::lanes::{Lanes, MAX_LANES, V3};
 use super::path::SinglePath;
 use super::sphere::NONE;
 use super::work::{DealtBlock, Work};
-use crate::film::{FIXED_POINT_SCALE, PixelSum};
+use crate::film::PixelSum;
+use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use crate::render::RenderJob;
 use crate::tables::{Real, Tables};
-
-/// What a ray of a path met.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RecordedHit {
-    /// Index of the sphere in the scene.
-    pub sphere: usize,
-    /// Along the ray, scene units.
-    pub distance: f64,
-    /// Where the path went on from; `None` where it ended.
-    pub position: Option<[f64; 3]>,
-}
-
-/// A ray of a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RecordedRay {
-    /// Where it starts, scene units.
-    pub origin: [f64; 3],
-    /// Where it goes, a unit vector.
-    pub direction: [f64; 3],
-    /// What light that arrives along it counts for in the pixel, linear RGB.
-    pub throughput: [f64; 3],
-    /// `None`: it left the scene.
-    pub hit: Option<RecordedHit>,
-}
-
-/// A path, from the camera on.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PathRecord {
-    /// Rays in order, at least one unless the stage traces none.
-    pub rays: Vec<RecordedRay>,
-    /// What the sample adds to the pixel, linear RGB; black also where the sample was rejected.
-    pub radiance: [f64; 3],
-}
 
 /// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as `isa` traces it; `None`: in
 /// `f64`.
@@ -85,7 +53,7 @@ pub(super) fn record<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: [u32; 2], 
     }
     let mut total = PixelSum::default();
     sums.iter().for_each(|sum| total.add(*sum));
-    PathRecord { rays, radiance: total.0.map(|k| k as f64 / FIXED_POINT_SCALE) }
+    PathRecord { rays, radiance: total.radiance() }
 }
 
 #[inline(always)]

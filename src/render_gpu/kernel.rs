@@ -251,6 +251,7 @@ impl Kernels {
             let mut constants: Vec<(&str, f64)> =
                 overrides.constants().into_iter().map(|(name, value)| (name, value.value())).collect();
             constants.push(("PROBE", f64::from(probe)));
+            constants.push(("RECORD", f64::from(u8::from(entry_point == EntryPoint::PathRecord))));
             gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label,
                 layout: Some(&gpu.layouts.pipeline),

@@ -8,6 +8,7 @@ mod device;
 mod kernel;
 pub mod layout;
 mod readback;
+mod record;
 mod schedule;
 pub mod shader_source;
 
@@ -15,6 +16,7 @@ pub use device::{AdapterInfo, adapters};
 pub use kernel::{Constant, Overrides};
 
 use crate::film::{Film, PixelSum};
+use crate::record::PathRecord;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 use crate::stages::Transfer;
 use crate::tables::Tables;
@@ -139,6 +141,9 @@ pub struct GpuReport {
 struct Prepared {
     job: RenderJob,
     block_limit: u32,
+    /// By number, the sphere's index in the scene.
+    scene_index: Vec<u32>,
+    overrides: Overrides,
     kernel: Kernel,
     job_group: wgpu::BindGroup,
     order: wgpu::Buffer,
@@ -312,6 +317,8 @@ impl GpuRenderer {
         Ok(Prepared {
             job: job.clone(),
             block_limit: tables.block_limit,
+            scene_index: tables.scene_index,
+            overrides,
             kernel,
             job_group,
             order,
@@ -575,6 +582,45 @@ impl GpuRenderer {
             .and_then(|kernel| self.run_words(&prepared, &kernel, words, groups));
         self.prepared = Some(prepared);
         done.map_err(failed)
+    }
+
+    /// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as the kernel of `job` traces
+    /// it.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`].
+    pub fn record_path(
+        &mut self,
+        job: &RenderJob,
+        pixel: [u32; 2],
+        index: u64,
+    ) -> Result<PathRecord, RenderError> {
+        self.prepare(job)?;
+        let Some(prepared) = self.prepared.take() else {
+            return Err(failed("nothing was prepared".to_owned()));
+        };
+        let recorded = self.recorded(&prepared, pixel, index);
+        self.prepared = Some(prepared);
+        recorded.map_err(failed)
+    }
+
+    fn recorded(&mut self, prepared: &Prepared, pixel: [u32; 2], index: u64) -> Result<PathRecord, String> {
+        let kernel = self.kernels.get(&self.gpu, EntryPoint::PathRecord, &prepared.overrides, 0)?;
+        let settings = prepared.job.settings();
+        let (blocks, _) = Blocks::of_range(index..index + 1, settings, prepared.block_limit).take(1);
+        let order = GpuDispatch {
+            block_count: blocks.len() as u32,
+            // One turn besides to start the path.
+            ray_limit: settings.max_depth + 1,
+            row_count: prepared.slab_rows,
+            ..GpuDispatch::default()
+        };
+        self.clear(&prepared.film);
+        self.gpu.queue.write_buffer(&prepared.blocks, 0, bytemuck::cast_slice(&blocks));
+        self.gpu.queue.write_buffer(&prepared.order, 0, bytemuck::bytes_of(&order));
+        let words = record::words_for(pixel, settings.max_depth);
+        let words = self.run_words(prepared, &kernel, words, 1)?;
+        Ok(record::from_words(&words, &prepared.scene_index))
     }
 
     fn run_words(

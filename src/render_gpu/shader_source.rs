@@ -15,6 +15,12 @@ pub const STACK_SIZE: usize = 64;
 /// Words of a probe's input and output.
 pub const PROBE_STRIDE: usize = 16;
 
+/// Words before the rays of a recorded path.
+pub const RECORD_HEADER: usize = 4;
+
+/// Words of a recorded ray.
+pub const RECORD_STRIDE: usize = 12;
+
 /// An entry point and what it is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EntryPoint {
@@ -24,11 +30,14 @@ pub enum EntryPoint {
     Resolve,
     /// Runs small functions for tests.
     Probe,
+    /// Traces one sample of one pixel and writes it down.
+    PathRecord,
 }
 
 impl EntryPoint {
     /// All of them.
-    pub const ALL: [EntryPoint; 3] = [EntryPoint::PathTrace, EntryPoint::Resolve, EntryPoint::Probe];
+    pub const ALL: [EntryPoint; 4] =
+        [EntryPoint::PathTrace, EntryPoint::Resolve, EntryPoint::Probe, EntryPoint::PathRecord];
 
     /// Its name in the shader.
     pub fn name(self) -> &'static str {
@@ -36,6 +45,7 @@ impl EntryPoint {
             EntryPoint::PathTrace => "path_trace",
             EntryPoint::Resolve => "resolve",
             EntryPoint::Probe => "probe",
+            EntryPoint::PathRecord => "path_record",
         }
     }
 
@@ -44,12 +54,13 @@ impl EntryPoint {
             EntryPoint::PathTrace => include_str!("../../shaders/path_trace.wgsl"),
             EntryPoint::Resolve => include_str!("../../shaders/resolve.wgsl"),
             EntryPoint::Probe => include_str!("../../shaders/probe.wgsl"),
+            EntryPoint::PathRecord => include_str!("../../shaders/path_record.wgsl"),
         }
     }
 }
 
 /// The functions and bindings that all entry points share.
-const SHARED: [&str; 8] = [
+const SHARED: [&str; 9] = [
     include_str!("../../shaders/lanes.wgsl"),
     include_str!("../../shaders/rng.wgsl"),
     include_str!("../../shaders/camera.wgsl"),
@@ -58,6 +69,7 @@ const SHARED: [&str; 8] = [
     include_str!("../../shaders/bindings.wgsl"),
     include_str!("../../shaders/material.wgsl"),
     include_str!("../../shaders/path.wgsl"),
+    include_str!("../../shaders/record.wgsl"),
 ];
 
 /// The small functions that the probe can run.
@@ -124,6 +136,8 @@ pub fn prelude() -> String {
     unsigned("UNIFORM_ANCHORED", UNIFORM_ANCHORED as u32);
     unsigned("STACK_SIZE", STACK_SIZE as u32);
     unsigned("PROBE_STRIDE", PROBE_STRIDE as u32);
+    unsigned("RECORD_HEADER", RECORD_HEADER as u32);
+    unsigned("RECORD_STRIDE", RECORD_STRIDE as u32);
     unsigned("NONE", NONE);
     unsigned("COUNT_MASK", COUNT_MASK);
     unsigned("GOLDEN_RATIO", GOLDEN_RATIO);
@@ -167,7 +181,7 @@ pub fn prelude() -> String {
             Constant::Number(number) => writeln!(text, "override {name}: u32 = {number}u;"),
         };
     }
-    text.push_str("override PROBE: u32 = 0u;\n");
+    text.push_str("override PROBE: u32 = 0u;\noverride RECORD: bool = false;\n");
     text
 }
 

@@ -1,0 +1,21 @@
+// What a path did, ray by ray. The words are RECORD_HEADER words of the path and RECORD_STRIDE of each ray.
+//
+// Twin: src/render_gpu/record.rs
+
+fn record_ray(number: u32, path: Path, nearest: Nearest) {
+    let base = RECORD_HEADER + number * RECORD_STRIDE;
+    if base + RECORD_STRIDE > arrayLength(&words) {
+        return;
+    }
+    record_vector(base, path.ray.origin);
+    record_vector(base + 3u, path.ray.direction);
+    record_vector(base + 6u, path.throughput);
+    words[base + 9u] = nearest.sphere;
+    words[base + 10u] = nearest.key;
+}
+
+fn record_vector(base: u32, v: vec3f) {
+    words[base] = bitcast<u32>(v.x);
+    words[base + 1u] = bitcast<u32>(v.y);
+    words[base + 2u] = bitcast<u32>(v.z);
+}

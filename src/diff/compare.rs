@@ -1,0 +1,258 @@
+//! Two records of one path: where they differ, in what, and by how much.
+
+use crate::film::FIXED_POINT_SCALE;
+use crate::record::{PathRecord, RecordedRay};
+use crate::render::RenderJob;
+use crate::scene::Material;
+use crate::stages::Shading;
+use serde::Serialize;
+
+/// What can differ at a bounce, in the order in which it comes about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Quantity {
+    /// Where the ray starts.
+    Origin,
+    /// Where it goes.
+    Direction,
+    /// What its light counts for.
+    Throughput,
+    /// The sphere that it meets, or the sky.
+    Object,
+    /// How far that is.
+    Distance,
+    /// How the path goes on, or why it ends.
+    Departure,
+    /// What the sample adds to the pixel.
+    Radiance,
+}
+
+impl Quantity {
+    /// Those of a ray.
+    pub const OF_RAY: [Quantity; 6] = [
+        Quantity::Origin,
+        Quantity::Direction,
+        Quantity::Throughput,
+        Quantity::Object,
+        Quantity::Distance,
+        Quantity::Departure,
+    ];
+}
+
+/// What becomes of a path where it has met a sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Departure {
+    /// In any direction.
+    Scattered,
+    /// As by a mirror.
+    Reflected,
+    /// Through the surface.
+    Refracted,
+    /// A fuzzy reflection went into the surface.
+    Absorbed,
+    /// The path has as many rays as it may.
+    CutOff,
+    /// The stage follows no ray further.
+    Shown,
+}
+
+impl Departure {
+    /// In words that follow "is".
+    pub fn word(self) -> &'static str {
+        match self {
+            Departure::Scattered => "scattered",
+            Departure::Reflected => "reflected",
+            Departure::Refracted => "refracted",
+            Departure::Absorbed => "absorbed",
+            Departure::CutOff => "cut off",
+            Departure::Shown => "shown",
+        }
+    }
+}
+
+/// What becomes of a path after ray `bounce`; `None` where it meets no sphere.
+pub fn departure(job: &RenderJob, path: &PathRecord, bounce: usize) -> Option<Departure> {
+    let ray = path.rays.get(bounce)?;
+    let hit = ray.hit?;
+    let sphere = job.scene().spheres.get(hit.sphere)?;
+    let material = job.scene().material_of(sphere);
+    Some(match (path.rays.get(bounce + 1), material) {
+        (Some(_), Material::Lambertian { .. }) => Departure::Scattered,
+        (Some(_), Material::Metal { .. }) => Departure::Reflected,
+        (Some(next), Material::Dielectric { .. }) => {
+            let outward = glam::DVec3::from(next.origin) - sphere.center;
+            let side = |ray: &RecordedRay| glam::DVec3::from(ray.direction).dot(outward) > 0.0;
+            if side(ray) == side(next) { Departure::Refracted } else { Departure::Reflected }
+        }
+        (None, _) if bounce + 1 >= job.settings().max_depth as usize => Departure::CutOff,
+        (None, Material::Metal { .. }) if job.rules().shading == Shading::Path => Departure::Absorbed,
+        (None, _) => Departure::Shown,
+    })
+}
+
+/// A difference above the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Difference {
+    /// Number of the ray, 0 for the camera's.
+    pub bounce: usize,
+    /// What differs.
+    pub quantity: Quantity,
+    /// By how much, as a share of the larger value; infinite where there is no more or less.
+    pub amount: f64,
+}
+
+/// How two paths differ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// The first difference above the tolerance.
+    pub first: Option<Difference>,
+    /// The first bounce at which the paths go different ways; the numbers may drift apart before.
+    pub parting: Option<Difference>,
+    /// Largest difference of a ray's quantity before the parting.
+    pub largest: f64,
+    /// Of the radiance, as a share of the larger one.
+    pub radiance: f64,
+}
+
+/// Compares two records of a path of `job`.
+pub fn compare(job: &RenderJob, [a, b]: [&PathRecord; 2], tolerance: f64) -> Comparison {
+    let mut comparison = Comparison {
+        first: None,
+        parting: None,
+        largest: 0.0,
+        radiance: radiance_amount(a.radiance, b.radiance),
+    };
+    let count = a.rays.len().max(b.rays.len());
+    'bounces: for bounce in 0..count {
+        for quantity in Quantity::OF_RAY {
+            let amount = amount(job, [a, b], bounce, quantity);
+            let difference = Difference { bounce, quantity, amount };
+            if amount > tolerance {
+                comparison.first.get_or_insert(difference);
+            }
+            if amount.is_infinite() {
+                comparison.parting = Some(difference);
+                break 'bounces;
+            }
+            comparison.largest = comparison.largest.max(amount);
+        }
+    }
+    if comparison.radiance > tolerance {
+        let bounce = count.saturating_sub(1);
+        let difference = Difference { bounce, quantity: Quantity::Radiance, amount: comparison.radiance };
+        comparison.first.get_or_insert(difference);
+    }
+    comparison
+}
+
+/// How much a quantity of ray `bounce` differs, as a share of the larger value.
+pub fn amount(job: &RenderJob, [a, b]: [&PathRecord; 2], bounce: usize, quantity: Quantity) -> f64 {
+    let (ray_a, ray_b) = match (a.rays.get(bounce), b.rays.get(bounce)) {
+        (Some(ray_a), Some(ray_b)) => (ray_a, ray_b),
+        (None, None) => return 0.0,
+        _ => return f64::INFINITY,
+    };
+    let apart = |is_apart: bool| if is_apart { f64::INFINITY } else { 0.0 };
+    match quantity {
+        Quantity::Origin => {
+            // Coordinates are as exact as the largest of the scene that the path has come through.
+            let extent = a.rays[..=bounce].iter().map(|ray| length(ray.origin)).fold(0.0, f64::max);
+            share(length(minus(ray_a.origin, ray_b.origin)), extent.max(length(ray_b.origin)))
+        }
+        Quantity::Direction => length(minus(ray_a.direction, ray_b.direction)),
+        Quantity::Throughput => vector_share(ray_a.throughput, ray_b.throughput, 0.0),
+        Quantity::Object => apart(ray_a.hit.map(|hit| hit.sphere) != ray_b.hit.map(|hit| hit.sphere)),
+        Quantity::Distance => match (ray_a.hit, ray_b.hit) {
+            (Some(a), Some(b)) => {
+                share((a.distance - b.distance).abs(), a.distance.abs().max(b.distance.abs()))
+            }
+            _ => 0.0,
+        },
+        Quantity::Departure => apart(departure(job, a, bounce) != departure(job, b, bounce)),
+        Quantity::Radiance => radiance_amount(a.radiance, b.radiance),
+    }
+}
+
+/// How much two samples' radiances differ. The film's last unit on either side is no difference.
+pub fn radiance_amount(a: [f64; 3], b: [f64; 3]) -> f64 {
+    vector_share(a, b, 2.0 / FIXED_POINT_SCALE)
+}
+
+/// The largest component's difference beyond `forgiven`, as a share of the largest component.
+fn vector_share(a: [f64; 3], b: [f64; 3], forgiven: f64) -> f64 {
+    let largest = |v: [f64; 3]| v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    share((largest(minus(a, b)) - forgiven).max(0.0), largest(a).max(largest(b)))
+}
+
+fn share(difference: f64, of: f64) -> f64 {
+    match difference / of {
+        _ if difference == 0.0 => 0.0,
+        share if share.is_nan() => f64::INFINITY,
+        share => share,
+    }
+}
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    glam::DVec3::from(v).length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+    use crate::record::RecordedHit;
+
+    fn job() -> RenderJob {
+        Recipe::find("three-spheres").expect("built in").job().expect("valid")
+    }
+
+    fn path() -> PathRecord {
+        let ray = |direction, hit| RecordedRay { origin: [0.0; 3], direction, throughput: [1.0; 3], hit };
+        let hit = RecordedHit { sphere: 1, distance: 2.0, position: Some([0.0; 3]) };
+        let rays = vec![ray([0.0, 0.0, -1.0], Some(hit)), ray([0.0, 1.0, 0.0], None)];
+        PathRecord { rays, radiance: [0.25, 0.5, 1.0] }
+    }
+
+    #[test]
+    fn a_path_is_like_itself() {
+        let comparison = compare(&job(), [&path(), &path()], 0.0);
+        assert_eq!(comparison, Comparison { first: None, parting: None, largest: 0.0, radiance: 0.0 });
+    }
+
+    #[test]
+    fn the_first_difference_is_found() {
+        type Change = fn(&mut PathRecord);
+        let cases: [(usize, Quantity, Change); 7] = [
+            (0, Quantity::Direction, |p| p.rays[0].direction[0] = 1e-3),
+            (1, Quantity::Origin, |p| p.rays[1].origin[2] = 1e-3),
+            (1, Quantity::Throughput, |p| p.rays[1].throughput[1] = 0.99),
+            (0, Quantity::Object, |p| p.rays[0].hit = None),
+            (0, Quantity::Distance, |p| p.rays[0].hit.as_mut().expect("a hit").distance = 2.001),
+            (0, Quantity::Departure, |p| p.rays.truncate(1)),
+            (1, Quantity::Radiance, |p| p.radiance[0] = 0.26),
+        ];
+        for (bounce, quantity, change) in cases {
+            let mut changed = path();
+            change(&mut changed);
+            for pair in [[&path(), &changed], [&changed, &path()]] {
+                let first = compare(&job(), pair, 1e-4).first.expect("a difference");
+                assert_eq!((first.bounce, first.quantity), (bounce, quantity));
+            }
+        }
+    }
+
+    #[test]
+    fn less_than_the_tolerance_is_no_difference() {
+        let mut changed = path();
+        changed.rays[1].direction[0] = 1e-5;
+        let comparison = compare(&job(), [&path(), &changed], 1e-4);
+        assert_eq!(comparison.first, None);
+        assert!((0.9e-5..1.1e-5).contains(&comparison.largest), "{}", comparison.largest);
+        let unit = 1.0 / FIXED_POINT_SCALE;
+        assert_eq!(radiance_amount([0.0, unit, unit], [unit, 0.0, unit]), 0.0);
+    }
+}

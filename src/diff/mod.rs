@@ -1,0 +1,168 @@
+//! `weekender diff`: one path as two backends trace it, side by side, and where they part.
+
+mod compare;
+mod find;
+mod side;
+mod text;
+mod words;
+
+pub use compare::{Comparison, Departure, Difference, Quantity, compare};
+pub use find::{Found, find};
+pub use side::{Side, SideError};
+pub use words::Told;
+
+use crate::cli::{DiffOptions, JsonTarget, PathChoice};
+use crate::failure::Failure;
+use crate::film::replace_file;
+use crate::record::PathRecord;
+use anyhow::Context;
+use serde::Serialize;
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+use text::{Paint, Tone};
+
+/// Version of the JSON: it grows when a key changes its meaning or goes away.
+const SCHEMA: u32 = 1;
+
+#[derive(Serialize)]
+struct Report<'a> {
+    schema: u32,
+    version: &'static str,
+    scene: &'a str,
+    width: u32,
+    height: u32,
+    pixel: [u32; 2],
+    sample: u64,
+    tolerance: f64,
+    sides: [ReportedSide<'a>; 2],
+    #[serde(flatten)]
+    comparison: Comparison,
+    verdict: String,
+}
+
+#[derive(Serialize)]
+struct ReportedSide<'a> {
+    name: &'a str,
+    about: &'a str,
+    path: &'a PathRecord,
+}
+
+/// Compares a path and prints it. The exit code is 0 where the sides agree within the tolerance, else 1.
+///
+/// # Errors
+/// [`Failure::Input`], also where a backend fails on the way: exit code 1 says that the paths differ.
+pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
+    let [a, b] = &options.sides;
+    let mut sides = [Side::open(a).map_err(Failure::input)?, Side::open(b).map_err(Failure::input)?];
+    if sides[0].name == sides[1].name {
+        sides[0].name.push_str(" (left)");
+        sides[1].name.push_str(" (right)");
+    }
+    let job = &options.job;
+    let (pixel, sample, found) = match options.path {
+        PathChoice::Given { pixel, sample } => (pixel, sample, None),
+        PathChoice::Find { samples } => {
+            let found = find(job, &mut sides, samples, options.tolerance).map_err(Failure::input)?;
+            (found.pixel, found.sample, Some(found))
+        }
+    };
+    let mut record = |side: usize| sides[side].record(job, pixel, sample).map_err(Failure::input);
+    let (path_a, path_b) = (record(0)?, record(1)?);
+    let paths = [&path_a, &path_b];
+    let comparison = compare(job, paths, options.tolerance);
+    let told = Told {
+        job,
+        names: [sides[0].name.as_str(), sides[1].name.as_str()],
+        paths,
+        tolerance: options.tolerance,
+    };
+
+    let to_stderr = options.json == Some(JsonTarget::StandardOutput);
+    let is_terminal =
+        if to_stderr { std::io::stderr().is_terminal() } else { std::io::stdout().is_terminal() };
+    let paint =
+        Paint { is_on: is_terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()) };
+    let mut text = opening(options, &sides, pixel, sample, found, paint);
+    text.push('\n');
+    text.push_str(&text::bounces(&told, &comparison, paint));
+    text.push_str(&text::closing(&told, &comparison, paint));
+    show(&text, to_stderr);
+
+    if let Some(target) = &options.json {
+        let [about_a, about_b] = [0, 1].map(|side: usize| sides[side].about.as_str());
+        let report = Report {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            scene: &options.scene,
+            width: job.settings().width,
+            height: job.settings().height,
+            pixel,
+            sample,
+            tolerance: options.tolerance,
+            sides: [
+                ReportedSide { name: told.names[0], about: about_a, path: paths[0] },
+                ReportedSide { name: told.names[1], about: about_b, path: paths[1] },
+            ],
+            comparison,
+            verdict: told.verdict(&comparison),
+        };
+        write_json(&report, target).map_err(Failure::Input)?;
+    }
+    Ok(if comparison.first.is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// What is compared.
+fn opening(
+    options: &DiffOptions,
+    sides: &[Side; 2],
+    [x, y]: [u32; 2],
+    sample: u64,
+    found: Option<Found>,
+    paint: Paint,
+) -> String {
+    let settings = options.job.settings();
+    let (width, height) = (settings.width, settings.height);
+    let mut lines = vec![(
+        "scene",
+        format!(
+            "{}, {width}x{height}, depth {}, {}, seed {}",
+            options.scene,
+            settings.max_depth,
+            settings.sampler.name(),
+            settings.seed
+        ),
+    )];
+    if let Some(found) = found {
+        let of = u64::from(width) * u64::from(height) * found.searched;
+        lines.push((
+            "search",
+            format!("{} of {of} samples differ by more than {:.0e}", found.differing, options.tolerance),
+        ));
+        lines.push(("again", format!("--size {width}x{height} --pixel {x},{y} --sample {sample}")));
+    }
+    lines.push(("path", format!("pixel {x},{y}, sample {sample}")));
+    lines.push(("left", sides[0].about.clone()));
+    lines.push(("right", sides[1].about.clone()));
+    let line = |(label, content): &(&str, String)| {
+        format!("{}{content}\n", paint.paint(Tone::Strong, &format!("{label:<9}")))
+    };
+    lines.iter().map(line).collect()
+}
+
+/// Prints for a person. A reader who has gone away is no failure.
+fn show(text: &str, to_stderr: bool) {
+    let _ = if to_stderr {
+        std::io::stderr().lock().write_all(text.as_bytes())
+    } else {
+        std::io::stdout().lock().write_all(text.as_bytes())
+    };
+}
+
+fn write_json(report: &Report, target: &JsonTarget) -> anyhow::Result<()> {
+    let text = serde_json::to_string_pretty(report).context("the paths cannot be put as JSON")? + "\n";
+    match target {
+        JsonTarget::StandardOutput => show(&text, false),
+        JsonTarget::File(path) => replace_file(path, |writer| writer.write_all(text.as_bytes()))?,
+    }
+    Ok(())
+}

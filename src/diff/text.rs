@@ -1,0 +1,234 @@
+//! Two paths side by side, for a terminal.
+
+use super::compare::{Comparison, Quantity, amount, departure};
+use super::words::Told;
+use crate::record::PathRecord;
+use std::fmt::Write;
+
+/// Characters of a line.
+const WIDTH: usize = 78;
+
+/// Characters before the first side.
+const LABEL: usize = 13;
+
+/// Characters of a side.
+const COLUMN: usize = 31;
+
+/// Colours, where the reader can see them.
+#[derive(Clone, Copy, Debug)]
+pub struct Paint {
+    /// Whether there are any.
+    pub is_on: bool,
+}
+
+/// What a piece of text is.
+#[derive(Clone, Copy, Debug)]
+pub enum Tone {
+    /// A heading.
+    Strong,
+    /// What matters little.
+    Faint,
+    /// All is well.
+    Good,
+    /// A difference.
+    Bad,
+}
+
+impl Paint {
+    /// `text` in the colour of its tone.
+    pub fn paint(self, tone: Tone, text: &str) -> String {
+        let code = match tone {
+            Tone::Strong => "1",
+            Tone::Faint => "2",
+            Tone::Good => "32",
+            Tone::Bad => "1;31",
+        };
+        if self.is_on && !text.is_empty() { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
+    }
+}
+
+/// All bounces of both paths, the first difference marked.
+pub fn bounces(told: &Told, comparison: &Comparison, paint: Paint) -> String {
+    let mut text = String::new();
+    let [a, b] = told.names.map(|name| cut(name, COLUMN));
+    line(&mut text, &paint.paint(Tone::Strong, format!("{:LABEL$}{a:COLUMN$}   {b}", "").trim_end()));
+    let count = told.paths.iter().map(|path| path.rays.len()).max().unwrap_or(0);
+    for bounce in 0..count {
+        let from = if bounce == 0 { " from the camera" } else { "" };
+        let heading = format!("bounce {bounce}{from} ");
+        let rule = "─".repeat(WIDTH.saturating_sub(heading.chars().count()));
+        line(
+            &mut text,
+            &format!("{}{}", paint.paint(Tone::Strong, &heading), paint.paint(Tone::Faint, &rule)),
+        );
+        for quantity in Quantity::OF_RAY {
+            row(&mut text, told, comparison, bounce, quantity, paint);
+        }
+    }
+    text
+}
+
+/// A quantity on both sides, and the sentence below it where it is the first difference or the parting.
+fn row(
+    text: &mut String,
+    told: &Told,
+    comparison: &Comparison,
+    bounce: usize,
+    quantity: Quantity,
+    paint: Paint,
+) {
+    let values = told.paths.map(|path| value(told, path, bounce, quantity));
+    if values.iter().all(Option::is_none) {
+        return;
+    }
+    let label = match quantity {
+        Quantity::Origin => "from",
+        Quantity::Direction => "direction",
+        Quantity::Throughput => "throughput",
+        Quantity::Object => "meets",
+        Quantity::Distance => "distance",
+        Quantity::Departure => "then",
+        Quantity::Radiance => "radiance",
+    };
+    // Where a side has no value, the row of what it met says why.
+    let difference = amount(told.job, told.paths, bounce, quantity);
+    let sign = if values.iter().all(Option::is_some) {
+        sign(difference, told.tolerance, paint)
+    } else {
+        " ".to_owned()
+    };
+    let [a, b] = values.map(|value| cut(&value.unwrap_or_default(), COLUMN));
+    let is = |found: Option<super::compare::Difference>| {
+        found.filter(|found| (found.bounce, found.quantity) == (bounce, quantity))
+    };
+    let marked = is(comparison.first).or(is(comparison.parting));
+    let (mark, tone) = if marked.is_some() { ("▶ ", Tone::Bad) } else { ("  ", Tone::Faint) };
+    line(
+        text,
+        &format!(
+            "{}{}{a:COLUMN$} {sign} {b}",
+            paint.paint(Tone::Bad, mark),
+            paint.paint(tone, &format!("{label:width$}", width = LABEL - 2)),
+        ),
+    );
+    if let Some(difference) = marked {
+        for part in wrapped(&told.sentence(&difference), WIDTH - 4) {
+            line(text, &format!("    {}", paint.paint(Tone::Bad, &part)));
+        }
+    }
+}
+
+/// Both radiances, their difference and what it comes to.
+pub fn closing(told: &Told, comparison: &Comparison, paint: Paint) -> String {
+    let mut text = String::new();
+    line(&mut text, &paint.paint(Tone::Faint, &"─".repeat(WIDTH)));
+    let [a, b] = told.paths.map(|path| vector(path.radiance));
+    let sign = sign(comparison.radiance, told.tolerance, paint);
+    let label = paint.paint(Tone::Strong, &format!("{:LABEL$}", "radiance"));
+    line(&mut text, &format!("{label}{a:COLUMN$} {sign} {b}"));
+    let [a, b] = told.paths.map(|path| path.radiance);
+    let by = vector([b[0] - a[0], b[1] - a[1], b[2] - a[2]]);
+    let share = match comparison.radiance {
+        share if share < 1e-3 => format!("{share:.1e} of the larger"),
+        share => format!("{:.1} % of the larger", 100.0 * share),
+    };
+    line(&mut text, &format!("{:LABEL$}{by:COLUMN$}   {share}", "difference"));
+    let tone = if comparison.first.is_some() { Tone::Bad } else { Tone::Good };
+    for (index, part) in wrapped(&told.verdict(comparison), WIDTH - LABEL).iter().enumerate() {
+        let label = if index == 0 { "verdict" } else { "" };
+        let label = paint.paint(Tone::Strong, &format!("{label:LABEL$}"));
+        line(&mut text, &format!("{label}{}", paint.paint(tone, part)));
+    }
+    text
+}
+
+/// Equal to the bit, near enough, or apart.
+fn sign(difference: f64, tolerance: f64, paint: Paint) -> String {
+    if difference == 0.0 {
+        paint.paint(Tone::Good, "=")
+    } else if difference <= tolerance {
+        paint.paint(Tone::Faint, "≈")
+    } else {
+        paint.paint(Tone::Bad, "≠")
+    }
+}
+
+fn value(told: &Told, path: &PathRecord, bounce: usize, quantity: Quantity) -> Option<String> {
+    let ray = path.rays.get(bounce)?;
+    match quantity {
+        Quantity::Origin => Some(vector(ray.origin)),
+        Quantity::Direction => Some(vector(ray.direction)),
+        Quantity::Throughput => Some(vector(ray.throughput)),
+        Quantity::Object => Some(match ray.hit {
+            None => "the sky".to_owned(),
+            Some(hit) => match told.material(hit.sphere) {
+                Some((name, kind)) => format!("#{} {name} ({kind})", hit.sphere),
+                None => format!("#{}", hit.sphere),
+            },
+        }),
+        Quantity::Distance => ray.hit.map(|hit| number(hit.distance).trim_start().to_owned()),
+        Quantity::Departure => departure(told.job, path, bounce).map(|departure| departure.word().to_owned()),
+        Quantity::Radiance => Some(vector(path.radiance)),
+    }
+}
+
+fn vector(v: [f64; 3]) -> String {
+    v.map(number).join(" ")
+}
+
+/// Nine characters with as many digits as fit.
+fn number(x: f64) -> String {
+    let text = match x.abs() {
+        0.0 => "0".to_owned(),
+        size if !(1e-4..1e5).contains(&size) => format!("{x:.2e}"),
+        size => format!("{x:.*}", 6 - (size.log10().floor().max(0.0) as usize).min(4)),
+    };
+    format!("{text:>9}")
+}
+
+fn cut(text: &str, width: usize) -> String {
+    if text.chars().count() <= width {
+        return text.to_owned();
+    }
+    text.chars().take(width - 1).chain(['…']).collect()
+}
+
+/// Lines of at most `width` characters, broken between words.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(last) if last.is_empty() => last.push_str(word),
+            Some(last) if last.chars().count() + 1 + word.chars().count() <= width => {
+                last.push(' ');
+                last.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+fn line(text: &mut String, content: &str) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{}", content.trim_end());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_nine_characters() {
+        for x in [0.0, 1.0, -1.0, 0.5, -13.25, 999.999_99, -99_999.0, 1e5, -1e300, 1e-5, -1e-17, 0.000_123] {
+            assert_eq!(number(x).chars().count(), 9, "{}", number(x));
+        }
+        assert_eq!(number(-13.25).trim(), "-13.25000");
+    }
+
+    #[test]
+    fn lines_break_between_words() {
+        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
+        assert_eq!(cut("sphere 7", 5), "sphe…");
+    }
+}

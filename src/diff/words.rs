@@ -1,0 +1,110 @@
+//! A difference in a sentence.
+
+use super::compare::{Comparison, Difference, Quantity, departure};
+use crate::record::{PathRecord, RecordedRay};
+use crate::render::RenderJob;
+use glam::DVec3;
+
+/// Rays that miss a sphere by less than this share of its radius graze it.
+const GRAZING_SHARE: f64 = 0.01;
+
+/// What two sides did, to be told.
+#[derive(Clone, Copy)]
+pub struct Told<'a> {
+    /// What was rendered.
+    pub job: &'a RenderJob,
+    /// The sides' short names.
+    pub names: [&'a str; 2],
+    /// Their paths.
+    pub paths: [&'a PathRecord; 2],
+    /// Largest difference that counts as none.
+    pub tolerance: f64,
+}
+
+impl Told<'_> {
+    /// The result in a sentence or two.
+    pub fn verdict(&self, comparison: &Comparison) -> String {
+        match (comparison.first, comparison.parting) {
+            (None, _) if comparison.largest == 0.0 && comparison.radiance == 0.0 => {
+                "the paths agree to the bit".to_owned()
+            }
+            (None, _) => format!(
+                "the paths agree: nothing differs by more than {:.1e}, and {:.0e} is allowed",
+                comparison.largest.max(comparison.radiance),
+                self.tolerance
+            ),
+            (Some(first), Some(parting)) if first != parting => {
+                format!("{}. Then {}", self.sentence(&first), self.sentence(&parting))
+            }
+            (Some(first), _) => self.sentence(&first),
+        }
+    }
+
+    /// A difference in a sentence: `bounce 2: the paths part: cpu avx2 meets sphere 7 (glass), gpu the sky`.
+    pub fn sentence(&self, difference: &Difference) -> String {
+        let Difference { bounce, quantity, amount } = *difference;
+        let [a, b] = self.names;
+        let [ray_a, ray_b] = self.paths.map(|path| path.rays.get(bounce));
+        let drift = |what: &str| {
+            format!("bounce {bounce}: {what} differ by {amount:.1e}, and {:.0e} is allowed", self.tolerance)
+        };
+        match quantity {
+            Quantity::Origin => drift("the points that the rays leave from"),
+            Quantity::Direction => drift("the directions"),
+            Quantity::Throughput => drift("the throughputs"),
+            Quantity::Distance => drift("the distances"),
+            Quantity::Radiance => format!(
+                "the radiances differ by {amount:.1e}, and {:.0e} is allowed, though the rays agree",
+                self.tolerance
+            ),
+            Quantity::Object => {
+                let meets = |ray: Option<&RecordedRay>| self.object(ray);
+                format!(
+                    "bounce {bounce}: the paths part: {a} meets {}, {b} {}{}",
+                    meets(ray_a),
+                    meets(ray_b),
+                    self.near_miss(ray_a, ray_b).unwrap_or_default()
+                )
+            }
+            Quantity::Departure => {
+                let word =
+                    |path| departure(self.job, path, bounce).map_or("gone", |departure| departure.word());
+                let [word_a, word_b] = self.paths.map(word);
+                let at = self.object(ray_a.or(ray_b));
+                format!("bounce {bounce}: the paths part at {at}: {a} is {word_a}, {b} is {word_b}")
+            }
+        }
+    }
+
+    /// `sphere 7 (glass)`, or the sky.
+    fn object(&self, ray: Option<&RecordedRay>) -> String {
+        match ray.map(|ray| ray.hit) {
+            None => "nothing".to_owned(),
+            Some(None) => "the sky".to_owned(),
+            Some(Some(hit)) => match self.material(hit.sphere) {
+                Some((name, _)) => format!("sphere {} ({name})", hit.sphere),
+                None => format!("sphere {}", hit.sphere),
+            },
+        }
+    }
+
+    /// A sphere's material: its name and kind.
+    pub fn material(&self, sphere: usize) -> Option<(&str, &'static str)> {
+        let scene = self.job.scene();
+        let named = scene.materials.get(scene.spheres.get(sphere)?.material)?;
+        Some((named.name.as_str(), named.material.kind()))
+    }
+
+    /// Says so where a side just misses what the other meets: then it was rounding that decided.
+    fn near_miss(&self, a: Option<&RecordedRay>, b: Option<&RecordedRay>) -> Option<String> {
+        let (a, b) = (a?, b?);
+        [(a, b, self.names[1]), (b, a, self.names[0])].into_iter().find_map(|(hitting, missing, name)| {
+            let sphere = self.job.scene().spheres.get(hitting.hit?.sphere)?;
+            let to_center = sphere.center - DVec3::from(missing.origin);
+            let miss = to_center.cross(DVec3::from(missing.direction)).length() / sphere.radius.abs() - 1.0;
+            (0.0..GRAZING_SHARE)
+                .contains(&miss)
+                .then(|| format!("; {name} misses that sphere by {miss:.0e} of its radius"))
+        })
+    }
+}

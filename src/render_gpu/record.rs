@@ -1,0 +1,42 @@
+//! A path as the device wrote it down.
+//!
+//! Twin: shaders/record.wgsl
+
+use super::shader_source::{RECORD_HEADER, RECORD_STRIDE};
+use crate::film::PixelSum;
+use crate::record::{PathRecord, RecordedHit, RecordedRay};
+use crate::tables::NONE;
+
+/// Words that the path at `pixel` needs, with what the shader must know in them.
+pub fn words_for([x, y]: [u32; 2], max_depth: u32) -> Vec<u32> {
+    let mut words = vec![0; RECORD_HEADER + RECORD_STRIDE * max_depth as usize];
+    words[..2].copy_from_slice(&[x, y]);
+    words
+}
+
+/// The path that the words tell. `scene_index` turns a sphere's number into its index in the scene.
+pub fn from_words(words: &[u32], scene_index: &[u32]) -> PathRecord {
+    let (header, rays) = words.split_at(RECORD_HEADER.min(words.len()));
+    let count = header.first().map_or(0, |count| *count as usize);
+    let rays: Vec<&[u32]> = rays.chunks_exact(RECORD_STRIDE).take(count).collect();
+    let vector = |three: &[u32]| [0, 1, 2].map(|i| three.get(i).map_or(0.0, |word| float(*word)));
+    let recorded = |number: usize, ray: &&[u32]| RecordedRay {
+        origin: vector(&ray[..3]),
+        direction: vector(&ray[3..6]),
+        throughput: vector(&ray[6..9]),
+        hit: (ray[9] != NONE).then(|| RecordedHit {
+            sphere: scene_index.get(ray[9] as usize).map_or(usize::MAX, |index| *index as usize),
+            distance: float(ray[10]),
+            position: rays.get(number + 1).map(|next| vector(&next[..3])),
+        }),
+    };
+    let radiance = PixelSum([1, 2, 3].map(|i| header.get(i).copied().map_or(0, u64::from))).radiance();
+    PathRecord {
+        rays: rays.iter().enumerate().map(|(number, ray)| recorded(number, ray)).collect(),
+        radiance,
+    }
+}
+
+fn float(word: u32) -> f64 {
+    f64::from(f32::from_bits(word))
+}

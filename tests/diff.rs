@@ -1,0 +1,200 @@
+//! Paths as backends record them, and `weekender diff`, which compares two.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+mod gpu_common;
+
+use gpu_common::{gpu, job_of, jobs};
+use std::process::{Command, Output, Stdio};
+use std::sync::atomic::AtomicBool;
+use weekender::diff::compare;
+use weekender::film::Film;
+use weekender::recipe::Recipe;
+use weekender::render::{RenderJob, Renderer, SamplerKind, Stats};
+use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa, record_path};
+use weekender::render_gpu::GpuOptions;
+use weekender::scene::builtin::BuiltinScene;
+use weekender::stages::Surface;
+
+fn small(scene: &str, width: u32, height: u32) -> RenderJob {
+    let mut recipe = Recipe::find(scene).unwrap();
+    (recipe.settings.width, recipe.settings.height) = (width, height);
+    recipe.job().unwrap()
+}
+
+fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: std::ops::Range<u64>) -> (Film, Stats) {
+    let mut film = job.new_film();
+    let stats = renderer.accumulate(job, samples, &mut film, &AtomicBool::new(false)).unwrap();
+    (film, stats)
+}
+
+fn pixels(job: &RenderJob) -> impl Iterator<Item = [u32; 2]> + use<> {
+    let (width, height) = (job.settings().width, job.settings().height);
+    (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
+}
+
+#[test]
+fn records_of_all_samples_add_up_to_the_film() {
+    let job = small("three-spheres", 16, 9);
+    let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
+    let (film, stats) = rendered(&mut renderer, &job, 0..13);
+    let best = Isa::available().last().copied();
+    let mut rays = 0;
+    for (number, pixel) in pixels(&job).enumerate() {
+        let mut sum = [0.0; 3];
+        for sample in 0..13 {
+            let record = record_path(&job, pixel, sample, best);
+            rays += record.rays.len() as u64;
+            sum = [0, 1, 2].map(|channel| sum[channel] + record.radiance[channel]);
+        }
+        assert_eq!(sum, film.pixel_sum(number).radiance(), "{pixel:?}");
+    }
+    assert_eq!(rays, stats.rays);
+}
+
+#[test]
+fn the_cpu_and_the_reference_agree_on_most_paths() {
+    let job = small("three-spheres", 32, 18);
+    let best = Isa::available().last().copied();
+    let mut parted = 0;
+    for pixel in pixels(&job) {
+        let (single, double) = (record_path(&job, pixel, 3, best), record_path(&job, pixel, 3, None));
+        let comparison = compare(&job, [&single, &double], 1e-3);
+        assert!(comparison.parting.is_none() || comparison.first.is_some());
+        parted += usize::from(comparison.first.is_some());
+    }
+    assert!(parted < 12, "{parted} of 576 differ");
+    let sky = compare(&job, [&record_path(&job, [0, 0], 3, best), &record_path(&job, [0, 0], 3, None)], 1e-4);
+    assert_eq!(sky.first, None);
+}
+
+#[test]
+fn the_gpu_records_what_it_renders_to_the_bit() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let halves = job_of(&scene, camera, [12, 7], 24, SamplerKind::Sobol, true);
+    let independent = job_of(&scene, camera, [12, 7], 24, SamplerKind::Independent, true);
+    let more = [("two halves".to_owned(), halves), ("independent".to_owned(), independent)];
+    for (name, job) in jobs(12, 7).into_iter().chain(more) {
+        for sample in [0, 37] {
+            let (before, stats) = rendered(&mut gpu, &job, sample..sample + 1);
+            let mut rays = 0;
+            for (number, pixel) in pixels(&job).enumerate() {
+                let record = gpu.record_path(&job, pixel, sample).unwrap();
+                assert_eq!(record.radiance, before.pixel_sum(number).radiance(), "{name} {pixel:?} {sample}");
+                let last = record.rays.last().and_then(|ray| ray.hit).and_then(|hit| hit.position);
+                assert_eq!(last, None, "{name}: the path ends");
+                rays += record.rays.len() as u64;
+            }
+            assert_eq!(rays, stats.rays, "{name}");
+            let (after, _) = rendered(&mut gpu, &job, sample..sample + 1);
+            assert_eq!(before, after, "{name}: recording changes nothing");
+        }
+    }
+}
+
+#[test]
+fn the_gpu_and_the_cpu_record_the_same_paths() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    for (name, job) in jobs(16, 9) {
+        if job.rules().surface == Surface::Acne {
+            // What is seen there is rounding itself.
+            continue;
+        }
+        let mut parted = 0;
+        for pixel in pixels(&job) {
+            let on_gpu = gpu.record_path(&job, pixel, 2).unwrap();
+            let on_cpu = record_path(&job, pixel, 2, Isa::available().last().copied());
+            parted += usize::from(compare(&job, [&on_cpu, &on_gpu], 1e-2).first.is_some());
+        }
+        assert!(parted <= 4, "{name}: {parted} of 144 paths part");
+    }
+}
+
+fn diff(arguments: &[&str]) -> (i32, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    let Output { status, stdout, stderr } =
+        command.arg("diff").args(arguments).stdin(Stdio::null()).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (status.code().unwrap(), text(stdout), text(stderr))
+}
+
+#[test]
+fn a_difference_is_found_marked_and_told() {
+    let sides = ["--scene", "book", "--sides", "baseline,reference"];
+    let (code, found, errors) = diff(&[&sides[..], &["--find", "2"]].concat());
+    assert_eq!(code, 1, "{errors}");
+    for part in ["▶ ", "≠", "is allowed", "the paths part", "verdict", "cpu baseline", "reference, f64"] {
+        assert!(found.contains(part), "{part}: {found}");
+    }
+    assert!(!found.contains('\x1b'), "no colours in a file");
+    // The line "again" names the same path.
+    let again = found.lines().find_map(|line| line.strip_prefix("again")).unwrap();
+    let (code, repeated, _) = diff(&[&sides[..], &again.split_whitespace().collect::<Vec<_>>()].concat());
+    assert_eq!(code, 1);
+    let from_path = |text: &str| text[text.find("\npath ").unwrap()..].to_owned();
+    assert_eq!(from_path(&found), from_path(&repeated));
+}
+
+#[test]
+fn equal_sides_agree_to_the_bit() {
+    let (code, text, errors) = diff(&["--sides", "cpu,cpu", "--pixel", "400,220", "--sample", "7"]);
+    assert_eq!(code, 0, "{errors}");
+    assert!(text.contains("the paths agree to the bit") && text.contains("(left)"), "{text}");
+    assert!(!text.contains('▶') && !text.contains('≠') && !text.contains('≈'), "{text}");
+}
+
+#[test]
+fn the_cpu_and_the_reference_agree_within_the_tolerance() {
+    let (code, text, errors) = diff(&["--sides", "cpu,reference", "--pixel", "400,220"]);
+    assert_eq!(code, 0, "{text}{errors}");
+    assert!(text.contains("the paths agree: nothing differs by more than") && text.contains('≈'), "{text}");
+    let (code, text, _) = diff(&["--sides", "cpu,reference", "--pixel", "400,220", "--tolerance", "0"]);
+    assert_eq!(code, 1, "{text}");
+}
+
+#[test]
+fn every_stage_has_a_path() {
+    for stage in weekender::stages::Stage::ALL {
+        let arguments =
+            ["--stage", stage.id, "--sides", "cpu,baseline", "--pixel", "60,30", "--size", "120x67"];
+        let (code, text, errors) = diff(&arguments);
+        assert!(code <= 1 && text.contains("verdict"), "{}: {errors}", stage.id);
+    }
+}
+
+#[test]
+fn json_has_both_paths() {
+    let (code, json, text) = diff(&["--sides", "cpu,reference", "--pixel", "5,6", "--json", "-"]);
+    assert_eq!(code, 0);
+    assert!(text.contains("verdict"), "{text}");
+    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(report["pixel"], serde_json::json!([5, 6]));
+    assert!(report["first"].is_null());
+    for side in 0..2 {
+        assert!(report["sides"][side]["path"]["rays"][0]["origin"][0].is_number(), "{json}");
+    }
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let cases: [(&[&str], &[&str]); 8] = [
+        (&[], &["--pixel"]),
+        (&["--pixel", "800,0", "--sides", "cpu,reference"], &["800,0", "799,449"]),
+        (&["--pixel", "1"], &["a column and a row"]),
+        (&["--pixel", "1,1", "--sides", "cpu"], &["cpu, baseline, reference, gpu"]),
+        (&["--pixel", "1,1", "--find"], &["--find"]),
+        (
+            &["--pixel", "1,1", "--sides", "cpu,reference", "--adapter", "x"],
+            &["--adapter", "gpu among --sides"],
+        ),
+        (&["--pixel", "1,1", "--adapter", "no such adapter"], &["the side gpu", "--sides cpu,reference"]),
+        (&["--pixel", "1,1", "--stage", "all"], &["--stage all", "choose one stage"]),
+    ];
+    for (arguments, parts) in cases {
+        let (code, text, message) = diff(arguments);
+        assert_eq!((code, text.as_str()), (2, ""), "{arguments:?}: {message}");
+        for part in parts {
+            assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
+        }
+    }
+}
