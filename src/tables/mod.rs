@@ -1,5 +1,6 @@
 //! What a kernel reads: the job, rounded once to the kernel's precision and laid out flat.
 
+pub mod cwbvh;
 pub mod hierarchy;
 mod real;
 
