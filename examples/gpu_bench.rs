@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
 use weekender::render_gpu::shader_source::{EntryPoint, source};
 use weekender::render_gpu::{Constant, GpuOptions, GpuRenderer, HierarchyKind, Overrides};
+use weekender::scene::Camera;
 use weekender::scene::builtin::{BuiltinScene, field};
-use weekender::scene::{Camera, Sphere};
 use weekender::stages::{Rules, Shading};
 use weekender::tables::Tables;
 use weekender::tables::cwbvh::{CwBvhNode, Cwbvh};
@@ -151,9 +151,7 @@ fn pair(arguments: &[String]) -> anyhow::Result<()> {
 
 fn hierarchy(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
-    let tables = Tables::<f32>::new(&job);
-    let in_scene = &tables.scene_index[..tables.two_root.len()];
-    let spheres: Vec<Sphere> = in_scene.iter().map(|i| job.scene().spheres[*i as usize]).collect();
+    let spheres = Tables::<f32>::new(&job).spheres_of_hierarchy(&job);
     let [mut bvh2_times, mut cwbvh_times] = [Vec::new(), Vec::new()];
     let count = spheres.len() as f64;
     let ms = |start: Instant| start.elapsed().as_secs_f64() * 1e3;

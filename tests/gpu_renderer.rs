@@ -138,7 +138,7 @@ fn hierarchies_agree() {
     let (book, fields) = ((book(), BOOK_CAMERA), field(2000));
     // Each sphere again in another material: at a tie the first in the list is hit.
     let mut twice = field(300);
-    let materials = twice.0.materials.len() as u32;
+    let materials = twice.0.materials.len();
     let again =
         twice.0.spheres.clone().into_iter().map(|s| Sphere { material: (s.material + 1) % materials, ..s });
     twice.0.spheres.extend(again);

@@ -4,7 +4,6 @@ use super::HierarchyKind;
 use super::layout::{GpuCwbvhNode, GpuNode, GpuRow};
 use super::shader_source::{CWBVH_STACK_SIZE, STACK_SIZE};
 use crate::render::RenderJob;
-use crate::scene::Sphere;
 use crate::tables::Tables;
 use crate::tables::cwbvh::Cwbvh;
 
@@ -52,9 +51,7 @@ impl SceneData {
 
     /// Builds it, puts spheres and rows in the order of its leaves, and returns its depth.
     fn take_cwbvh(&mut self, job: &RenderJob, tables: &Tables<f32>) -> usize {
-        let in_scene = &tables.scene_index[..self.spheres.len()];
-        let spheres: Vec<Sphere> = in_scene.iter().map(|i| job.scene().spheres[*i as usize]).collect();
-        let built = Cwbvh::build(&spheres);
+        let built = Cwbvh::build(&tables.spheres_of_hierarchy(job));
         self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
         let rows: Vec<GpuRow> = built.order.iter().map(|i| self.rows[*i as usize]).collect();
         self.rows[..rows.len()].copy_from_slice(&rows);

@@ -162,6 +162,12 @@ impl<R: Real> Tables<R> {
         Tables { hierarchy, hierarchy_time, ..Tables::from_groups(job, &opaque, &two_root, &anchored) }
     }
 
+    /// The spheres of `two_root` as the scene has them. The tables must be the job's.
+    pub fn spheres_of_hierarchy(&self, job: &RenderJob) -> Vec<Sphere> {
+        let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());
+        indices.map(|index| job.scene().spheres[*index as usize]).collect()
+    }
+
     fn from_groups(job: &RenderJob, opaque: &[u32], two_root: &[u32], anchored: &[u32]) -> Self {
         let (scene, settings) = (job.scene(), *job.settings());
         let sphere = |index: &u32| &scene.spheres[*index as usize];
