@@ -1,6 +1,6 @@
 //! Times the GPU backend; benches/gpu.sh calls it.
 //!
-//! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [cwbvh] [samples=N] [target_ms=N] [adapter=NAME]`
+//! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [bvh2] [samples=N] [target_ms=N] [adapter=NAME]`
 //! prints one row of a table: the median of RUNS after a warm-up, tracing alone.
 //! `gpu_bench pair SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [OPTION...]` runs both hierarchies in turn and prints the
 //! median of each and of the ratios.
@@ -64,7 +64,7 @@ fn options_of(arguments: &[String]) -> anyhow::Result<GpuOptions> {
     for option in arguments {
         match option.split_once('=') {
             None if option == "general" => options.specialise = false,
-            None if option == "cwbvh" => options.hierarchy = HierarchyKind::Cwbvh,
+            None if option == "bvh2" => options.hierarchy = HierarchyKind::Bvh2,
             Some(("samples", count)) => options.samples_per_dispatch = Some(count.parse()?),
             Some(("target_ms", ms)) => options.dispatch_target = Duration::from_millis(ms.parse()?),
             Some(("adapter", name)) => options.adapter = Some(name.to_owned()),

@@ -53,9 +53,9 @@ const PIXEL_SIZE: u64 = size_of::<GpuPixelSum>() as u64;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HierarchyKind {
     /// Two children a node: that of the tables, which the CPU has too.
-    #[default]
     Bvh2,
     /// Eight children a node, with compressed boxes.
+    #[default]
     Cwbvh,
 }
 
