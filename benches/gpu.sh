@@ -2,6 +2,8 @@
 # Measures the GPU backend on this machine and prints tables for docs/benchmarks.md.
 # On a software adapter the sizes are small and the figures good for comparisons only.
 # Usage: benches/gpu.sh [adapter]
+# RUNS, FIELD (spheres of the large field) and SIZE ("WIDTH HEIGHT" of all pictures) in the environment override
+# what it would choose.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -17,19 +19,22 @@ else
     three="800 450" book="1200 675" field="1200 675" three_spp=200 book_spp=500 field_spp=100 runs=30
 fi
 
+runs=${RUNS:-$runs} three=${SIZE:-$three} book=${SIZE:-$book} field_size=${SIZE:-$field} field=field:${FIELD:-100000}
+
 header() {
     printf '\n%s\n\n' "$1"
     echo "| scene, width, height, samples, depth, runs | median ms | M paths/s | M rays/s | least ms | dispatches | ms in dispatches |"
     echo "|---|---|---|---|---|---|---|"
 }
 trace() { "$bench" trace "$@" "${adapter[@]}" 2> /dev/null; }
+pair() { "$bench" pair "$@" "${adapter[@]}" 2> /dev/null; }
 
 header "Scenes, tracing alone"
 # shellcheck disable=SC2086
 {
     trace three-spheres $three $three_spp 24 $runs
     trace book $book $book_spp 50 $runs
-    trace field:100000 $field $field_spp 24 $runs
+    trace $field $field_size $field_spp 24 $runs
 
     header "General kernel, to compare with the specialised above"
     trace three-spheres $three $three_spp 24 $runs general
@@ -45,6 +50,20 @@ header "Scenes, tracing alone"
         trace three-spheres $three $three_spp 24 $runs target_ms=$target
     done
 }
+
+printf '\nHierarchies, run in turn\n\n'
+echo "| scene, width, height, samples, depth, runs | BVH2 ns a path | CWBVH ns a path | median of the ratios |"
+echo "|---|---|---|---|"
+# shellcheck disable=SC2086
+{
+    pair book $book $book_spp 50 $runs
+    pair $field $field_size $field_spp 24 $runs
+}
+
+printf '\nHierarchies in memory, built on one core\n\n'
+echo "| scene | BVH2 bytes a sphere | CWBVH bytes a sphere | BVH2 ms | CWBVH ms |"
+echo "|---|---|---|---|---|"
+"$bench" hierarchy book "$field"
 
 printf '\nOperations of the kernel\n\n| scene | general | specialised | what is in it |\n|---|---|---|---|\n'
 "$bench" size touching-spheres metals three-spheres close-up book

@@ -1,7 +1,10 @@
 //! Times the GPU backend; benches/gpu.sh calls it.
 //!
-//! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [samples=N] [target_ms=N] [adapter=NAME]`
+//! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [bvh2] [samples=N] [target_ms=N] [adapter=NAME]`
 //! prints one row of a table: the median of RUNS after a warm-up, tracing alone.
+//! `gpu_bench pair SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [OPTION...]` runs both hierarchies in turn and prints the
+//! median of each and of the ratios.
+//! `gpu_bench hierarchy SCENE...` prints the size of both hierarchies and how long they take to build.
 //! `gpu_bench adapter [adapter=NAME]` prints the adapter.
 //! `gpu_bench size SCENE...` prints how large each scene's kernel is, general and specialised.
 
@@ -10,25 +13,29 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Arena, Block, Expression, Function, Handle, Literal, Statement};
 use std::collections::HashMap;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
 use weekender::render_gpu::shader_source::{EntryPoint, source};
-use weekender::render_gpu::{Constant, GpuOptions, GpuRenderer, Overrides};
+use weekender::render_gpu::{Constant, GpuOptions, GpuRenderer, HierarchyKind, Overrides};
 use weekender::scene::Camera;
 use weekender::scene::builtin::{BuiltinScene, field};
 use weekender::stages::{Rules, Shading};
 use weekender::tables::Tables;
+use weekender::tables::cwbvh::{CwBvhNode, Cwbvh};
+use weekender::tables::hierarchy::{Hierarchy, Node};
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.split_first() {
         Some((mode, rest)) if mode == "trace" => trace(rest),
+        Some((mode, rest)) if mode == "pair" => pair(rest),
+        Some((mode, rest)) if mode == "hierarchy" => rest.iter().try_for_each(|scene| hierarchy(scene)),
         Some((mode, rest)) if mode == "adapter" => {
             println!("{}", GpuRenderer::new(options_of(rest)?)?.adapter());
             Ok(())
         }
         Some((mode, rest)) if mode == "size" => rest.iter().try_for_each(|scene| size(scene)),
-        _ => anyhow::bail!("the first argument must be trace, adapter or size"),
+        _ => anyhow::bail!("the first argument must be trace, pair, hierarchy, adapter or size"),
     }
 }
 
@@ -57,6 +64,7 @@ fn options_of(arguments: &[String]) -> anyhow::Result<GpuOptions> {
     for option in arguments {
         match option.split_once('=') {
             None if option == "general" => options.specialise = false,
+            None if option == "bvh2" => options.hierarchy = HierarchyKind::Bvh2,
             Some(("samples", count)) => options.samples_per_dispatch = Some(count.parse()?),
             Some(("target_ms", ms)) => options.dispatch_target = Duration::from_millis(ms.parse()?),
             Some(("adapter", name)) => options.adapter = Some(name.to_owned()),
@@ -100,6 +108,69 @@ fn trace(arguments: &[String]) -> anyhow::Result<()> {
         now.dispatches - report.dispatches,
         (now.dispatch_time - report.dispatch_time).as_secs_f64() * 1e3,
         now.timer,
+    );
+    Ok(())
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn pair(arguments: &[String]) -> anyhow::Result<()> {
+    let [scene, width, height, samples, depth, runs, rest @ ..] = arguments else {
+        anyhow::bail!("pair needs SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS");
+    };
+    let job = job(scene, [width.parse()?, height.parse()?, depth.parse()?])?;
+    let range = 0..samples.parse()?;
+    let go_on = AtomicBool::new(false);
+    let mut renderers = Vec::new();
+    for hierarchy in [HierarchyKind::Bvh2, HierarchyKind::Cwbvh] {
+        renderers.push(GpuRenderer::new(GpuOptions { hierarchy, ..options_of(rest)? })?);
+    }
+    let mut times = [Vec::new(), Vec::new()];
+    for run in 0..2 + runs.parse::<usize>()? {
+        for (renderer, times) in renderers.iter_mut().zip(&mut times) {
+            let stats = renderer.accumulate(&job, range.clone(), &mut job.new_film(), &go_on)?;
+            if run >= 2 {
+                times.push(stats.trace.as_secs_f64() * 1e9 / stats.paths as f64);
+            }
+        }
+    }
+    let mut ratios: Vec<f64> = times[1].iter().zip(&times[0]).map(|(cwbvh, bvh2)| cwbvh / bvh2).collect();
+    let [bvh2, cwbvh] = &mut times;
+    println!(
+        "| {} | {:.1} | {:.1} | {:.2} |",
+        arguments.join(" "),
+        median(bvh2),
+        median(cwbvh),
+        median(&mut ratios)
+    );
+    Ok(())
+}
+
+fn hierarchy(scene: &str) -> anyhow::Result<()> {
+    let job = job(scene, [64, 36, 8])?;
+    let spheres = Tables::<f32>::new(&job).spheres_of_hierarchy(&job);
+    let [mut bvh2_times, mut cwbvh_times] = [Vec::new(), Vec::new()];
+    let count = spheres.len() as f64;
+    let ms = |start: Instant| start.elapsed().as_secs_f64() * 1e3;
+    let mut sizes = [0, 0];
+    for _ in 0..5 {
+        let start = Instant::now();
+        let (bvh2, _) = Hierarchy::<f32>::build(&spheres);
+        bvh2_times.push(ms(start));
+        let start = Instant::now();
+        let cwbvh = Cwbvh::build(&spheres);
+        cwbvh_times.push(ms(start));
+        sizes = [bvh2.nodes.len() * size_of::<Node<f32>>(), cwbvh.nodes.len() * size_of::<CwBvhNode>()];
+    }
+    println!(
+        "| {scene} | {:.1} | {:.1} | {:.2} | {:.2} |",
+        sizes[0] as f64 / count,
+        sizes[1] as f64 / count + size_of::<u32>() as f64,
+        median(&mut bvh2_times),
+        median(&mut cwbvh_times),
     );
     Ok(())
 }

@@ -20,8 +20,8 @@ struct Job {
     height: u32,
     // Pixels across a workgroup's tile.
     tile_width: u32,
-    // Most nodes that a traversal can visit.
-    visit_limit: u32,
+    // Nodes of the hierarchy: a traversal visits each once at most.
+    node_count: u32,
     // The spheres where they are few: all threads read one at a time, which constant memory is made for.
     few_spheres: array<vec4f, UNIFORM_SPHERES>,
     few_anchored: array<AnchoredSphere, UNIFORM_ANCHORED>,
@@ -85,7 +85,7 @@ struct Counters {
 @group(0) @binding(1) var<storage, read> spheres: array<vec4f>;
 @group(0) @binding(2) var<storage, read> anchored: array<AnchoredSphere>;
 @group(0) @binding(3) var<storage, read> rows: array<Row>;
-@group(0) @binding(4) var<storage, read> nodes: array<Node>;
+@group(0) @binding(4) var<storage, read> nodes: array<vec4u>;
 
 @group(1) @binding(0) var<uniform> order: Dispatch;
 @group(1) @binding(1) var<storage, read> blocks: array<Block>;
@@ -109,7 +109,23 @@ fn anchored_at(number: u32) -> AnchoredSphere {
 }
 
 fn node_at(number: u32) -> Node {
-    return nodes[number];
+    let low = nodes[2u * number];
+    let high = nodes[2u * number + 1u];
+    return Node(bitcast<vec3f>(low.xyz), low.w, bitcast<vec3f>(high.xyz), high.w);
+}
+
+fn cwbvh_node_at(number: u32) -> CwbvhNode {
+    let first = 5u * number;
+    let low = nodes[first];
+    let more = nodes[first + 1u];
+    return CwbvhNode(
+        bitcast<vec3f>(low.xyz), low.w, more.x, more.y, more.zw, nodes[first + 2u], nodes[first + 3u], nodes[first + 4u],
+    );
+}
+
+// A sphere's place in the list that the leaves' order is not: it stands behind the nodes.
+fn cwbvh_listed(number: u32) -> u32 {
+    return nodes[5u * job.node_count + number / 4u][number % 4u];
 }
 
 // Adds to a pixel of the film; no other thread has it.

@@ -20,9 +20,10 @@ struct Slabs {
     high: vec3f,
 }
 
-fn slabs_of(ray: Ray, extent: f32) -> Slabs {
+// `margin_share` is the rounding relative to the largest coordinate.
+fn slabs_of(ray: Ray, extent: f32, margin_share: f32) -> Slabs {
     let o = abs(ray.origin);
-    let margin = max(max(o.x, o.y), max(o.z, extent)) * BOX_MARGIN;
+    let margin = max(max(o.x, o.y), max(o.z, extent)) * margin_share;
     let d = ray.direction;
     let inverse = vec3f(inverse_of(d.x), inverse_of(d.y), inverse_of(d.z));
     return Slabs(inverse, (ray.origin + margin) * inverse, (ray.origin - margin) * inverse);
@@ -49,14 +50,14 @@ fn box_key(slabs: Slabs, low: vec3f, high: vec3f, limit: f32) -> u32 {
 // Takes the nearest hit among the spheres of the hierarchy.
 fn traverse(ray: Ray, found: Nearest) -> Nearest {
     var nearest = found;
-    let slabs = slabs_of(ray, job.extent);
+    let slabs = slabs_of(ray, job.extent, BOX_MARGIN);
     var stack: array<u32, STACK_SIZE>;
     var depth = 0u;
     var node = node_at(0u);
     if box_key(slabs, node.low, node.high, bitcast<f32>(nearest.key)) == MISS_KEY {
         return nearest;
     }
-    for (var visits = 0u; visits < job.visit_limit; visits++) {
+    for (var visits = 0u; visits < job.node_count; visits++) {
         let count = node.count & COUNT_MASK;
         var next = NONE;
         if count > 0u {

@@ -113,7 +113,9 @@ fn intersect(ray: Ray) -> Nearest {
         }
         return nearest;
     }
-    if HIERARCHY {
+    if HIERARCHY && CWBVH {
+        nearest = traverse_cwbvh(ray, nearest);
+    } else if HIERARCHY {
         nearest = traverse(ray, nearest);
     } else {
         for (var i = 0u; i < opaque_count; i++) {

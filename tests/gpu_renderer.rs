@@ -8,9 +8,9 @@ use gpu_common::{cpu, gpu, job_of};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
 use weekender::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind};
-use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer, adapters};
-use weekender::scene::builtin::BuiltinScene;
-use weekender::scene::{Camera, Material, Scene, Sky};
+use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer, HierarchyKind, adapters};
+use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book, field};
+use weekender::scene::{Camera, Material, Scene, Sky, Sphere};
 use weekender::stages::{Rules, Transfer};
 
 fn go_on() -> AtomicBool {
@@ -127,6 +127,28 @@ fn specialised_is_general() {
             .filter(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3))
             .count();
         assert!(parted <= 3, "{}: {parted}", scene.name);
+    }
+}
+
+#[test]
+fn hierarchies_agree() {
+    let options = |hierarchy| GpuOptions { hierarchy, ..GpuOptions::default() };
+    let Some(mut bvh2) = gpu(options(HierarchyKind::Bvh2)) else { return };
+    let Some(mut cwbvh) = gpu(options(HierarchyKind::Cwbvh)) else { return };
+    let (book, fields) = ((book(), BOOK_CAMERA), field(2000));
+    // Each sphere again in another material: at a tie the first in the list is hit.
+    let mut twice = field(300);
+    let materials = twice.0.materials.len();
+    let again =
+        twice.0.spheres.clone().into_iter().map(|s| Sphere { material: (s.material + 1) % materials, ..s });
+    twice.0.spheres.extend(again);
+    for (name, (scene, camera)) in [("book", book), ("field", fields), ("field twice", twice)] {
+        let job = job_of(&scene, camera, [96, 54], 20, SamplerKind::Sobol, false);
+        let (a, b) = (rendered(&mut bvh2, &job, 4), rendered(&mut cwbvh, &job, 4));
+        assert!(a == b, "{name}");
+        assert!(a.means().iter().any(|mean| mean[1] < 0.4), "{name} shows spheres");
+        assert!(cwbvh.report().features.contains("compressed hierarchy"), "{name}");
+        assert!(!bvh2.report().features.contains("compressed hierarchy"), "{name}");
     }
 }
 

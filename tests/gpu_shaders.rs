@@ -1,11 +1,13 @@
 //! The shaders' text: valid to naga (and tint, where it is installed), and laid out as the host has it.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
+use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::HashMap;
 use std::mem::offset_of;
 use weekender::render_gpu::layout::*;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
+use weekender::render_gpu::{Constant, Overrides};
 
 fn parsed(entry_point: EntryPoint) -> naga::Module {
     let text = source(entry_point);
@@ -15,13 +17,37 @@ fn parsed(entry_point: EntryPoint) -> naga::Module {
     }
 }
 
+/// The general kernel with a list and with each hierarchy: name and value of every override.
+fn variants() -> [Vec<(String, f64)>; 3] {
+    let general = Overrides::default();
+    let variants = [
+        general,
+        Overrides { hierarchy: true, ..general },
+        Overrides { hierarchy: true, cwbvh: true, ..general },
+    ];
+    let value = |constant| match constant {
+        Constant::Flag(flag) => f64::from(u8::from(flag)),
+        Constant::Number(number) => f64::from(number),
+    };
+    variants.map(|v| v.constants().into_iter().map(|(name, c)| (name.to_owned(), value(c))).collect())
+}
+
 #[test]
 fn every_shader_is_valid() {
     for entry_point in EntryPoint::ALL {
         let module = parsed(entry_point);
         let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
-        if let Err(error) = validator.validate(&module) {
-            panic!("{}", error.emit_to_string_with_path(&source(entry_point), entry_point.name()));
+        let info = match validator.validate(&module) {
+            Ok(info) => info,
+            Err(error) => {
+                panic!("{}", error.emit_to_string_with_path(&source(entry_point), entry_point.name()))
+            }
+        };
+        let entry = Some((naga::ShaderStage::Compute, entry_point.name()));
+        for values in variants() {
+            let values = values.into_iter().collect();
+            // What it returns is validated again.
+            process_overrides(&module, &info, entry, &values).unwrap();
         }
     }
 }
@@ -32,12 +58,16 @@ fn every_shader_is_valid_to_tint() {
         let directory = tempfile::tempdir().unwrap();
         let file = directory.path().join(format!("{}.wgsl", entry_point.name()));
         std::fs::write(&file, source(entry_point)).unwrap();
-        let Ok(output) = std::process::Command::new("tint").args(["--format", "wgsl"]).arg(&file).output()
-        else {
-            println!("tint is not installed");
-            return;
-        };
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        for values in variants() {
+            let values: Vec<String> = values.iter().map(|(name, value)| format!("{name}={value}")).collect();
+            let mut tint = std::process::Command::new("tint");
+            tint.args(["--format", "wgsl", "--overrides", &values.join(",")]).arg(&file);
+            let Ok(output) = tint.output() else {
+                println!("tint is not installed");
+                return;
+            };
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        }
     }
 }
 
@@ -88,7 +118,7 @@ fn layouts_agree() {
         width,
         height,
         tile_width,
-        visit_limit,
+        node_count,
         few_spheres,
         few_anchored
     );
@@ -122,6 +152,7 @@ fn layouts_agree() {
         is_anchored
     );
     same_layout!(module, GpuNode, "Node", low, first, high, count);
+    same_layout!(module, GpuCwbvhNode, "CwbvhNode", low, units, first_child, first_sphere, marks, x, y, z);
     same_layout!(module, GpuPixelSum, "PixelSum", red, green, blue);
     same_layout!(module, GpuCounters, "Counters", rays, rays_high, rejected, rejected_high);
 }

@@ -26,8 +26,10 @@ pub struct Overrides {
     pub two_root: bool,
     /// Huge spheres.
     pub anchored: bool,
-    /// The hierarchy.
+    /// A hierarchy.
     pub hierarchy: bool,
+    /// It is the compressed one.
+    pub cwbvh: bool,
     /// The spheres fit the uniform buffer, and the next two counts are those of the scene.
     pub few_spheres: bool,
     /// Spheres of one root.
@@ -86,6 +88,7 @@ impl Default for Overrides {
             two_root: true,
             anchored: true,
             hierarchy: false,
+            cwbvh: false,
             few_spheres: false,
             opaque_count: 0,
             two_root_count: 0,
@@ -125,6 +128,7 @@ impl Overrides {
             few_anchored,
             anchored_count: if few_anchored { tables.anchored.len() as u32 } else { 0 },
             hierarchy: tables.hierarchy.is_some(),
+            cwbvh: false,
             rays: features.rays,
             sobol: job.settings().sampler == SamplerKind::Sobol,
             antialiasing: rules.antialiasing,
@@ -166,6 +170,7 @@ impl Overrides {
             ("TWO_ROOT", Flag(self.two_root)),
             ("ANCHORED", Flag(self.anchored)),
             ("HIERARCHY", Flag(self.hierarchy)),
+            ("CWBVH", Flag(self.cwbvh)),
             ("FEW_SPHERES", Flag(self.few_spheres)),
             ("OPAQUE_COUNT", Number(self.opaque_count)),
             ("TWO_ROOT_COUNT", Number(self.two_root_count)),
@@ -192,7 +197,8 @@ impl Overrides {
             (self.lens, "lens"),
             (self.two_root, "two roots"),
             (self.anchored, "anchored"),
-            (self.hierarchy, "hierarchy"),
+            (self.hierarchy && !self.cwbvh, "hierarchy"),
+            (self.hierarchy && self.cwbvh, "compressed hierarchy"),
             (self.acne, "acne"),
             (self.hemisphere, "hemisphere"),
             (self.reflectance_strips, "strips"),

@@ -3,7 +3,8 @@
 //! Twin: shaders/bindings.wgsl. A test holds the offsets against the shaders' own.
 
 use crate::render::RenderSettings;
-use crate::tables::hierarchy::{self, Hierarchy};
+use crate::tables::cwbvh::CwBvhNode;
+use crate::tables::hierarchy;
 use crate::tables::{AnchoredSphere, CameraTable, Row, Tables};
 use bytemuck::{Pod, Zeroable};
 
@@ -113,8 +114,8 @@ pub struct GpuJob {
     pub height: u32,
     /// Pixels across a workgroup's tile.
     pub tile_width: u32,
-    /// Most nodes that a traversal can visit.
-    pub visit_limit: u32,
+    /// Nodes of the hierarchy.
+    pub node_count: u32,
     /// The spheres, where they are few.
     pub few_spheres: [[f32; 4]; UNIFORM_SPHERES],
     /// The anchored spheres, where they are few.
@@ -122,8 +123,8 @@ pub struct GpuJob {
 }
 
 impl GpuJob {
-    /// What the shaders know of a job.
-    pub fn new(tables: &Tables<f32>) -> Self {
+    /// What the shaders know of a job whose hierarchy has `node_count` nodes.
+    pub fn new(tables: &Tables<f32>, node_count: u32) -> Self {
         let RenderSettings { width, height, max_depth, seed, .. } = tables.settings;
         let mut few_spheres = [[0.0; 4]; UNIFORM_SPHERES];
         for (to, from) in few_spheres.iter_mut().zip(tables.opaque.iter().chain(&tables.two_root)) {
@@ -133,7 +134,6 @@ impl GpuJob {
         for (to, from) in few_anchored.iter_mut().zip(&tables.anchored) {
             *to = from.into();
         }
-        let nodes = tables.hierarchy.as_ref().map_or(0, |h| h.nodes.len());
         GpuJob {
             camera: GpuCamera::new(&tables.camera, width, height),
             sky_middle: tables.sky_middle,
@@ -147,7 +147,7 @@ impl GpuJob {
             width,
             height,
             tile_width: tile_size(width, height)[0],
-            visit_limit: nodes as u32,
+            node_count,
             few_spheres,
             few_anchored,
         }
@@ -248,16 +248,42 @@ pub struct GpuNode {
     pub count: u32,
 }
 
-impl GpuNode {
-    /// The nodes of a hierarchy.
-    pub fn all(hierarchy: &Hierarchy<f32>) -> Vec<GpuNode> {
-        let node = |n: &hierarchy::Node<f32>| GpuNode {
-            low: n.min,
-            first: n.first,
-            high: n.max,
-            count: n.count & hierarchy::COUNT_MASK,
-        };
-        hierarchy.nodes.iter().map(node).collect()
+impl From<&hierarchy::Node<f32>> for GpuNode {
+    fn from(node: &hierarchy::Node<f32>) -> Self {
+        GpuNode {
+            low: node.min,
+            first: node.first,
+            high: node.max,
+            count: node.count & hierarchy::COUNT_MASK,
+        }
+    }
+}
+
+/// Twin: `CwbvhNode` in cwbvh.wgsl; the bytes of obvhs' node.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuCwbvhNode {
+    /// Lowest corner.
+    pub low: [f32; 3],
+    /// Exponents of the unit by axis, and which children are nodes.
+    pub units: u32,
+    /// First child that is a node.
+    pub first_child: u32,
+    /// First sphere.
+    pub first_sphere: u32,
+    /// What each child adds to a mask of hits.
+    pub marks: [u32; 2],
+    /// Bounds along x.
+    pub x: [u32; 4],
+    /// Along y.
+    pub y: [u32; 4],
+    /// Along z.
+    pub z: [u32; 4],
+}
+
+impl From<&CwBvhNode> for GpuCwbvhNode {
+    fn from(node: &CwBvhNode) -> Self {
+        bytemuck::cast(*node)
     }
 }
 

@@ -9,6 +9,7 @@ mod kernel;
 pub mod layout;
 mod readback;
 mod record;
+mod scene;
 mod schedule;
 pub mod shader_source;
 
@@ -22,10 +23,11 @@ use crate::stages::Transfer;
 use crate::tables::Tables;
 use device::Gpu;
 use kernel::{Kernel, Kernels};
-use layout::{GpuAnchoredSphere, GpuCounters, GpuDispatch, GpuJob, GpuNode, GpuPixelSum, GpuRow, tile_size};
+use layout::{GpuAnchoredSphere, GpuCounters, GpuDispatch, GpuJob, GpuPixelSum, tile_size};
 use readback::Timer;
+use scene::SceneData;
 use schedule::{BLOCK_LIMIT, Blocks, Budget};
-use shader_source::{EntryPoint, PROBE_STRIDE, Probe, STACK_SIZE, transfer_tag};
+use shader_source::{EntryPoint, PROBE_STRIDE, Probe, transfer_tag};
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -49,6 +51,16 @@ const STAGING_LIMIT: u64 = 64 << 20;
 
 const PIXEL_SIZE: u64 = size_of::<GpuPixelSum>() as u64;
 
+/// The hierarchy over a scene of many spheres. Both find the same hits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HierarchyKind {
+    /// Two children a node: that of the tables, which the CPU has too.
+    Bvh2,
+    /// Eight children a node, with compressed boxes.
+    #[default]
+    Cwbvh,
+}
+
 /// How to open an adapter and use it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpuOptions {
@@ -60,6 +72,8 @@ pub struct GpuOptions {
     pub dispatch_target: Duration,
     /// Whether kernels carry only what the job needs; else all, to measure what that gains.
     pub specialise: bool,
+    /// The hierarchy that scenes of many spheres get.
+    pub hierarchy: HierarchyKind,
     /// Samples of a pixel in one dispatch, instead of as many as the target allows: to measure.
     pub samples_per_dispatch: Option<u64>,
     /// Most bytes of a film on the device at once; by default what the adapter can bind.
@@ -75,6 +89,7 @@ impl Default for GpuOptions {
             allow_software: false,
             dispatch_target: BATCH_TARGET,
             specialise: true,
+            hierarchy: HierarchyKind::default(),
             samples_per_dispatch: None,
             film_limit: None,
             simulate_device_lost_after: None,
@@ -235,24 +250,20 @@ impl GpuRenderer {
         let gpu = &self.gpu;
         gpu.faults.check()?;
         let tables = Tables::<f32>::new(job);
-        self.report.hierarchy_time = tables.hierarchy_time;
-        if let Some(depth) = tables.hierarchy.as_ref().map(|h| h.depth()).filter(|d| *d > STACK_SIZE) {
-            return Err(format!(
-                "the hierarchy has {depth} levels, the kernel room for {STACK_SIZE}; render this scene on the CPU"
-            ));
-        }
+        let begin = Instant::now();
+        let scene = SceneData::new(job, &tables, self.options.hierarchy)?;
+        self.report.hierarchy_time = tables.hierarchy_time + begin.elapsed();
         let overrides = if self.options.specialise {
             Overrides::specialised(job, &tables)
         } else {
             Overrides::general(job, &tables)
         };
+        let cwbvh = overrides.hierarchy && self.options.hierarchy == HierarchyKind::Cwbvh;
+        let overrides = Overrides { cwbvh, ..overrides };
         let kernel = self.kernels.get(gpu, EntryPoint::PathTrace, &overrides, 0)?;
 
         // The scene.
-        let listed: Vec<[f32; 4]> = tables.opaque.iter().chain(&tables.two_root).copied().collect();
         let anchored: Vec<GpuAnchoredSphere> = tables.anchored.iter().map(Into::into).collect();
-        let rows: Vec<GpuRow> = tables.rows.iter().map(Into::into).collect();
-        let nodes = tables.hierarchy.as_ref().map(GpuNode::all).unwrap_or_default();
         let storage = |label, data: &[u8]| {
             let limit = gpu.adapter.storage_binding_limit.min(gpu.adapter.buffer_limit);
             if data.len() as u64 > limit {
@@ -264,15 +275,16 @@ impl GpuRenderer {
             }
             gpu.filled(label, data, wgpu::BufferUsages::STORAGE)
         };
-        let scene = [
-            gpu.filled("job", bytemuck::bytes_of(&GpuJob::new(&tables)), wgpu::BufferUsages::UNIFORM)?,
-            storage("spheres", bytemuck::cast_slice(&listed))?,
+        let job_data = GpuJob::new(&tables, scene.node_count);
+        let buffers = [
+            gpu.filled("job", bytemuck::bytes_of(&job_data), wgpu::BufferUsages::UNIFORM)?,
+            storage("spheres", bytemuck::cast_slice(&scene.spheres))?,
             // At least one element of each, as the shader's types ask for.
             storage("anchored spheres", bytemuck::cast_slice(&at_least_one(anchored)))?,
-            storage("rows", bytemuck::cast_slice(&rows))?,
-            storage("nodes", bytemuck::cast_slice(&at_least_one(nodes)))?,
+            storage("rows", bytemuck::cast_slice(&scene.rows))?,
+            storage("nodes", bytemuck::cast_slice(&at_least_one(scene.nodes)))?,
         ];
-        let job_group = gpu.bind(&gpu.layouts.job, &scene.each_ref());
+        let job_group = gpu.bind(&gpu.layouts.job, &buffers.each_ref());
 
         // The film, or as many of its rows as fit a buffer, whole tiles each time.
         let settings = job.settings();
@@ -317,7 +329,7 @@ impl GpuRenderer {
         Ok(Prepared {
             job: job.clone(),
             block_limit: tables.block_limit,
-            scene_index: tables.scene_index,
+            scene_index: scene.scene_index,
             overrides,
             kernel,
             job_group,

@@ -5,12 +5,16 @@ use super::layout::{UNIFORM_ANCHORED, UNIFORM_SPHERES, WORKGROUP_SIZE};
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
 use crate::stages::{DielectricLaws, Shading, Transfer};
+use crate::tables::cwbvh;
 use crate::tables::hierarchy::{COUNT_MASK, LEAST_COMPONENT, ROUNDING_UNITS};
 use crate::tables::{NEAR_ZERO, NONE};
 use std::fmt::Write;
 
 /// Nodes that a traversal can have set aside. A tree has at most that many levels.
 pub const STACK_SIZE: usize = 64;
+
+/// The same for a compressed hierarchy, where it is one entry a level.
+pub const CWBVH_STACK_SIZE: usize = 24;
 
 /// Words of a probe's input and output.
 pub const PROBE_STRIDE: usize = 16;
@@ -60,12 +64,13 @@ impl EntryPoint {
 }
 
 /// The functions and bindings that all entry points share.
-const SHARED: [&str; 9] = [
+const SHARED: [&str; 10] = [
     include_str!("../../shaders/lanes.wgsl"),
     include_str!("../../shaders/rng.wgsl"),
     include_str!("../../shaders/camera.wgsl"),
     include_str!("../../shaders/sphere.wgsl"),
     include_str!("../../shaders/bvh.wgsl"),
+    include_str!("../../shaders/cwbvh.wgsl"),
     include_str!("../../shaders/bindings.wgsl"),
     include_str!("../../shaders/material.wgsl"),
     include_str!("../../shaders/path.wgsl"),
@@ -135,6 +140,7 @@ pub fn prelude() -> String {
     unsigned("UNIFORM_SPHERES", UNIFORM_SPHERES as u32);
     unsigned("UNIFORM_ANCHORED", UNIFORM_ANCHORED as u32);
     unsigned("STACK_SIZE", STACK_SIZE as u32);
+    unsigned("CWBVH_STACK_SIZE", CWBVH_STACK_SIZE as u32);
     unsigned("PROBE_STRIDE", PROBE_STRIDE as u32);
     unsigned("RECORD_HEADER", RECORD_HEADER as u32);
     unsigned("RECORD_STRIDE", RECORD_STRIDE as u32);
@@ -171,6 +177,7 @@ pub fn prelude() -> String {
     float("NEAR_ZERO", NEAR_ZERO);
     float("LEAST_COMPONENT", LEAST_COMPONENT);
     float("BOX_MARGIN", ROUNDING_UNITS * f64::from(f32::EPSILON) / 2.0);
+    float("CWBVH_MARGIN", cwbvh::ROUNDING_UNITS * f64::from(f32::EPSILON) / 2.0);
     float("BOX_WIDENING", 1.0 + 4.0 * f64::from(f32::EPSILON));
     for (index, coefficient) in sine_coefficients().into_iter().enumerate() {
         float(&format!("SINE_{index}"), coefficient);

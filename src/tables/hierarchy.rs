@@ -44,13 +44,14 @@ pub struct Hierarchy<R> {
     pub extent: R,
 }
 
-struct SphereBounds {
+/// The corners of a sphere's box, widened by the rounding in the test of a sphere.
+pub(super) struct SphereBounds {
     min: DVec3,
     max: DVec3,
 }
 
 impl SphereBounds {
-    fn new(sphere: &Sphere) -> Self {
+    pub(super) fn new(sphere: &Sphere) -> Self {
         let unit = f64::from(f32::EPSILON) / 2.0;
         let reach =
             sphere.radius + ROUNDING_UNITS * unit * (sphere.radius + sphere.center.abs().max_element());
@@ -71,12 +72,7 @@ impl<R: Real> Hierarchy<R> {
     /// Builds it over at least one sphere. Returns also the order in which the leaves name the spheres.
     pub fn build(spheres: &[Sphere]) -> (Self, Vec<u32>) {
         let bounds: Vec<SphereBounds> = spheres.iter().map(SphereBounds::new).collect();
-        let params = if spheres.len() <= 100_000 {
-            BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::medium_build() }
-        } else {
-            BvhBuildParams { max_prims_per_leaf: 4, ..BvhBuildParams::fast_build() }
-        };
-        let tree = build_bvh2(&bounds, params, &mut Duration::default());
+        let tree = build_bvh2(&bounds, params(spheres.len(), 4), &mut Duration::default());
         let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
         let mut extent = 0.0_f32;
         let nodes = tree
@@ -113,6 +109,13 @@ impl<R> Hierarchy<R> {
         }
         deepest
     }
+}
+
+/// How obvhs is to build the tree of so many spheres.
+pub(super) fn params(spheres: usize, max_prims_per_leaf: u32) -> BvhBuildParams {
+    let preset =
+        if spheres <= 100_000 { BvhBuildParams::medium_build() } else { BvhBuildParams::fast_build() };
+    BvhBuildParams { max_prims_per_leaf, ..preset }
 }
 
 /// The axis along which two sibling boxes lie farthest apart, in bits 30 and 31; bit 29 is set where the second

@@ -1,5 +1,6 @@
 //! What a kernel reads: the job, rounded once to the kernel's precision and laid out flat.
 
+pub mod cwbvh;
 pub mod hierarchy;
 mod real;
 
@@ -159,6 +160,12 @@ impl<R: Real> Tables<R> {
         }
         let hierarchy_time = if hierarchy.is_some() { begin.elapsed() } else { Duration::ZERO };
         Tables { hierarchy, hierarchy_time, ..Tables::from_groups(job, &opaque, &two_root, &anchored) }
+    }
+
+    /// The spheres of `two_root` as the scene has them. The tables must be the job's.
+    pub fn spheres_of_hierarchy(&self, job: &RenderJob) -> Vec<Sphere> {
+        let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());
+        indices.map(|index| job.scene().spheres[*index as usize]).collect()
     }
 
     fn from_groups(job: &RenderJob, opaque: &[u32], two_root: &[u32], anchored: &[u32]) -> Self {

@@ -1,0 +1,123 @@
+// Traversal of the compressed hierarchy of eight children a node by one ray. (Ylitie, Karras and Laine 2017,
+// "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", sections 3 and 4.)
+
+struct CwbvhNode {
+    // Lowest corner, from which the children's boxes are measured.
+    low: vec3f,
+    // By axis, 8 bits: the exponent of the unit of their bounds. In the highest 8 bits, which children are nodes.
+    units: u32,
+    // Its children that are nodes stand side by side from here on,
+    first_child: u32,
+    // and the spheres of the others from here on.
+    first_sphere: u32,
+    // By child, 8 bits: what it adds to a mask of hits, in the upper 3, at the bit that the lower 5 tell.
+    marks: vec2u,
+    // By axis, 8 bits a child: lower bounds of children 0 .. 3 and 4 .. 7, then upper bounds.
+    x: vec4u,
+    y: vec4u,
+    z: vec4u,
+}
+
+// The 8 bits of a mask of hits that stand for nodes, the one to be visited first in the highest; below them are
+// 24 for spheres.
+const NODE_HITS = 0xFF000000u;
+
+const BYTE_SHIFTS = vec4u(0u, 8u, 16u, 24u);
+
+// A ray prepared for a node's boxes: along each axis the distance is `bound * step + near` at the plane where it
+// enters, `bound * step + far` where it leaves.
+struct Grid {
+    step: vec3f,
+    near: vec3f,
+    far: vec3f,
+}
+
+fn bytes_of(word: u32) -> vec4u {
+    return (vec4u(word) >> BYTE_SHIFTS) & vec4u(0xFFu);
+}
+
+// Which of four children the ray meets before distance `limit`, as the bits that their marks tell. By axis the
+// bounds of the planes where it enters and leaves. Slots of nodes are put in order by `octant`.
+fn four_hits(
+    grid: Grid, x: vec2u, y: vec2u, z: vec2u, marks: u32, octant: u32, limit: f32,
+) -> u32 {
+    let near_x = fma(vec4f(bytes_of(x.x)), vec4f(grid.step.x), vec4f(grid.near.x));
+    let near_y = fma(vec4f(bytes_of(y.x)), vec4f(grid.step.y), vec4f(grid.near.y));
+    let near_z = fma(vec4f(bytes_of(z.x)), vec4f(grid.step.z), vec4f(grid.near.z));
+    let far_x = fma(vec4f(bytes_of(x.y)), vec4f(grid.step.x), vec4f(grid.far.x));
+    let far_y = fma(vec4f(bytes_of(y.y)), vec4f(grid.step.y), vec4f(grid.far.y));
+    let far_z = fma(vec4f(bytes_of(z.y)), vec4f(grid.step.z), vec4f(grid.far.z));
+    let enter = max(max(near_x, near_y), max(near_z, vec4f(0.0)));
+    let leave = min(min(far_x, far_y), min(far_z, vec4f(limit)));
+    let mark = bytes_of(marks);
+    let place = mark & vec4u(31u);
+    let ordered = select(place, place ^ vec4u(octant), place >= vec4u(24u));
+    let bits = select(vec4u(0u), (mark >> vec4u(5u)) << ordered, leave * BOX_WIDENING >= enter);
+    return bits.x | bits.y | bits.z | bits.w;
+}
+
+// Takes the nearest hit among the spheres of the hierarchy.
+fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
+    var nearest = found;
+    let slabs = slabs_of(ray, job.extent, CWBVH_MARGIN);
+    let backward = slabs.inverse < vec3f(0.0);
+    let near_origin = select(slabs.low, slabs.high, backward);
+    let far_origin = select(slabs.high, slabs.low, backward);
+    // A child lies in the slot whose number's bits tell on which side, x in the highest: the slot of the ray's own
+    // octant is the nearest, and gets the highest bit.
+    let forward = select(vec3u(4u, 2u, 1u), vec3u(0u), backward);
+    let octant = forward.x | forward.y | forward.z;
+    // Nodes to be visited of one parent: the first child, and hits with the parent's mask of nodes below. At first
+    // the root, as an only child.
+    var group = vec2u(0u, 1u << 31u);
+    var stack: array<vec2u, CWBVH_STACK_SIZE>;
+    var depth = 0u;
+    for (var visits = 0u; visits < job.node_count; visits++) {
+        let bit = firstLeadingBit(group.y);
+        let slot = (bit - 24u) ^ octant;
+        let node = cwbvh_node_at(group.x + countOneBits(group.y & ((1u << slot) - 1u)));
+        group.y &= ~(1u << bit);
+        if group.y >= 1u << 24u {
+            stack[depth] = group;
+            depth++;
+        }
+
+        // The node's children.
+        let unit = bitcast<vec3f>(bytes_of(node.units).xyz << vec3u(23u));
+        let grid = Grid(
+            unit * slabs.inverse,
+            fma(node.low, slabs.inverse, -near_origin),
+            fma(node.low, slabs.inverse, -far_origin),
+        );
+        let x = select(node.x, node.x.zwxy, backward.x);
+        let y = select(node.y, node.y.zwxy, backward.y);
+        let z = select(node.z, node.z.zwxy, backward.z);
+        let limit = bitcast<f32>(nearest.key);
+        let hits = four_hits(grid, x.xz, y.xz, z.xz, node.marks.x, octant, limit)
+            | four_hits(grid, x.yw, y.yw, z.yw, node.marks.y, octant, limit);
+
+        // Its spheres.
+        for (var left = hits & ~NODE_HITS; left != 0u; left &= left - 1u) {
+            let number = node.first_sphere + firstTrailingBit(left);
+            let key = nearest_root(ray, sphere_at(number), number);
+            if key < nearest.key || (key == nearest.key && comes_before(number, nearest.sphere)) {
+                nearest = Nearest(key, number);
+            }
+        }
+
+        group = vec2u(node.first_child, (hits & NODE_HITS) | (node.units >> 24u));
+        if group.y < 1u << 24u {
+            if depth == 0u {
+                break;
+            }
+            depth--;
+            group = stack[depth];
+        }
+    }
+    return nearest;
+}
+
+// Of two spheres at one distance the first in the list stays, which leaves do not keep the order of.
+fn comes_before(a: u32, b: u32) -> bool {
+    return b != NONE && cwbvh_listed(a) < cwbvh_listed(b);
+}

@@ -1,0 +1,73 @@
+//! A scene's spheres, rows and hierarchy in the order in which the kernel reads them.
+
+use super::HierarchyKind;
+use super::layout::{GpuCwbvhNode, GpuNode, GpuRow};
+use super::shader_source::{CWBVH_STACK_SIZE, STACK_SIZE};
+use crate::render::RenderJob;
+use crate::tables::Tables;
+use crate::tables::cwbvh::Cwbvh;
+
+/// What goes into the buffers of a scene.
+pub struct SceneData {
+    /// Centre and squared radius.
+    pub spheres: Vec<[f32; 4]>,
+    /// By sphere, the huge ones last.
+    pub rows: Vec<GpuRow>,
+    /// By sphere, its index in the scene.
+    pub scene_index: Vec<u32>,
+    /// The hierarchy's nodes; behind those of a compressed one stands each sphere's place in the tables.
+    pub nodes: Vec<[u32; 4]>,
+    /// Nodes among them.
+    pub node_count: u32,
+}
+
+impl SceneData {
+    /// With a hierarchy of the kind asked for, where the tables have one.
+    ///
+    /// # Errors
+    /// Where a traversal has no room for its levels.
+    pub fn new(job: &RenderJob, tables: &Tables<f32>, kind: HierarchyKind) -> Result<Self, String> {
+        let mut data = SceneData {
+            spheres: tables.opaque.iter().chain(&tables.two_root).copied().collect(),
+            rows: tables.rows.iter().map(Into::into).collect(),
+            scene_index: tables.scene_index.clone(),
+            nodes: Vec::new(),
+            node_count: 0,
+        };
+        let Some(hierarchy) = &tables.hierarchy else { return Ok(data) };
+        let (depth, room) = match kind {
+            HierarchyKind::Bvh2 => {
+                let nodes: Vec<GpuNode> = hierarchy.nodes.iter().map(Into::into).collect();
+                data.node_count = nodes.len() as u32;
+                data.nodes = bytemuck::cast_slice(&nodes).to_vec();
+                (hierarchy.depth(), STACK_SIZE)
+            }
+            HierarchyKind::Cwbvh => (data.take_cwbvh(job, tables), CWBVH_STACK_SIZE),
+        };
+        if depth > room {
+            return Err(format!(
+                "the hierarchy has {depth} levels, the kernel room for {room}; render this scene on the CPU"
+            ));
+        }
+        Ok(data)
+    }
+
+    /// Builds it, puts spheres and rows in the order of its leaves, and returns its depth.
+    fn take_cwbvh(&mut self, job: &RenderJob, tables: &Tables<f32>) -> usize {
+        let built = Cwbvh::build(&tables.spheres_of_hierarchy(job));
+        self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
+        let rows: Vec<GpuRow> = built.order.iter().map(|i| self.rows[*i as usize]).collect();
+        self.rows[..rows.len()].copy_from_slice(&rows);
+        let scene_index: Vec<u32> = built.order.iter().map(|i| self.scene_index[*i as usize]).collect();
+        self.scene_index[..scene_index.len()].copy_from_slice(&scene_index);
+        let nodes: Vec<GpuCwbvhNode> = built.nodes.iter().map(Into::into).collect();
+        self.node_count = nodes.len() as u32;
+        self.nodes = bytemuck::cast_slice(&nodes).to_vec();
+        self.nodes.extend(built.order.chunks(4).map(|four| {
+            let mut places = [0; 4];
+            places[..four.len()].copy_from_slice(four);
+            places
+        }));
+        built.depth()
+    }
+}

@@ -1,0 +1,162 @@
+//! A hierarchy of eight children a node whose boxes take 8 bits a bound: 80 bytes a node.
+//!
+//! Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs". obvhs
+//! builds the tree and lays its nodes out; here their boxes are set anew, so that none is smaller by rounding than
+//! what it holds.
+
+use super::hierarchy::{self, SphereBounds, params};
+use crate::scene::Sphere;
+use glam::{DVec3, Vec3A};
+use obvhs::Boundable;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+pub use obvhs::cwbvh::node::CwBvhNode;
+use std::time::Duration;
+
+/// As [`hierarchy::ROUNDING_UNITS`], for boxes that are measured from the corner of a node: the distance to that
+/// corner is rounded by 2 units more, and a box reaches farther than what it holds by at most 1 / 127 of its node.
+pub const ROUNDING_UNITS: f64 = hierarchy::ROUNDING_UNITS + 4.0;
+
+/// Most spheres of a leaf: a node's marks have room for 3.
+const LEAF_SPHERES: u32 = 3;
+
+/// Largest bound.
+const BOUND_MAX: f64 = 255.0;
+
+/// Nodes, the root first.
+#[derive(Clone, Debug)]
+pub struct Cwbvh {
+    /// All nodes; children stand behind their parents.
+    pub nodes: Vec<CwBvhNode>,
+    /// The order in which the leaves name the spheres.
+    pub order: Vec<u32>,
+}
+
+impl Cwbvh {
+    /// Builds it over at least one sphere.
+    pub fn build(spheres: &[Sphere]) -> Self {
+        let bounds: Vec<SphereBounds> = spheres.iter().map(SphereBounds::new).collect();
+        let tree = build_bvh2(&bounds, params(spheres.len(), 1), &mut Duration::default());
+        let wide = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
+        let mut built = Cwbvh { nodes: wide.nodes, order: wide.primitive_indices };
+        let boxes: Vec<Aabb> = built.order.iter().map(|index| bounds[*index as usize].aabb()).collect();
+        built.set_boxes(&boxes);
+        built
+    }
+
+    /// Sets all boxes from those of the spheres in the order of the leaves.
+    fn set_boxes(&mut self, spheres: &[Aabb]) {
+        let mut boxes = vec![Aabb::empty(); self.nodes.len()];
+        for index in (0..self.nodes.len()).rev() {
+            let node = &mut self.nodes[index];
+            let children: [Aabb; 8] = std::array::from_fn(|child| {
+                if node.is_child_empty(child) {
+                    Aabb::empty()
+                } else if node.is_leaf(child) {
+                    let (first, count) = node.child_primitives(child);
+                    united(&spheres[first as usize..(first + count) as usize])
+                } else {
+                    boxes[node.child_node_index(child) as usize]
+                }
+            });
+            boxes[index] = united(&children);
+            set_children(node, &boxes[index], &children);
+        }
+    }
+
+    /// Nodes on the longest way from the root to a leaf.
+    pub fn depth(&self) -> usize {
+        let mut depths = vec![1; self.nodes.len()];
+        for (index, node) in self.nodes.iter().enumerate() {
+            for child in (0..8).filter(|child| !node.is_leaf(*child)) {
+                depths[node.child_node_index(child) as usize] = depths[index] + 1;
+            }
+        }
+        depths.into_iter().max().unwrap_or(0)
+    }
+}
+
+fn united(boxes: &[Aabb]) -> Aabb {
+    boxes.iter().fold(Aabb::empty(), |all, one| all.union(one))
+}
+
+/// Measures the children's boxes from the lowest corner of `whole`, in the smallest unit in which they fit.
+fn set_children(node: &mut CwBvhNode, whole: &Aabb, children: &[Aabb; 8]) {
+    let wide = |v: Vec3A| v.as_dvec3().to_array();
+    let (low, high) = (wide(whole.min), wide(whole.max));
+    node.p = whole.min.into();
+    for axis in 0..3 {
+        // Sizes are differences of f32, so that f64 has them with 29 bits to spare.
+        let size = high[axis] - low[axis];
+        let unit = |exponent: u8| f64::from(f32::from_bits(u32::from(exponent) << 23));
+        let exponent = (1..u8::MAX).find(|e| unit(*e) * BOUND_MAX >= size).unwrap_or(u8::MAX - 1);
+        node.e[axis] = exponent;
+        let (mins, maxs) = match axis {
+            0 => (&mut node.child_min_x, &mut node.child_max_x),
+            1 => (&mut node.child_min_y, &mut node.child_max_y),
+            _ => (&mut node.child_min_z, &mut node.child_max_z),
+        };
+        for (child, bounds) in children.iter().enumerate() {
+            let in_units = |corner: DVec3| (corner[axis] - low[axis]) / unit(exponent);
+            mins[child] = in_units(bounds.min.as_dvec3()).floor() as u8;
+            maxs[child] = in_units(bounds.max.as_dvec3()).ceil() as u8;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::builtin::field;
+
+    /// The corners of a child's box, without rounding.
+    fn corners(node: &CwBvhNode, child: usize) -> [DVec3; 2] {
+        let local = node.local_child_aabb(child);
+        let unit = node.compute_extent().as_dvec3();
+        [local.min, local.max].map(|corner| node.p.as_dvec3() + corner.as_dvec3() * unit)
+    }
+
+    fn check(spheres: &[Sphere]) {
+        let built = Cwbvh::build(spheres);
+        let mut held = vec![0; spheres.len()];
+        // Every node with the boxes that it lies in.
+        let mut open = vec![(0_u32, Vec::new())];
+        while let Some((index, around)) = open.pop() {
+            let node = &built.nodes[index as usize];
+            for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
+                let mut around: Vec<[DVec3; 2]> = around.clone();
+                around.push(corners(node, child));
+                if !node.is_leaf(child) {
+                    open.push((node.child_node_index(child), around));
+                    continue;
+                }
+                let (first, count) = node.child_primitives(child);
+                for number in &built.order[first as usize..(first + count) as usize] {
+                    held[*number as usize] += 1;
+                    let Sphere { center, radius, .. } = spheres[*number as usize];
+                    for [low, high] in &around {
+                        assert!(low.cmplt(center - radius).all() && high.cmpgt(center + radius).all());
+                    }
+                }
+            }
+        }
+        assert!(held.iter().all(|count| *count == 1), "each sphere is in one leaf");
+    }
+
+    #[test]
+    fn boxes_hold_their_spheres() {
+        check(&field(3000).0.spheres);
+        check(&field(3000).0.spheres[5..6]);
+        for scale in [1e-9, 1e6, 1e12] {
+            let mut spheres = field(500).0.spheres;
+            for sphere in &mut spheres {
+                sphere.center = sphere.center * scale + DVec3::X * 3e3 * scale;
+                sphere.radius *= scale;
+            }
+            check(&spheres);
+        }
+        // All at one place.
+        check(&[field(1).0.spheres[0]; 40]);
+    }
+}
