@@ -325,7 +325,7 @@ impl Gpu {
                 // A loss is told to the callback at the next poll.
                 let _ = self.device.poll(wgpu::PollType::Poll);
                 self.faults.check()?;
-                Err(format!("waiting for the device: {error}"))
+                Err(format!("the device was lost or does not answer: {error}"))
             }
         }
     }
