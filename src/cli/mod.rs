@@ -5,7 +5,7 @@ mod raw;
 mod sources;
 mod values;
 
-pub use options::{BatchOptions, JsonTarget, MergeOptions, RenderOptions, SaveSceneOptions};
+pub use options::{BatchOptions, JsonTarget, MergeOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use raw::ProgressChoice;
 pub use sources::CliError;
 
@@ -18,7 +18,7 @@ use std::ffi::OsString;
 #[derive(Debug)]
 pub enum Request {
     /// Open the window.
-    Window,
+    Window(Box<WindowOptions>),
     /// List scenes, stages and devices.
     List,
     /// Write a scene file and render nothing.

@@ -31,6 +31,25 @@ pub struct BatchOptions {
     pub json: Option<JsonTarget>,
 }
 
+/// What the window opens with.
+#[derive(Clone, Debug)]
+pub struct WindowOptions {
+    /// What is rendered.
+    pub recipe: Recipe,
+    /// The stage that it is from.
+    pub stage: Option<&'static Stage>,
+    /// The scene file that it is from.
+    pub file: Option<PathBuf>,
+    /// Who renders.
+    pub backend: BackendChoice,
+    /// When it ends, if that was said.
+    pub plan: Option<Plan>,
+    /// The film that goes on.
+    pub resume: Option<PathBuf>,
+    /// Where the times of the window's frames go.
+    pub frame_log: Option<PathBuf>,
+}
+
 /// One picture.
 #[derive(Clone, Debug)]
 pub struct RenderOptions {
@@ -81,6 +100,9 @@ pub struct MergeOptions {
 pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
     let backend = backend(&raw)?;
     check_film_names(&raw)?;
+    if !raw.batch && raw.save_scene.is_none() {
+        return Ok(Request::Window(Box::new(window(&raw, backend)?)));
+    }
     let (renders, directory) = if raw.stage.as_deref() == Some("all") {
         let directory = directory_of_all(&raw)?;
         let renders = Stage::ALL
@@ -102,7 +124,6 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
     };
     match save_scene {
         Some(options) if !raw.batch => Ok(Request::SaveScene(options)),
-        _ if !raw.batch => Ok(Request::Window),
         save_scene => Ok(Request::Batch(BatchOptions {
             renders,
             directory,
@@ -112,6 +133,41 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
             json: raw.json.map(json_target),
         })),
     }
+}
+
+fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliError> {
+    if raw.stage.as_deref() == Some("all") {
+        return Err(CliError::Needs {
+            flag: "--stage all",
+            other: "--batch",
+            reason: "the window shows one stage at a time, and leads from each to the next",
+        });
+    }
+    for (flag, is_given) in [
+        ("--out", raw.out.is_some()),
+        ("--checkpoint", raw.checkpoint.is_some()),
+        ("--json", raw.json.is_some()),
+        ("--sample-range", raw.sample_range.is_some()),
+    ] {
+        if is_given {
+            let reason = "it is for rendering to files; in the window, use the File menu";
+            return Err(CliError::Needs { flag, other: "--batch", reason });
+        }
+    }
+    let mut source = sources::find(raw)?;
+    sources::change(&mut source.recipe, raw);
+    source.recipe.job()?;
+    let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
+    let is_file = raw.scene.as_deref().is_some_and(sources::is_file);
+    Ok(WindowOptions {
+        plan: ends.then(|| plan(raw, &source.recipe)),
+        recipe: source.recipe,
+        stage: source.stage,
+        file: raw.scene.as_ref().filter(|_| is_file).map(PathBuf::from),
+        backend,
+        resume: raw.resume.clone(),
+        frame_log: raw.frame_log.clone(),
+    })
 }
 
 fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
