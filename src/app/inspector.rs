@@ -78,11 +78,6 @@ impl Inspector {
         self.pixel = pixel;
     }
 
-    /// What is known of the pixel under the pointer.
-    pub fn pixel(&self) -> Option<&Pixel> {
-        self.pixel.as_ref()
-    }
-
     /// Asks the film, if there is something to learn.
     pub fn follow(
         &mut self,
@@ -140,11 +135,6 @@ impl Inspector {
     /// The points of the listed path.
     pub fn path_points(&self) -> impl Iterator<Item = DVec3> + '_ {
         self.path.iter().flat_map(|path| path.vertices.iter().map(|vertex| vertex.position))
-    }
-
-    /// Whether a path is listed.
-    pub fn has_path(&self) -> bool {
-        self.path.is_some()
     }
 }
 

@@ -15,8 +15,13 @@ pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
         let height = ui.spacing().interact_size.y + 2.0;
         ui.horizontal(|ui| {
             ui.set_min_height(height);
-            egui::MenuBar::new().ui(ui, |ui| menus(window, ui));
+            ui.scope(|ui| {
+                egui::containers::menu::menu_style(ui.style_mut());
+                ui.spacing_mut().item_spacing.x = 2.0;
+                menus(window, ui);
+            });
             if !is_narrow {
+                ui.add_space(12.0);
                 stage_bar(window, ui, true);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(window, ui));
             }
@@ -142,7 +147,7 @@ fn stage_bar(window: &mut Window, ui: &mut Ui, is_wide: bool) {
         Some(stage) => format!("{}  {}", stage.section, stage.title),
         None => window.document.origin.recipe.name.clone(),
     };
-    let width = if is_wide { (ui.available_width() - 420.0).clamp(160.0, 330.0) } else { 240.0 };
+    let width = if is_wide { (ui.available_width() - 400.0).clamp(160.0, 340.0) } else { 240.0 };
     let button = Button::new(RichText::new(title).strong()).min_size(egui::vec2(width, 0.0)).truncate();
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);
@@ -177,9 +182,11 @@ fn with_keys(ui: &Ui, command: Command) -> String {
 fn buttons(window: &mut Window, ui: &mut Ui) {
     save(window, ui);
     pause(window, ui);
-    ui.add_space(6.0);
-    ui.with_layout(Layout::left_to_right(Align::Center), |_| {});
-    devices_reversed(window, ui);
+    ui.add_space(8.0);
+    ui.spacing_mut().item_spacing.x = 3.0;
+    for device in Device::ALL.into_iter().rev() {
+        device_button(window, ui, device);
+    }
 }
 
 fn save(window: &mut Window, ui: &mut Ui) {
@@ -205,19 +212,13 @@ fn pause(window: &mut Window, ui: &mut Ui) {
 }
 
 fn devices(window: &mut Window, ui: &mut Ui) {
+    ui.spacing_mut().item_spacing.x = 3.0;
     for device in Device::ALL {
         device_button(window, ui, device);
     }
 }
 
-fn devices_reversed(window: &mut Window, ui: &mut Ui) {
-    for device in Device::ALL.into_iter().rev() {
-        device_button(window, ui, device);
-    }
-}
-
 fn device_button(window: &mut Window, ui: &mut Ui, device: Device) {
-    ui.spacing_mut().item_spacing.x = 3.0;
     let is_chosen = window.remembered.device == device;
     let unavailable = device.unavailable();
     let mut label = RichText::new(device.label());

@@ -1,7 +1,7 @@
 //! How the camera moves. Each function takes a camera and returns one; a move that would leave no valid camera
 //! is not made.
 
-use crate::scene::{Camera, VFOV_LIMITS_DEGREES};
+use crate::scene::Camera;
 use glam::{DQuat, DVec3};
 
 /// The view never comes closer to straight up or down than this, so that left stays left.
@@ -42,12 +42,6 @@ pub fn focus(camera: &Camera, point: DVec3) -> Camera {
     kept(camera, Camera { focus_distance: Some(camera.depth_of(point)), ..*camera })
 }
 
-/// Opens or closes the field of view.
-pub fn widen(camera: &Camera, factor: f64) -> Camera {
-    let [low, high] = VFOV_LIMITS_DEGREES;
-    Camera { vfov_degrees: (camera.vfov_degrees * factor).clamp(low, high), ..*camera }
-}
-
 /// `v` turned about `vup`, then towards it.
 fn turned(camera: &Camera, v: DVec3, about_up: f64, towards_up: f64) -> DVec3 {
     let Some(up) = camera.vup.try_normalize() else { return v };
@@ -84,7 +78,6 @@ mod tests {
         assert_eq!(focus(&CAMERA, DVec3::new(9.0, 9.0, 1.0)).focus_distance, Some(3.0));
         assert_eq!(recentre(&CAMERA, CAMERA.look_from), CAMERA, "no direction: not made");
         assert_eq!(focus(&CAMERA, DVec3::new(0.0, 0.0, 5.0)), CAMERA, "behind the eye: not made");
-        assert_eq!(widen(&CAMERA, 100.0).vfov_degrees, 179.0);
     }
 
     proptest! {
