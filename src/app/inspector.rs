@@ -6,6 +6,7 @@ use super::tracer::Tracer;
 use super::widgets::compact;
 use crate::film::to_byte;
 use crate::progressive::standard_error;
+use crate::render_cpu::{Isa, PathRecord, record_path};
 use crate::scene::Scene;
 use eframe::egui::{self, RichText, Ui};
 use glam::DVec3;
@@ -13,6 +14,9 @@ use std::sync::mpsc::Sender;
 
 /// With more spheres, looking for the one under the pointer would hold the window up.
 const PICK_LIMIT: usize = 50_000;
+
+/// How far a ray to the sky is drawn, scene units.
+const SKY_LENGTH: f64 = 2.0;
 
 /// A pixel as the film has it.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,23 +33,13 @@ pub struct Pixel {
     pub samples: u64,
 }
 
-/// One bounce of a path.
-#[derive(Clone, Debug, PartialEq)]
-struct Vertex {
-    object: String,
-    material: String,
-    position: DVec3,
-    normal: Option<DVec3>,
-    attenuation: Option<DVec3>,
-    throughput: DVec3,
-}
-
-/// A path, as a list.
+/// A recorded path of a pixel.
 #[derive(Clone, Debug, PartialEq)]
 struct Path {
     pixel: [u32; 2],
-    start: DVec3,
-    vertices: Vec<Vertex>,
+    /// Which of the pixel's samples it is.
+    sample: u64,
+    record: PathRecord,
 }
 
 /// What is known of the pixel under the pointer.
@@ -108,33 +102,22 @@ impl Inspector {
         });
     }
 
-    /// Lists the path through the middle of a pixel.
-    pub fn list_path(&mut self, document: &Document, pixel: [u32; 2]) {
-        let settings = &document.settings;
-        let place = [
-            (f64::from(pixel[0]) + 0.5) / f64::from(settings.width),
-            (f64::from(pixel[1]) + 0.5) / f64::from(settings.height),
-        ];
-        let direction = document.camera.direction_through(place, document.aspect());
-        let start = document.camera.look_from;
-        let scene = document.scene();
-        let vertices = scene.pick(start, direction).map(|pick| {
-            let (object, material) = names(scene, pick.sphere);
-            Vertex {
-                object,
-                material,
-                position: pick.point,
-                normal: Some(pick.normal),
-                attenuation: scene.material_of(&scene.spheres[pick.sphere]).albedo(),
-                throughput: DVec3::ONE,
-            }
-        });
-        self.path = Some(Path { pixel, start, vertices: vertices.into_iter().collect() });
+    /// Lists a path of a pixel, ray by ray, as the CPU traces it.
+    pub fn list_path(&mut self, document: &Document, pixel: [u32; 2], sample: u64) {
+        // A document that cannot be rendered says so elsewhere.
+        let Ok(job) = document.job(1) else { return };
+        let isa = Isa::available().into_iter().max();
+        let record = record_path(&job, pixel, sample, isa);
+        self.path = Some(Path { pixel, sample, record });
     }
 
-    /// The points of the listed path.
+    /// The points of the listed path after the eye.
     pub fn path_points(&self) -> impl Iterator<Item = DVec3> + '_ {
-        self.path.iter().flat_map(|path| path.vertices.iter().map(|vertex| vertex.position))
+        let rays = self.path.iter().flat_map(|path| path.record.rays.iter());
+        rays.map(|ray| {
+            let length = ray.hit.map_or(SKY_LENGTH, |hit| hit.distance);
+            DVec3::from(ray.origin) + DVec3::from(ray.direction) * length
+        })
     }
 }
 
@@ -216,28 +199,76 @@ pub fn ui(window: &mut super::Window, ui: &mut Ui) {
 fn path_ui(window: &mut super::Window, ui: &mut Ui) {
     let weak = ui.visuals().weak_text_color();
     let Some(path) = &window.inspector.path else {
-        ui.label(RichText::new("Alt-click shows what a ray meets.").color(weak).small());
+        ui.label(RichText::new("Alt-click lists a path, bounce by bounce.").color(weak).small());
         return;
     };
+    let (pixel, sample) = (path.pixel, path.sample);
     ui.add_space(6.0);
-    ui.label(RichText::new(format!("Ray through {}, {}", path.pixel[0], path.pixel[1])).strong());
-    let point = |v: DVec3| format!("{} {} {}", compact(v.x), compact(v.y), compact(v.z));
-    if path.vertices.is_empty() {
-        ui.label("meets the sky");
+    ui.label(RichText::new(format!("Path of pixel {}, {}", pixel[0], pixel[1])).strong());
+    let mut wanted = Some(sample);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let earlier = egui::Button::new("⏴").small();
+        let earlier = ui.add_enabled(sample > 0, earlier).on_hover_text("The sample before");
+        if earlier
+            .on_disabled_hover_text("This is the first")
+            .accessible_name("Path of the sample before")
+            .clicked()
+        {
+            wanted = Some(sample - 1);
+        }
+        let later = ui.add(egui::Button::new("⏵").small()).on_hover_text("The sample after");
+        if later.accessible_name("Path of the sample after").clicked() {
+            wanted = Some(sample + 1);
+        }
+        ui.label(format!("sample {sample}"));
+        let clear = ui.small_button("Clear").on_hover_text("Take the path off the picture");
+        if clear.accessible_name("Clear path").clicked() {
+            wanted = None;
+        }
+    });
+    list_rays(ui, &path.record, window.document.scene());
+    match wanted {
+        None => window.inspector.path = None,
+        Some(wanted) if wanted != sample => {
+            let document = window.document.clone();
+            window.inspector.list_path(&document, pixel, wanted);
+        }
+        Some(_) => {}
     }
-    for (index, vertex) in path.vertices.iter().enumerate() {
-        ui.label(format!("{}  {}, {}", index + 1, vertex.object, vertex.material));
-        let mut lines = vec![("position", vertex.position)];
-        lines.extend(vertex.normal.map(|normal| ("normal", normal)));
-        lines.extend(vertex.attenuation.map(|attenuation| ("attenuation", attenuation)));
-        lines.push(("throughput", vertex.throughput));
+}
+
+fn list_rays(ui: &mut Ui, record: &PathRecord, scene: &Scene) {
+    let weak = ui.visuals().weak_text_color();
+    let triple = |v: [f64; 3]| format!("{} {} {}", compact(v[0]), compact(v[1]), compact(v[2]));
+    for (index, ray) in record.rays.iter().enumerate() {
+        let what = match ray.hit {
+            Some(hit) => {
+                let (object, material) = names(scene, hit.sphere);
+                format!("{object}, {material}")
+            }
+            None => "leaves to the sky".to_owned(),
+        };
+        ui.add(egui::Label::new(format!("{}  {what}", index + 1)).wrap());
+        let mut lines = vec![("throughput", triple(ray.throughput))];
+        if let Some(hit) = ray.hit {
+            let point = DVec3::from(ray.origin) + DVec3::from(ray.direction) * hit.distance;
+            let sphere = &scene.spheres[hit.sphere];
+            let normal = (point - sphere.center) / sphere.radius;
+            lines.push(("position", triple(point.to_array())));
+            lines.push(("normal", triple(normal.to_array())));
+            lines.push(("distance", compact(hit.distance)));
+        }
+        // What the surface took is the next ray's share of this one's.
+        if let Some(next) = record.rays.get(index + 1) {
+            let share = |i: usize| {
+                if ray.throughput[i] == 0.0 { 0.0 } else { next.throughput[i] / ray.throughput[i] }
+            };
+            lines.push(("attenuation", triple([share(0), share(1), share(2)])));
+        }
         for (name, value) in lines {
-            ui.label(RichText::new(format!("     {name}  {}", point(value))).small().color(weak));
+            ui.label(RichText::new(format!("     {name}  {value}")).small().color(weak));
         }
     }
-    let from = format!("from {}", point(path.start));
-    ui.label(RichText::new(from).small().color(weak));
-    if ui.small_button("Clear").on_hover_text("Take the ray off the picture").clicked() {
-        window.inspector.path = None;
-    }
+    ui.label(RichText::new(format!("adds {}", triple(record.radiance))).small().color(weak));
 }

@@ -277,7 +277,7 @@ fn handle_mouse(window: &mut Window, ui: &Ui, response: &egui::Response, rect: R
         } else if response.clicked() && modifiers.alt {
             let settings = window.document.settings;
             if let Some(pixel) = window.viewport.pixel_at(at, [settings.width, settings.height]) {
-                window.inspector.list_path(&window.document, pixel);
+                window.inspector.list_path(&window.document, pixel, 0);
             }
         } else if response.clicked() {
             focus(window, place);

@@ -1,9 +1,10 @@
 //! The picture and the film, written with what they say about themselves.
 
 use crate::cli::RenderOptions;
+use crate::describe::describe;
 use crate::film::{Film, checkpoint};
 use crate::output::write_image;
-use crate::progressive::{Status, describe};
+use crate::progressive::Status;
 use std::path::PathBuf;
 
 /// Files that were written, and what kept the others from being so.

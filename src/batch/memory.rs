@@ -57,13 +57,28 @@ fn available(meminfo: &str) -> Option<u64> {
     Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? * 1024)
 }
 
-/// What a container's limit leaves. Cached files do not count: they make room when need be.
+/// What the limits of the process's control groups leave. Cached files do not count: they make room when need
+/// be.
 fn free_of_group() -> Option<u64> {
-    let read = |name: &str| std::fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok();
-    let limit: u64 = read("memory.max")?.trim().parse().ok()?;
-    let used: u64 = read("memory.current")?.trim().parse().ok()?;
+    let groups = std::fs::read_to_string("/proc/self/cgroup").ok()?;
+    let of_own = groups.lines().filter_map(|line| line.splitn(3, ':').nth(2));
+    // Within a container the own group is the root of what can be seen, whatever its name outside.
+    of_own.chain(["/"]).flat_map(|group| [free_of_group_v2(group), free_of_group_v1(group)]).flatten().min()
+}
+
+fn free_of_group_v2(group: &str) -> Option<u64> {
+    free_of(&format!("/sys/fs/cgroup{group}"), "memory.max", "memory.current")
+}
+
+fn free_of_group_v1(group: &str) -> Option<u64> {
+    free_of(&format!("/sys/fs/cgroup/memory{group}"), "memory.limit_in_bytes", "memory.usage_in_bytes")
+}
+
+fn free_of(directory: &str, limit: &str, used: &str) -> Option<u64> {
+    let read = |name: &str| std::fs::read_to_string(format!("{directory}/{name}")).ok();
+    let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
     let cached = read("memory.stat").map_or(0, |stat| file_cache(&stat));
-    Some(limit.saturating_sub(used.saturating_sub(cached)))
+    Some(number(limit)?.saturating_sub(number(used)?.saturating_sub(cached)))
 }
 
 fn file_cache(stat: &str) -> u64 {
@@ -71,7 +86,9 @@ fn file_cache(stat: &str) -> u64 {
         let line = stat.lines().find_map(|line| line.strip_prefix(name))?;
         line.trim().parse::<u64>().ok()
     };
-    ["inactive_file ", "active_file "].into_iter().filter_map(value).sum()
+    let sum = |names: [&str; 2]| names.into_iter().filter_map(value).sum::<u64>();
+    // The first version of control groups has sums over subgroups besides.
+    sum(["total_inactive_file ", "total_active_file "]).max(sum(["inactive_file ", "active_file "]))
 }
 
 #[cfg(test)]
@@ -103,5 +120,6 @@ mod tests {
         assert_eq!(available("MemTotal: 9 kB\nMemAvailable:    2048 kB\n"), Some(2 << 20));
         assert_eq!(available("nothing"), None);
         assert_eq!(file_cache("anon 5\ninactive_file 10\nactive_file 20\n"), 30);
+        assert_eq!(file_cache("active_file 1\ntotal_inactive_file 7\ntotal_active_file 2\n"), 9);
     }
 }

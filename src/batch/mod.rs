@@ -174,8 +174,10 @@ impl Begun<'_> {
 
 fn outcome(status: &Status, film: Option<&Film>, writing: Option<anyhow::Error>) -> anyhow::Result<()> {
     if let Phase::Failed(reason) = &status.phase {
-        let kept = film.map_or(0, Film::sample_count);
-        return Err(anyhow!("{reason}; {kept} samples per pixel were kept"));
+        return Err(match film.map_or(0, Film::sample_count) {
+            0 => anyhow!("{reason}"),
+            kept => anyhow!("{reason}; {kept} samples per pixel were kept"),
+        });
     }
     writing.map_or(Ok(()), Err)
 }

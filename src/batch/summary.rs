@@ -132,7 +132,7 @@ impl Summary {
 fn ending(phase: &Phase) -> (&'static str, String) {
     match phase {
         Phase::Done(reason) => (reason.name(), reason.words().to_owned()),
-        Phase::Failed(reason) => ("failure", reason.clone()),
+        Phase::Failed(_) => ("failure", "a failure".to_owned()),
         _ => ("nothing", "nothing".to_owned()),
     }
 }

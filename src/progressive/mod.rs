@@ -5,7 +5,6 @@
 //! asked for, a [`Picture`]. No call here waits for the renderer, but [`Progressive::wait`],
 //! [`Progressive::take_film`], [`Progressive::finish`] and dropping it.
 
-mod describe;
 mod passes;
 mod plan;
 mod shared;
@@ -13,7 +12,6 @@ mod status;
 mod view;
 mod worker;
 
-pub use describe::describe;
 pub use passes::PassSizer;
 pub use plan::{EndReason, NOISE_TARGET_FIRST_SAMPLES, Plan};
 pub use shared::Picture;

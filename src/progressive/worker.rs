@@ -143,9 +143,19 @@ impl Worker {
         if let Some(renderer) = renderer {
             self.backend = Some((choice.clone(), renderer));
         }
-        let render = Render::new(run, job, choice, plan, film, cancel);
-        self.shared.publish(&render.status);
-        self.render = Some(render);
+        let settings = job.settings();
+        let new_film = || Film::try_new(settings.width, settings.height, settings.half_count());
+        match film.map_or_else(new_film, Ok) {
+            Ok(film) => {
+                let render = Render::new(run, job, choice, plan, film, cancel);
+                self.shared.publish(&render.status);
+                self.render = Some(render);
+            }
+            Err(error) => {
+                let phase = Phase::Failed(error.to_string());
+                self.shared.publish(&Status { run, phase, ..Status::default() });
+            }
+        }
     }
 
     fn take_film(&mut self) -> Option<Film> {
@@ -194,10 +204,9 @@ impl Render {
         job: RenderJob,
         choice: BackendChoice,
         plan: Plan,
-        film: Option<Film>,
+        film: Film,
         cancel: Arc<AtomicBool>,
     ) -> Self {
-        let film = film.unwrap_or_else(|| job.new_film());
         let mut render = Render {
             sizer: PassSizer::new(film.halves().len()),
             next_history_samples: (film.sample_count() + 1).next_power_of_two(),

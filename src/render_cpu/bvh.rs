@@ -4,7 +4,7 @@
 
 use super::lanes::{Lanes, V3, splat3};
 use super::sphere::{Nearest, Rays, nearest_root};
-use crate::tables::hierarchy::{COUNT_MASK, Hierarchy, Node, ROUNDING_UNITS};
+use crate::tables::hierarchy::{COUNT_MASK, Hierarchy, LEAST_COMPONENT, Node, ROUNDING_UNITS};
 
 /// Deepest tree that a traversal has room for. obvhs promises depths well below.
 const STACK_SIZE: usize = 96;
@@ -99,7 +99,7 @@ impl<L: Lanes> Slabs<L> {
 /// `1/d`, finite also where `d` is 0.
 #[inline(always)]
 fn inverse<L: Lanes>(l: L, d: L::F) -> L::F {
-    let least = l.constant(1e-18);
+    let least = l.constant(LEAST_COMPONENT);
     let size = L::max(L::abs(d), least);
     L::copysign(l.constant(1.0) / size, d)
 }

@@ -5,8 +5,9 @@
 //! them render the same bits, which tests hold them to.
 
 use super::Isa;
-use super::lanes::{Lanes4, Lanes8, Lanes16, Reference, Scalar};
+use super::lanes::{Lanes4, Lanes8, Lanes16, Permute, Reference, Scalar};
 use super::path::{needs, trace};
+use super::record::{PathRecord, record};
 use super::work::{TileStats, Work};
 use crate::render::Features;
 use crate::tables::Tables;
@@ -22,7 +23,7 @@ const GLASS: u32 = needs::GLASS;
 /// All that finished pictures need: the book's last.
 const FINISHED: u32 = needs::GLASS | needs::LENS | needs::ANCHORED | needs::HIERARCHY;
 /// Everything.
-const GENERAL: u32 = FINISHED | needs::RULES;
+const GENERAL: u32 = needs::ALL;
 
 /// The code that a job needs of a kernel.
 pub fn needs_of<R>(features: &Features, tables: &Tables<R>) -> u32 {
@@ -92,6 +93,27 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     }
 }
 
+/// Records one path.
+pub type Recorder = Box<dyn Fn(&Tables<f32>, [u32; 2], u64) -> PathRecord>;
+
+/// A recorder that computes the same bits as the kernels of `isa`.
+pub fn recorder(isa: Isa) -> Recorder {
+    let level = Level::new();
+    #[cfg(target_arch = "x86_64")]
+    let fused = level.as_avx2();
+    #[cfg(target_arch = "aarch64")]
+    let fused = level.as_neon();
+    match fused {
+        Some(simd) if isa.is_fused() => Box::new(move |tables, pixel, index| {
+            simd.vectorize(
+                #[inline(always)]
+                || record(Scalar::<true>, tables, pixel, index),
+            )
+        }),
+        _ => Box::new(|tables, pixel, index| record(Scalar::<false>, tables, pixel, index)),
+    }
+}
+
 /// The reference's kernel.
 pub fn reference_kernel() -> Kernel<f64> {
     Box::new(|tables, work| trace::<_, GENERAL>(Reference, tables, work))
@@ -110,7 +132,7 @@ fn scalar<S: Simd, const FUSED: bool>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn four<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn four<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
@@ -119,7 +141,7 @@ fn four<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn eight<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn eight<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
@@ -128,7 +150,7 @@ fn eight<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn sixteen<S: Simd, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn sixteen<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]

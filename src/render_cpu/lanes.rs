@@ -108,6 +108,14 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn float_of(u: Self::U) -> Self::F;
     /// A float in `0 ..= 2^31 - 128` to the nearest integer, ties to even.
     fn fixed_point(f: Self::F) -> Self::U;
+    /// Rows that [`Lanes::permute`] can choose among; 0 if it is not there.
+    const PERMUTED_ROWS: usize = 0;
+    /// From a column of numbers, the one that each lane's index names: one instruction for a table that fits a
+    /// register. Indices must be below [`Lanes::PERMUTED_ROWS`].
+    #[inline(always)]
+    fn permute(self, column: &[Self::Real; MAX_LANES], _indices: Self::U) -> Self::F {
+        self.splat(column[0])
+    }
     /// Columns `4 group ..` of the rows that the first [`Lanes::WIDTH`] `indices` name.
     fn gather(self, rows: &[Row<Self::Real>], indices: &[u32; MAX_LANES], group: usize) -> [Self::F; 4];
     /// Sine and cosine of an angle in turns, `0 <= u < 1`.
@@ -182,7 +190,8 @@ pub fn mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
 /// `b - a s`.
 #[inline(always)]
 pub fn neg_mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
-    V3 { x: L::neg_mul_add(a.x, s, b.x), y: L::neg_mul_add(a.y, s, b.y), z: L::neg_mul_add(a.z, s, b.z) }
+    // The factor that changes most is negated: a negated direction would be kept in registers of its own.
+    V3 { x: L::neg_mul_add(s, a.x, b.x), y: L::neg_mul_add(s, a.y, b.y), z: L::neg_mul_add(s, a.z, b.z) }
 }
 
 /// Where `m`, `a`; else `b`.
@@ -364,12 +373,17 @@ impl Lanes for Reference {
 }
 
 macro_rules! simd_lanes {
-    ($name:ident, $width:literal, $f:ident, $u:ident, $i:ident, $m:ident, $gather:ident, $what:literal) => {
+    (
+        $name:ident, $width:literal, $f:ident, $u:ident, $i:ident, $m:ident,
+        $gather:ident, $rows:ident, $permute:ident, $what:literal
+    ) => {
         #[doc = $what]
         #[derive(Clone, Copy)]
         pub struct $name<S: Simd>(pub S);
 
-        impl<S: Simd> Lanes for $name<S> {
+        impl<S: Permute> Lanes for $name<S> {
+            const PERMUTED_ROWS: usize = S::$rows;
+
             type Real = f32;
             type F = $f<S>;
             type U = $u<S>;
@@ -488,6 +502,10 @@ macro_rules! simd_lanes {
                 signed.bitcast()
             }
             #[inline(always)]
+            fn permute(self, column: &[f32; MAX_LANES], indices: $u<S>) -> $f<S> {
+                self.0.$permute($f::from_slice(self.0, &column[..$width]), indices)
+            }
+            #[inline(always)]
             fn gather(self, rows: &[Row<f32>], indices: &[u32; MAX_LANES], group: usize) -> [$f<S>; 4] {
                 $gather(self.0, rows, indices, 0, group)
             }
@@ -499,9 +517,90 @@ macro_rules! simd_lanes {
     };
 }
 
-simd_lanes!(Lanes4, 4, f32x4, u32x4, i32x4, mask32x4, gather4, "Four lanes of `f32`.");
-simd_lanes!(Lanes8, 8, f32x8, u32x8, i32x8, mask32x8, gather8, "Eight lanes of `f32`.");
-simd_lanes!(Lanes16, 16, f32x16, u32x16, i32x16, mask32x16, gather16, "Sixteen lanes of `f32`.");
+simd_lanes!(Lanes4, 4, f32x4, u32x4, i32x4, mask32x4, gather4, ROWS_4, permute_4, "Four lanes of `f32`.");
+simd_lanes!(Lanes8, 8, f32x8, u32x8, i32x8, mask32x8, gather8, ROWS_8, permute_8, "Eight lanes of `f32`.");
+simd_lanes!(
+    Lanes16,
+    16,
+    f32x16,
+    u32x16,
+    i32x16,
+    mask32x16,
+    gather16,
+    ROWS_16,
+    permute_16,
+    "Sixteen lanes of `f32`."
+);
+
+/// A level's instructions for choosing among the numbers of a register. A level without them has 0 rows, and
+/// the choice is never asked for.
+pub trait Permute: Simd {
+    /// Rows for 4 lanes.
+    const ROWS_4: usize = 0;
+    /// Rows for 8 lanes.
+    const ROWS_8: usize = 0;
+    /// Rows for 16 lanes.
+    const ROWS_16: usize = 0;
+
+    /// Each lane's choice.
+    #[inline(always)]
+    fn permute_4(self, column: f32x4<Self>, _indices: u32x4<Self>) -> f32x4<Self> {
+        column
+    }
+    /// Each lane's choice.
+    #[inline(always)]
+    fn permute_8(self, column: f32x8<Self>, _indices: u32x8<Self>) -> f32x8<Self> {
+        column
+    }
+    /// Each lane's choice.
+    #[inline(always)]
+    fn permute_16(self, column: f32x16<Self>, _indices: u32x16<Self>) -> f32x16<Self> {
+        column
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::Permute;
+    use fearless_simd::prelude::*;
+    use fearless_simd::{Avx2, Avx512, Sse4_2, f32x8, f32x16, kernel, u32x8, u32x16};
+
+    impl Permute for Sse4_2 {}
+
+    impl Permute for Avx2 {
+        const ROWS_8: usize = 8;
+
+        #[inline(always)]
+        fn permute_8(self, column: f32x8<Self>, indices: u32x8<Self>) -> f32x8<Self> {
+            kernel!(
+                #[inline(always)]
+                fn permute(token: Avx2, column: f32x8<Avx2>, indices: u32x8<Avx2>) -> f32x8<Avx2> {
+                    std::arch::x86_64::_mm256_permutevar8x32_ps(column.into(), indices.into())
+                        .simd_into(token)
+                }
+            );
+            permute(self, column, indices)
+        }
+    }
+
+    impl Permute for Avx512 {
+        const ROWS_16: usize = 16;
+
+        #[inline(always)]
+        fn permute_16(self, column: f32x16<Self>, indices: u32x16<Self>) -> f32x16<Self> {
+            kernel!(
+                #[inline(always)]
+                fn permute(token: Avx512, column: f32x16<Avx512>, indices: u32x16<Avx512>) -> f32x16<Avx512> {
+                    std::arch::x86_64::_mm512_permutexvar_ps(indices.into(), column.into()).simd_into(token)
+                }
+            );
+            permute(self, column, indices)
+        }
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+impl Permute for fearless_simd::Neon {}
 
 /// Four columns of four rows, transposed.
 #[inline(always)]

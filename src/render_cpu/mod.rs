@@ -7,12 +7,14 @@ mod kernels;
 pub mod lanes;
 pub mod material;
 pub mod path;
+mod record;
 pub mod rng;
 pub mod sphere;
 mod tiles;
 pub mod work;
 
 pub use isa::Isa;
+pub use record::{PathRecord, RecordedHit, RecordedRay, record_path};
 
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};

@@ -20,7 +20,7 @@ use super::work::{LaneState, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::render::SamplerKind;
 use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
-use crate::tables::Tables;
+use crate::tables::{NEAR_ZERO, Real, Tables};
 
 /// Code that a kernel may carry, as bits of its constant parameter.
 pub mod needs {
@@ -34,13 +34,12 @@ pub mod needs {
     pub const HIERARCHY: u32 = 8;
     /// Stage rules.
     pub const RULES: u32 = 16;
+    /// Everything.
+    pub const ALL: u32 = 31;
 }
 
 /// Packets that take turns. Fewer leave the processor waiting (2: -10 %, 1: -35 %), more gain nothing.
 const PACKETS: usize = 4;
-
-/// Below this squared length, the normal plus a unit vector is a rounding error, and the normal stands in.
-const NEAR_ZERO: f64 = 1e-14;
 
 struct Packet<L: Lanes> {
     rays: Rays<L>,
@@ -56,7 +55,7 @@ struct Packet<L: Lanes> {
     sums: [L::U; 3],
     /// Lanes that have work.
     alive: L::M,
-    /// Lanes whose path was absorbed: it ends at its next shading and is not counted as a ray.
+    /// Lanes whose path was absorbed: it ends at its next shading, adds nothing and is not counted as a ray.
     absorbed: L::M,
     slots: [u32; MAX_LANES],
 }
@@ -109,6 +108,68 @@ pub fn trace<L: Lanes, const NEEDS: u32>(l: L, tables: &Tables<L::Real>, work: &
         stats.offered_lanes += (PACKETS * L::WIDTH) as u64;
         for packet in &mut packets {
             shade::<L, NEEDS>(l, tables, packet, work, &mut stats);
+        }
+    }
+}
+
+/// A packet of one lane, for a record of what it does.
+pub struct SinglePath<L: Lanes> {
+    packet: Packet<L>,
+    stack: Stack,
+}
+
+impl<L: Lanes> SinglePath<L> {
+    /// Takes the first sample of `work`.
+    #[inline(always)]
+    pub fn start(l: L, tables: &Tables<L::Real>, work: &mut Work) -> Self {
+        let mut packet = Packet::idle(l);
+        shade::<L, { needs::ALL }>(l, tables, &mut packet, work, &mut TileStats::default());
+        SinglePath { packet, stack: EMPTY_STACK }
+    }
+
+    /// Whether there is a ray to trace.
+    pub fn is_alive(&self) -> bool {
+        L::bits(self.packet.alive) != 0
+    }
+
+    /// Whether the path was absorbed where it is.
+    pub fn is_absorbed(&self) -> bool {
+        L::bits(self.packet.absorbed) != 0
+    }
+
+    /// Where the ray starts.
+    pub fn origin(&self) -> V3<L::F> {
+        self.packet.rays.origin
+    }
+
+    /// Where it goes.
+    pub fn direction(&self) -> V3<L::F> {
+        self.packet.rays.direction
+    }
+
+    /// What its light counts for.
+    pub fn throughput(&self) -> V3<L::F> {
+        self.packet.throughput
+    }
+
+    /// Traces the ray and sends it on. Returns the number of the sphere that it met and the distance.
+    #[inline(always)]
+    pub fn advance(&mut self, l: L, tables: &Tables<L::Real>, work: &mut Work) -> (u32, f64) {
+        let mut stats = TileStats::default();
+        intersect::<L, { needs::ALL }>(l, tables, &mut self.packet, &mut self.stack, &mut stats);
+        let mut sphere = [0; MAX_LANES];
+        let mut distance = [L::Real::default(); MAX_LANES];
+        L::store_u(self.packet.nearest.sphere, &mut sphere);
+        L::store(L::from_key(self.packet.nearest.key), &mut distance);
+        shade::<L, { needs::ALL }>(l, tables, &mut self.packet, work, &mut stats);
+        (sphere[0], distance[0].to_f64())
+    }
+
+    /// Ends an absorbed path.
+    #[inline(always)]
+    pub fn finish(&mut self, l: L, tables: &Tables<L::Real>, work: &mut Work) {
+        if self.is_alive() {
+            self.advance(l, tables, work);
         }
     }
 }
@@ -166,6 +227,38 @@ fn intersect<L: Lanes, const NEEDS: u32>(
     alive
 }
 
+/// Which row of the table each lane looks up.
+enum Rows<L: Lanes> {
+    /// Few enough that a column fits a register.
+    Permuted(L::U),
+    /// By their number in memory.
+    Gathered([u32; MAX_LANES]),
+}
+
+impl<L: Lanes> Rows<L> {
+    #[inline(always)]
+    fn of(_: L, tables: &Tables<L::Real>, numbers: L::U) -> Self {
+        if tables.rows.len() <= L::PERMUTED_ROWS {
+            return Rows::Permuted(numbers);
+        }
+        let mut stored = [0; MAX_LANES];
+        L::store_u(numbers, &mut stored);
+        Rows::Gathered(stored)
+    }
+
+    /// Columns `4 group ..`.
+    #[inline(always)]
+    fn columns(&self, l: L, tables: &Tables<L::Real>, group: usize) -> [L::F; 4] {
+        match self {
+            Rows::Permuted(numbers) => {
+                let column = |offset: usize| l.permute(&tables.columns[4 * group + offset], *numbers);
+                [column(0), column(1), column(2), column(3)]
+            }
+            Rows::Gathered(stored) => l.gather(&tables.rows, stored, group),
+        }
+    }
+}
+
 /// Ends paths or sends them on, and starts the next sample in lanes whose path has ended.
 #[inline(always)]
 fn shade<L: Lanes, const NEEDS: u32>(
@@ -183,16 +276,15 @@ fn shade<L: Lanes, const NEEDS: u32>(
     let direction = packet.rays.direction;
 
     // What was hit, and where.
-    let mut rows = [0; MAX_LANES];
-    L::store_u(L::select_u(miss, l.splat_u(0), hit), &mut rows);
-    let [cx, cy, cz, curvature] = l.gather(&tables.rows, &rows, 0);
-    let [red, green, blue, weight] = l.gather(&tables.rows, &rows, 1);
-    let [radius, index, inverse_index, normal_share] = l.gather(&tables.rows, &rows, 2);
+    let rows = Rows::of(l, tables, L::select_u(miss, l.splat_u(0), hit));
+    let [cx, cy, cz, curvature] = rows.columns(l, tables, 0);
+    let [red, green, blue, weight] = rows.columns(l, tables, 1);
+    let [radius, index, inverse_index, normal_share] = rows.columns(l, tables, 2);
     let reference = V3 { x: cx, y: cy, z: cz };
     let t = L::from_key(packet.nearest.key);
     let mut point = surface_point(l, &packet.rays, t, reference, curvature, radius);
     if NEEDS & needs::ANCHORED != 0 && !tables.anchored.is_empty() {
-        let [mx, my, mz, is_anchored] = l.gather(&tables.rows, &rows, 3);
+        let [mx, my, mz, is_anchored] = rows.columns(l, tables, 3);
         let inward = V3 { x: mx, y: my, z: mz };
         let far = anchored_surface_point(l, &packet.rays, t, reference, inward, curvature);
         let is_anchored = L::lt(zero, is_anchored);
@@ -207,15 +299,13 @@ fn shade<L: Lanes, const NEEDS: u32>(
         front = front & !L::eq_u(packet.rays.inside, hit);
     }
     let outward = point.outward;
-    let normal = V3 {
-        x: L::select(front, outward.x, -outward.x),
-        y: L::select(front, outward.y, -outward.y),
-        z: L::select(front, outward.z, -outward.z),
-    };
+    let side = L::select(front, one, l.constant(-1.0));
+    let normal = outward.scale(side);
 
     // Light that arrives.
-    let mut ended = miss | L::eq_u(packet.bounce, l.splat_u(tables.settings.max_depth - 1));
-    let mut lit = miss;
+    let is_last = L::eq_u(packet.bounce, l.splat_u(tables.settings.max_depth - 1));
+    let mut ended = miss | is_last | packet.absorbed;
+    let mut lit = miss & !packet.absorbed;
     let sky = |middle: L::Real, slope: L::Real| {
         L::max(zero, L::mul_add(l.splat(slope), direction.y, l.splat(middle)))
     };
@@ -271,7 +361,7 @@ fn shade<L: Lanes, const NEEDS: u32>(
         pinhole_rays(l, &tables.camera, packet.screen, jitter)
     };
 
-    let incidence = L::max(zero, L::min(one, L::select(front, -outward_cosine, outward_cosine)));
+    let incidence = L::max(zero, L::min(one, -(outward_cosine * side)));
     let surface = Surface { weight, index, inverse_index, normal_share };
     let mut bounced = if NEEDS & needs::GLASS != 0 {
         scatter::<L, true>(l, &surface, rules.dielectric, direction, normal, incidence, front, unit, u0)
@@ -289,11 +379,11 @@ fn shade<L: Lanes, const NEEDS: u32>(
             albedo = V3 { x: reflectance, y: reflectance, z: reflectance };
         }
     }
-    let vanishes = L::lt(dot::<L>(bounced.direction, bounced.direction), l.constant(NEAR_ZERO));
-    bounced.direction = select3::<L>(vanishes, normal, bounced.direction);
-
     let next = select3::<L>(ended, camera.direction, bounced.direction);
-    let next = next.scale(one / L::sqrt(dot::<L>(next, next)));
+    let length2 = dot::<L>(next, next);
+    let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
+    let next = select3::<L>(vanishes, normal, next);
+    let next = next.scale(L::select(vanishes, one, one / L::sqrt(length2)));
     // A fuzzy reflection into the surface is absorbed.
     let absorbed = bounced.is_metal & !L::lt(zero, dot::<L>(next, normal)) & !ended;
     let inward = (front & bounced.refracts) | !(front | bounced.refracts);
@@ -306,11 +396,10 @@ fn shade<L: Lanes, const NEEDS: u32>(
         inside: L::select_u(inward & !ended, hit, none),
     };
     packet.throughput = V3 {
-        x: L::select(absorbed, zero, L::select(ended, one, throughput.x)),
-        y: L::select(absorbed, zero, L::select(ended, one, throughput.y)),
-        z: L::select(absorbed, zero, L::select(ended, one, throughput.z)),
+        x: L::select(ended, one, throughput.x),
+        y: L::select(ended, one, throughput.y),
+        z: L::select(ended, one, throughput.z),
     };
-    packet.bounce = L::select_u(absorbed, l.splat_u(tables.settings.max_depth - 1), packet.bounce);
     packet.absorbed = absorbed;
 }
 

@@ -37,11 +37,11 @@ fn stir<L: Lanes>([x, y, z, w]: [L::U; 4]) -> [L::U; 4] {
 /// Owen's scrambling of reversed bits.
 #[inline(always)]
 pub fn laine_karras<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
-    let x = x ^ x * l.splat_u(0x3D20_ADEA);
+    let x = x ^ (x * l.splat_u(0x3D20_ADEA));
     let x = x + seed;
     let x = x * (L::shr(seed, 16) | l.splat_u(1));
-    let x = x ^ x * l.splat_u(0x0552_6C56);
-    x ^ x * l.splat_u(0x53A2_2864)
+    let x = x ^ (x * l.splat_u(0x0552_6C56));
+    x ^ (x * l.splat_u(0x53A2_2864))
 }
 
 /// The second Sobol coordinate from the first.

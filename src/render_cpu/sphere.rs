@@ -4,9 +4,7 @@
 
 use super::lanes::{Lanes, V3, dot, mul_add3, neg_mul_add3, splat3};
 use crate::tables::AnchoredSphere;
-
-/// In place of a sphere's number: no sphere.
-pub const NONE: u32 = u32::MAX;
+pub use crate::tables::NONE;
 
 /// Rays on their way. Directions have length 1.
 #[derive(Clone, Copy)]

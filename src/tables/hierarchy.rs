@@ -18,6 +18,9 @@ pub const COUNT_MASK: u32 = (1 << 29) - 1;
 /// this many units of `2^-24`.
 pub const ROUNDING_UNITS: f64 = 8.0;
 
+/// A direction's component counts as no smaller than this, so that its inverse is finite.
+pub const LEAST_COMPONENT: f64 = 1e-18;
+
 /// A box and what it holds.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
@@ -93,6 +96,22 @@ impl<R: Real> Hierarchy<R> {
             })
             .collect();
         (Hierarchy { nodes, extent: R::from_f64(f64::from(extent)) }, tree.primitive_indices)
+    }
+}
+
+impl<R> Hierarchy<R> {
+    /// Nodes on the longest way from the root to a leaf.
+    pub fn depth(&self) -> usize {
+        let mut deepest = 0;
+        let mut open = vec![(0_u32, 1_usize)];
+        while let Some((index, depth)) = open.pop() {
+            deepest = deepest.max(depth);
+            let node = &self.nodes[index as usize];
+            if node.count & COUNT_MASK == 0 {
+                open.extend([(node.first, depth + 1), (node.first + 1, depth + 1)]);
+            }
+        }
+        deepest
     }
 }
 

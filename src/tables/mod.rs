@@ -12,9 +12,15 @@ use crate::stages::{Rules, Surface};
 use glam::DVec3;
 use hierarchy::Hierarchy;
 
-/// Spheres from which on the hierarchy is faster than the list: on one AVX2 core the two cross between 16 and
-/// 32 spheres (`cargo bench --bench kernels -- crossover`).
+/// Spheres from which on there is a hierarchy. On generated fields at 8 lanes the list was faster with 4 spheres
+/// and the hierarchy with 48, by a tenth; between 12 and 32 they were alike.
 const HIERARCHY_MIN_SPHERES: usize = 24;
+
+/// In place of a sphere's number: no sphere.
+pub const NONE: u32 = u32::MAX;
+
+/// Below this squared length, the normal plus a unit vector is a rounding error, and the normal stands in.
+pub const NEAR_ZERO: f64 = 1e-14;
 
 /// A sphere is anchored when rounding at its radius, `f32::EPSILON / 2` of it, exceeds this share of the
 /// scene's smallest length. At that point the perpendicular form's distances are off by some `1e-4` of that
@@ -38,6 +44,8 @@ pub struct Tables<R> {
     /// sign where the direction is a reflection) | radius, refraction index (0: not glass), its inverse,
     /// Schlick's share at normal incidence | the anchor's inward unit normal, 1 if anchored.
     pub rows: Vec<Row<R>>,
+    /// The first rows of `rows` by column, for kernels that hold a column in a register.
+    pub columns: Box<[[R; 16]; 16]>,
     /// By row, the sphere's index in the scene.
     pub scene_index: Vec<u32>,
     /// The camera.
@@ -173,6 +181,12 @@ impl<R: Real> Tables<R> {
             // A ray that hits nothing looks up row 0 and ignores it.
             rows.push(Row::default());
         }
+        let mut columns = Box::new([[R::default(); 16]; 16]);
+        for (index, row) in rows.iter().take(16).enumerate() {
+            for (column, number) in columns.iter_mut().zip(row.0) {
+                column[index] = number;
+            }
+        }
         let (bottom, top) = (scene.sky.bottom * FIXED_POINT_SCALE, scene.sky.top * FIXED_POINT_SCALE);
         Tables {
             opaque: opaque.iter().map(packed).collect(),
@@ -180,6 +194,7 @@ impl<R: Real> Tables<R> {
             anchored: anchored_spheres,
             hierarchy,
             rows,
+            columns,
             scene_index: opaque.iter().chain(two_root).chain(anchored).copied().collect(),
             camera: CameraTable::new(job.camera(), settings.width, settings.height),
             sky_middle: rounded((bottom + top) / 2.0),

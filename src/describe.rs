@@ -1,7 +1,7 @@
 //! What a picture says about itself, from its recipe, its film and how it was rendered.
 
-use super::Status;
 use crate::film::{Description, Film, key};
+use crate::progressive::Status;
 use crate::recipe::{Recipe, file};
 use crate::scene::Camera;
 use crate::stages::Stage;

@@ -1,0 +1,46 @@
+// Rays from the camera. (Book 1, sections 12 and 13.)
+//
+// Twin: src/render_cpu/camera.rs
+
+struct Camera {
+    eye: vec3f,
+    tau: f32,
+    u: vec3f,
+    focus_tau: f32,
+    v: vec3f,
+    scale_x: f32,
+    w: vec3f,
+    scale_y: f32,
+    offset: vec2f,
+    // Pixels across and down.
+    size: vec2f,
+}
+
+// Where a ray starts and where it goes; the direction's length is not 1.
+struct CameraRay {
+    origin: vec3f,
+    direction: vec3f,
+}
+
+// A pixel coordinate on the plane at distance 1, left and upper edge.
+fn screen(camera: Camera, position: vec2f) -> vec2f {
+    return fma(position, vec2f(camera.scale_x, camera.scale_y), camera.offset);
+}
+
+// A ray from the eye through the point `jitter` of the pixel at `corner`.
+fn pinhole_ray(camera: Camera, corner: vec2f, jitter: vec2f) -> CameraRay {
+    let s = fma(jitter, vec2f(camera.scale_x, camera.scale_y), corner);
+    return CameraRay(camera.eye, through(camera, s));
+}
+
+// The same from the point `on_lens` of the unit disk.
+fn lens_ray(camera: Camera, corner: vec2f, jitter: vec2f, on_lens: vec2f) -> CameraRay {
+    let s = fma(jitter, vec2f(camera.scale_x, camera.scale_y), corner);
+    let direction = through(camera, fma(vec2f(-camera.tau), on_lens, s));
+    let origin = mul_add3(camera.u, camera.focus_tau * on_lens.x, camera.eye);
+    return CameraRay(mul_add3(camera.v, camera.focus_tau * on_lens.y, origin), direction);
+}
+
+fn through(camera: Camera, s: vec2f) -> vec3f {
+    return mul_add3(camera.u, s.x, camera.v * s.y) - camera.w;
+}

@@ -1,0 +1,79 @@
+// What a surface does with a ray: it goes on along `along d + across n + weight u`. (Book 1, sections 9 to 11.)
+//
+// Twin: src/render_cpu/material.rs
+
+struct Surface {
+    // Length of the unit vector's part; with a minus sign (also on 0) the direction is a reflection.
+    weight: f32,
+    // Refraction index; 0 if not glass.
+    index: f32,
+    // 1 / refraction index; 0 if not glass.
+    inverse_index: f32,
+    // Schlick's share at normal incidence.
+    normal_share: f32,
+}
+
+// Where light goes on; the direction's length is not 1.
+struct Scatter {
+    direction: vec3f,
+    refracts: bool,
+    is_metal: bool,
+}
+
+// Scatters at any surface. `cosine` is that of the angle of incidence, `coin` uniform in [0, 1).
+fn scatter(
+    surface: Surface,
+    direction: vec3f,
+    normal: vec3f,
+    cosine: f32,
+    front: bool,
+    unit: vec3f,
+    coin: f32,
+) -> Scatter {
+    var along = 0.0;
+    var across = 1.0;
+    var is_metal = false;
+    var refracts = false;
+    if METAL || GLASS {
+        is_metal = (bitcast<u32>(surface.weight) >> 31u) != 0u;
+        along = select(0.0, 1.0, is_metal);
+        across = select(1.0, cosine + cosine, is_metal);
+    }
+    if GLASS {
+        let is_glass = surface.index > 0.0;
+        let ratio = select(surface.index, surface.inverse_index, front);
+        // Squared sine of the refracted ray's angle: above 1 Snell's law has no solution.
+        let refracted_sine2 = ratio * ratio * fma(-cosine, cosine, 1.0);
+        refracts = is_glass;
+        if DIELECTRIC_LAWS != LAWS_REFRACT_ONLY {
+            refracts = refracts && refracted_sine2 <= 1.0;
+        }
+        if DIELECTRIC_LAWS == LAWS_SCHLICK {
+            refracts = refracts && coin >= reflectance(cosine, surface.normal_share);
+        }
+        let inner_cosine = sqrt(abs(1.0 - refracted_sine2));
+        along = select(along, ratio, refracts);
+        across = select(across, fma(ratio, cosine, -inner_cosine), refracts);
+        is_metal = is_metal && !is_glass;
+    }
+    var sent = normal * across;
+    if METAL || GLASS {
+        sent = mul_add3(direction, along, sent);
+    }
+    if LAMBERTIAN || FUZZ {
+        sent = mul_add3(unit, abs(surface.weight), sent);
+    }
+    return Scatter(sent, refracts, is_metal);
+}
+
+// Schlick's approximation of the reflected share. (Section 11.4.)
+fn reflectance(cosine: f32, normal_share: f32) -> f32 {
+    let x = 1.0 - cosine;
+    let x2 = x * x;
+    return fma(1.0 - normal_share, x2 * x2 * x, normal_share);
+}
+
+// A uniform direction on the side of `normal`. (Section 9.1.)
+fn hemisphere(normal: vec3f, unit: vec3f) -> vec3f {
+    return unit * copysign(1.0, dot3(unit, normal));
+}

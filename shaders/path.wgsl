@@ -1,0 +1,268 @@
+// The path loop: a thread owns a pixel and walks through blocks of its samples. When a path ends the thread
+// starts its next sample at once, so that none waits for the longest path beside it.
+//
+// Twin: src/render_cpu/path.rs
+
+struct Path {
+    ray: Ray,
+    throughput: vec3f,
+    bounce: u32,
+    counter: u32,
+    step: u32,
+    // Samples left of the block, the current one included.
+    remaining: u32,
+    // The Sobol sampler's.
+    key: u32,
+    // x | y << 16
+    pixel: u32,
+    corner: vec2f,
+    sums: vec3u,
+    half: u32,
+    // The path was absorbed, or there was none yet: it ends without another ray.
+    absorbed: bool,
+    rejected: u32,
+}
+
+// What a thread did.
+struct Traced {
+    rays: u32,
+    rejected: u32,
+}
+
+// Traces all blocks of the dispatch at a pixel, which is number `slot` of the film buffer.
+fn trace(position: vec2u, slot: u32) -> Traced {
+    var path: Path;
+    path.pixel = position.x | (position.y << 16u);
+    path.corner = screen(job.camera, vec2f(position));
+    path.absorbed = true;
+    path.remaining = 1u;
+    var rays = 0u;
+    var next_block = 0u;
+    for (var i = 0u; i < order.ray_limit; i++) {
+        var nearest = nothing();
+        if !path.absorbed {
+            if RAYS {
+                nearest = intersect(path.ray);
+            }
+            rays++;
+        }
+
+        // What the ray brings back, and whether it is the last of its path.
+        let miss = nearest.sphere == NONE;
+        var ended = miss || path.absorbed || path.bounce == job.max_depth - 1u;
+        var lit = miss && !path.absorbed;
+        var point: SurfacePoint;
+        let row = rows[select(nearest.sphere, 0u, miss)];
+        if !ended || SHADING == SHADING_NORMALS {
+            point = hit_point(path.ray, bitcast<f32>(nearest.key), row);
+        }
+        if SHADING != SHADING_PATH {
+            lit = !path.absorbed;
+            ended = true;
+        }
+        if lit {
+            add_radiance(&path, miss, point.outward);
+        }
+
+        // The next sample's place in the sequence.
+        path.bounce = select(path.bounce + 1u, 0u, ended);
+        if ended {
+            path.counter += path.step;
+            path.remaining -= 1u;
+            if path.remaining == 0u {
+                if next_block > 0u {
+                    add_to_film(path.half, slot, path.sums);
+                }
+                if next_block == order.block_count {
+                    break;
+                }
+                start_block(&path, blocks[next_block]);
+                next_block++;
+            }
+        }
+        send(&path, ended, nearest.sphere, row, point);
+    }
+    return Traced(rays, path.rejected);
+}
+
+fn start_block(path: ptr<function, Path>, block: Block) {
+    (*path).half = block.half;
+    (*path).counter = block.counter;
+    (*path).step = block.step;
+    (*path).remaining = block.count;
+    (*path).sums = vec3u(0u);
+    if SOBOL {
+        (*path).key = pixel_key(job.seed, block.half, (*path).pixel);
+    }
+}
+
+// What a ray meets first.
+fn intersect(ray: Ray) -> Nearest {
+    var nearest = nothing();
+    // Counts that are known when the kernel is built let its loops be unrolled.
+    let opaque_count = select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);
+    let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
+    let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
+    let listed = opaque_count + two_root_count;
+    if ACNE {
+        for (var i = 0u; i < listed; i++) {
+            nearest = take(nearest, acne_root(ray, sphere_at(i)), i);
+        }
+        return nearest;
+    }
+    if HIERARCHY {
+        nearest = traverse(ray, nearest);
+    } else {
+        for (var i = 0u; i < opaque_count; i++) {
+            nearest = take(nearest, near_root(ray, sphere_at(i), i), i);
+        }
+        if TWO_ROOT {
+            for (var i = opaque_count; i < listed; i++) {
+                nearest = take(nearest, nearest_root(ray, sphere_at(i), i), i);
+            }
+        }
+    }
+    if ANCHORED {
+        for (var i = 0u; i < anchored_count; i++) {
+            nearest = take(nearest, anchored_root(ray, anchored_at(i), listed + i), listed + i);
+        }
+    }
+    return nearest;
+}
+
+fn hit_point(ray: Ray, t: f32, row: Row) -> SurfacePoint {
+    var point: SurfacePoint;
+    if ANCHORED && row.is_anchored > 0.0 {
+        point = anchored_surface_point(ray, t, row.reference, row.inward, row.curvature);
+    } else {
+        point = surface_point(ray, t, row.reference, row.curvature, row.radius);
+    }
+    if ACNE {
+        point.position = mul_add3(ray.direction, t, ray.origin);
+    }
+    return point;
+}
+
+fn sky(direction: vec3f) -> vec3f {
+    return max(vec3f(0.0), fma(job.sky_slope, vec3f(direction.y), job.sky_middle));
+}
+
+// Adds a path's end to the sums, or counts it where it is not a number that can be added.
+fn add_radiance(path: ptr<function, Path>, miss: bool, outward: vec3f) {
+    var light = sky((*path).ray.direction);
+    if SHADING == SHADING_IMAGE_GRADIENT {
+        light = vec3f(pixel_position((*path).pixel) / max(job.camera.size - 1.0, vec2f(1.0)), 0.0) * FIXED_POINT_SCALE;
+    } else if SHADING == SHADING_FIRST_HIT_RED {
+        light = select(vec3f(FIXED_POINT_SCALE, 0.0, 0.0), light, miss);
+    } else if SHADING == SHADING_NORMALS {
+        let half = vec3f(0.5 * FIXED_POINT_SCALE);
+        light = select(max(vec3f(0.0), fma(outward, half, half)), light, miss);
+    }
+    let radiance = light * (*path).throughput;
+    // As bits, since a compiler may take it that no NaN occurs: all that is wrong has larger bits.
+    let total = bitcast<u32>(radiance.x + radiance.y + radiance.z);
+    if total < RADIANCE_TOTAL_LIMIT_BITS || total == NEGATIVE_ZERO_BITS {
+        (*path).sums += vec3u(fixed_point(radiance.x), fixed_point(radiance.y), fixed_point(radiance.z));
+    } else {
+        (*path).rejected += 1u;
+    }
+}
+
+// Sends the path on from a surface, or a new one from the camera where it has ended.
+fn send(path: ptr<function, Path>, ended: bool, hit: u32, row: Row, point: SurfacePoint) {
+    // One set of numbers serves the camera and the surface alike.
+    let drawn = draw(*path);
+    let sine_cosine = sin_cos_turns(drawn.pair.y);
+    if ended {
+        var jitter = drawn.jitter;
+        if !ANTIALIASING {
+            jitter = vec2f(0.5);
+        }
+        var from_camera: CameraRay;
+        if has_lens() {
+            let on_lens = sqrt(drawn.pair.x) * sine_cosine.yx;
+            from_camera = lens_ray(job.camera, (*path).corner, jitter, on_lens);
+        } else {
+            from_camera = pinhole_ray(job.camera, (*path).corner, jitter);
+        }
+        (*path).ray = Ray(from_camera.origin, normalized(from_camera.direction), NONE, NONE);
+        (*path).throughput = vec3f(1.0);
+        (*path).absorbed = false;
+        return;
+    }
+
+    let direction = (*path).ray.direction;
+    let outward_cosine = dot3(direction, point.outward);
+    var front = outward_cosine < 0.0;
+    if !ACNE {
+        front = front && (*path).ray.inside != hit;
+    }
+    let normal = select(-point.outward, point.outward, front);
+    let incidence = clamp(select(outward_cosine, -outward_cosine, front), 0.0, 1.0);
+    let rho = sqrt(drawn.pair.x * (1.0 - drawn.pair.x));
+    let unit = vec3f((rho + rho) * sine_cosine.yx, 1.0 - (drawn.pair.x + drawn.pair.x));
+    let surface = Surface(row.weight, row.index, row.inverse_index, row.normal_share);
+    let scattered = scatter(surface, direction, normal, incidence, front, unit, drawn.pair.x);
+    var sent = scattered.direction;
+    if HEMISPHERE && row.weight > 0.0 {
+        sent = hemisphere(normal, unit);
+    }
+    var albedo = row.albedo;
+    if REFLECTANCE_STRIPS {
+        albedo = vec3f(strip_reflectance((*path).pixel));
+    }
+    if dot3(sent, sent) < NEAR_ZERO {
+        sent = normal;
+    }
+    sent = normalized(sent);
+    // A fuzzy reflection into the surface is absorbed.
+    (*path).absorbed = METAL && scattered.is_metal && !(dot3(sent, normal) > 0.0);
+    let inward = front == scattered.refracts;
+    (*path).ray = Ray(point.position, sent, select(hit, NONE, inward), select(NONE, hit, inward));
+    (*path).throughput *= albedo;
+}
+
+fn has_lens() -> bool {
+    return LENS && job.camera.tau > 0.0;
+}
+
+fn normalized(v: vec3f) -> vec3f {
+    return v * (1.0 / sqrt(dot3(v, v)));
+}
+
+// The reflectance of the picture's strip that a pixel lies in: 10, 30, 50, 70, 90 %.
+fn strip_reflectance(pixel: u32) -> f32 {
+    let strip = (pixel_position(pixel).x + 0.5) * (5.0 / job.camera.size.x) - 0.5;
+    return fma(round(max(0.0, strip)), 0.2, 0.1);
+}
+
+// Column and row from x | y << 16.
+fn pixel_position(pixel: u32) -> vec2f {
+    return vec2f(f32(pixel & 0xFFFFu), f32(pixel >> 16u));
+}
+
+// Two numbers for a direction or a lens point, and a point in the pixel.
+struct Drawn {
+    pair: vec2f,
+    jitter: vec2f,
+}
+
+fn draw(path: Path) -> Drawn {
+    var first: vec2u;
+    var second: vec2u;
+    if SOBOL {
+        first = sobol_pair(path.counter, stream_of(path.key, path.bounce));
+        second = first;
+        if has_lens() {
+            second = sobol_pair(path.counter, lens_stream_of(path.key, path.bounce));
+        }
+    } else {
+        let numbers = pcg4d(vec4u(path.pixel, path.counter, path.bounce, job.seed));
+        first = numbers.xy;
+        second = select(first, numbers.zw, has_lens());
+    }
+    return Drawn(
+        vec2f(unit_float(first.x), unit_float(first.y)),
+        vec2f(unit_float(second.x), unit_float(second.y)),
+    );
+}

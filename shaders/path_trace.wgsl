@@ -1,0 +1,38 @@
+// Entry point: one thread a pixel, one workgroup a tile.
+
+var<workgroup> group_rays: atomic<u32>;
+var<workgroup> group_rejected: atomic<u32>;
+
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn path_trace(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(num_workgroups) groups: vec3u,
+    @builtin(local_invocation_index) thread: u32,
+) {
+    let number = group.x + group.y * groups.x;
+    let tile = order.first_tile + number;
+    let tile_height = WORKGROUP_SIZE / job.tile_width;
+    let tiles_across = (job.width + job.tile_width - 1u) / job.tile_width;
+    let within = vec2u(thread % job.tile_width, thread / job.tile_width);
+    let corner = vec2u((tile % tiles_across) * job.tile_width, (tile / tiles_across) * tile_height);
+    let in_film = corner + within;
+    if number < order.tile_count && in_film.x < job.width && in_film.y < order.row_count {
+        let position = vec2u(in_film.x, in_film.y + order.first_row);
+        let traced = trace(position, in_film.y * job.width + in_film.x);
+        atomicAdd(&group_rays, traced.rays);
+        if traced.rejected > 0u {
+            atomicAdd(&group_rejected, traced.rejected);
+        }
+    }
+    workgroupBarrier();
+    if thread == 0u {
+        let rays = atomicLoad(&group_rays);
+        if atomicAdd(&counters.rays, rays) > 0xFFFFFFFFu - rays {
+            atomicAdd(&counters.rays_high, 1u);
+        }
+        let rejected = atomicLoad(&group_rejected);
+        if rejected > 0u && atomicAdd(&counters.rejected, rejected) > 0xFFFFFFFFu - rejected {
+            atomicAdd(&counters.rejected_high, 1u);
+        }
+    }
+}

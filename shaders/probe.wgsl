@@ -1,0 +1,109 @@
+// Entry point for tests: runs one small function on many inputs. Thread i reads words PROBE_STRIDE i .. and
+// writes its results over them.
+
+fn f(base: u32, i: u32) -> f32 {
+    return bitcast<f32>(words[base + i]);
+}
+
+fn v3(base: u32, i: u32) -> vec3f {
+    return vec3f(f(base, i), f(base, i + 1u), f(base, i + 2u));
+}
+
+fn put(base: u32, i: u32, x: f32) {
+    words[base + i] = bitcast<u32>(x);
+}
+
+fn put3(base: u32, i: u32, v: vec3f) {
+    put(base, i, v.x);
+    put(base, i + 1u, v.y);
+    put(base, i + 2u, v.z);
+}
+
+fn probe_ray(base: u32) -> Ray {
+    return Ray(v3(base, 0u), v3(base, 3u), words[base + 6u], words[base + 7u]);
+}
+
+@compute @workgroup_size(WORKGROUP_SIZE)
+fn probe(@builtin(global_invocation_id) id: vec3u) {
+    let base = id.x * PROBE_STRIDE;
+    if base + PROBE_STRIDE > arrayLength(&words) {
+        return;
+    }
+    switch PROBE {
+        case PROBE_PCG4D: {
+            let v = pcg4d(vec4u(words[base], words[base + 1u], words[base + 2u], words[base + 3u]));
+            words[base] = v.x;
+            words[base + 1u] = v.y;
+            words[base + 2u] = v.z;
+            words[base + 3u] = v.w;
+        }
+        case PROBE_SOBOL: {
+            let key = pixel_key(words[base], words[base + 1u], words[base + 2u]);
+            let counter = words[base + 3u];
+            let bounce = words[base + 4u];
+            let first = sobol_pair(counter, stream_of(key, bounce));
+            let second = sobol_pair(counter, lens_stream_of(key, bounce));
+            words[base] = first.x;
+            words[base + 1u] = first.y;
+            words[base + 2u] = second.x;
+            words[base + 3u] = second.y;
+        }
+        case PROBE_SIN_COS: {
+            let u = unit_float(words[base]);
+            let sine_cosine = sin_cos_turns(u);
+            put(base, 0u, u);
+            put(base, 1u, sine_cosine.x);
+            put(base, 2u, sine_cosine.y);
+        }
+        case PROBE_ROOTS: {
+            let ray = probe_ray(base);
+            let sphere = vec4f(v3(base, 8u), f(base, 11u));
+            words[base] = near_root(ray, sphere, 1u);
+            words[base + 1u] = nearest_root(ray, sphere, 1u);
+            words[base + 2u] = acne_root(ray, sphere);
+        }
+        case PROBE_ANCHORED: {
+            let ray = probe_ray(base);
+            let sphere = AnchoredSphere(v3(base, 8u), f(base, 11u), v3(base, 12u), 0.0);
+            let key = anchored_root(ray, sphere, 1u);
+            let t = f(base, 15u);
+            let point = anchored_surface_point(ray, t, sphere.anchor, sphere.inward, sphere.curvature);
+            words[base] = key;
+            put3(base, 1u, point.position);
+            put3(base, 4u, point.outward);
+        }
+        case PROBE_SURFACE: {
+            let ray = probe_ray(base);
+            let point = surface_point(ray, f(base, 12u), v3(base, 8u), f(base, 11u), f(base, 13u));
+            put3(base, 0u, point.position);
+            put3(base, 3u, point.outward);
+        }
+        case PROBE_SCATTER: {
+            let surface = Surface(f(base, 0u), f(base, 1u), f(base, 2u), f(base, 3u));
+            let front = words[base + 14u] != 0u;
+            let sent = scatter(surface, v3(base, 4u), v3(base, 7u), f(base, 13u), front, v3(base, 10u), f(base, 15u));
+            let share = reflectance(f(base, 13u), f(base, 3u));
+            put3(base, 0u, sent.direction);
+            words[base + 3u] = select(0u, 1u, sent.refracts) | select(0u, 2u, sent.is_metal);
+            put(base, 4u, share);
+        }
+        case PROBE_CAMERA: {
+            let corner = screen(job.camera, vec2f(f(base, 0u), f(base, 1u)));
+            let jitter = vec2f(f(base, 2u), f(base, 3u));
+            let on_lens = vec2f(f(base, 4u), f(base, 5u));
+            let pinhole = pinhole_ray(job.camera, corner, jitter);
+            let lens = lens_ray(job.camera, corner, jitter, on_lens);
+            put3(base, 0u, pinhole.origin);
+            put3(base, 3u, pinhole.direction);
+            put3(base, 6u, lens.origin);
+            put3(base, 9u, lens.direction);
+        }
+        case PROBE_FIXED_POINT: {
+            words[base] = fixed_point(f(base, 0u));
+            let sum = wide_sum(vec2u(words[base + 1u], words[base + 2u]), words[base + 3u]);
+            words[base + 1u] = sum.x;
+            words[base + 2u] = sum.y;
+        }
+        default: {}
+    }
+}

@@ -1,0 +1,64 @@
+// The numbers of a sample.
+//
+// Twin: src/render_cpu/rng.rs
+
+// A bijection of 32 bits.
+fn mix32(v: u32) -> u32 {
+    var x = (v ^ (v >> 16u)) * 0x7FEB352Du;
+    x = (x ^ (x >> 15u)) * 0x846CA68Bu;
+    return x ^ (x >> 16u);
+}
+
+// Four numbers from four.
+fn pcg4d(numbers: vec4u) -> vec4u {
+    let v = stir(numbers * 1664525u + 1013904223u);
+    return stir(v ^ (v >> vec4u(16u)));
+}
+
+fn stir(numbers: vec4u) -> vec4u {
+    var v = numbers;
+    v.x += v.y * v.w;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v.w += v.y * v.z;
+    return v;
+}
+
+// Owen's scrambling of reversed bits.
+fn laine_karras(reversed: u32, seed: u32) -> u32 {
+    var x = reversed ^ (reversed * 0x3D20ADEAu);
+    x = x + seed;
+    x = x * ((seed >> 16u) | 1u);
+    x = x ^ (x * 0x05526C56u);
+    return x ^ (x * 0x53A22864u);
+}
+
+// The second Sobol coordinate from the first.
+fn pascal(first: u32) -> u32 {
+    var u = first ^ (first << 16u);
+    u = u ^ ((u & 0x00FF00FFu) << 8u);
+    u = u ^ ((u & 0x0F0F0F0Fu) << 4u);
+    u = u ^ ((u & 0x33333333u) << 2u);
+    return u ^ ((u & 0x55555555u) << 1u);
+}
+
+// A pair of Sobol coordinates of the reversed sample index `counter`.
+fn sobol_pair(counter: u32, stream: u32) -> vec2u {
+    let u = laine_karras(counter, mix32(stream));
+    return vec2u(u, pascal(u));
+}
+
+// `key` moved on to the dimensions of `bounce`.
+fn stream_of(key: u32, bounce: u32) -> u32 {
+    return key + bounce * GOLDEN_RATIO;
+}
+
+// `key` moved on to the second pair of dimensions of `bounce`.
+fn lens_stream_of(key: u32, bounce: u32) -> u32 {
+    return stream_of(key, bounce + LENS_BLOCK);
+}
+
+// What tells the Sobol scramblings of pixels, halves and seeds apart.
+fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
+    return mix32(mix32(seed + half * GOLDEN_RATIO) ^ pixel);
+}

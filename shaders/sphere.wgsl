@@ -1,0 +1,137 @@
+// Rays against spheres. (Book 1, section 5.) A distance is ordered as the bits of a float, an unsigned integer,
+// in which negative numbers come last: -1 stands for a miss.
+//
+// Twin: src/render_cpu/sphere.rs
+
+// A ray on its way. `left` is the sphere that it leaves outwards, `inside` the one that it enters, or NONE.
+struct Ray {
+    origin: vec3f,
+    direction: vec3f,
+    left: u32,
+    inside: u32,
+}
+
+// The nearest hit so far: its distance's bits and the sphere's number, or NONE.
+struct Nearest {
+    key: u32,
+    sphere: u32,
+}
+
+// A sphere far larger than the scene, seen from a point on its surface.
+struct AnchoredSphere {
+    anchor: vec3f,
+    curvature: f32,
+    inward: vec3f,
+    radius: f32,
+}
+
+fn nothing() -> Nearest {
+    return Nearest(INFINITE_KEY, NONE);
+}
+
+// Of two spheres at one distance the first taken stays.
+fn take(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
+    let nearer = key < nearest.key;
+    return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
+}
+
+// Of two spheres at one distance that with the smaller number stays.
+fn take_in_any_order(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
+    let nearer = key < nearest.key || (key == nearest.key && sphere < nearest.sphere);
+    return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
+}
+
+// The smaller of two distances' bits.
+fn smaller_key(a: f32, b: f32) -> u32 {
+    return min(bitcast<u32>(a), bitcast<u32>(b));
+}
+
+// Distance to the middle of the chord, and the square of half its length: negative for a miss.
+fn chord(ray: Ray, sphere: vec4f) -> vec2f {
+    let f = sphere.xyz - ray.origin;
+    let h = dot3(ray.direction, f);
+    let across = neg_mul_add3(ray.direction, h, f);
+    let d = fma(-across.x, across.x, fma(-across.y, across.y, fma(-across.z, across.z, sphere.w)));
+    return vec2f(h, d);
+}
+
+// Distance to a sphere that no ray is inside of.
+fn near_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
+    let hd = chord(ray, sphere);
+    let near = hd.x - sqrt(max(hd.y, 0.0));
+    return bitcast<u32>(select(-1.0, near, hd.y >= 0.0 && ray.left != number));
+}
+
+// Distance to a sphere from within or without.
+fn nearest_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
+    let hd = chord(ray, sphere);
+    let s = sqrt(max(hd.y, 0.0));
+    let meets = hd.y >= 0.0;
+    let leaves = ray.left == number;
+    let enters = ray.inside == number;
+    let near = select(-1.0, hd.x - s, meets && !leaves && !enters);
+    // From its own surface inwards a ray runs the chord 2h.
+    let far = hd.x + select(s, abs(hd.x), enters);
+    return smaller_key(near, select(-1.0, far, (meets || enters) && !leaves));
+}
+
+// Distance to a huge sphere, everything measured from the anchor.
+fn anchored_root(ray: Ray, sphere: AnchoredSphere, number: u32) -> u32 {
+    let d = ray.direction;
+    let m = sphere.inward;
+    let k = sphere.curvature;
+    let x = ray.origin - sphere.anchor;
+    let x_along = dot3(x, d);
+    let m_along = dot3(m, d);
+    let x_across = neg_mul_add3(d, x_along, x);
+    let m_across = neg_mul_add3(d, m_along, m);
+    let b = fma(-k, x_along, m_along);
+    let c = fma(-2.0, dot3(x, m), k * dot3(x, x));
+    let bend = fma(-2.0, dot3(x_across, m_across), k * dot3(x_across, x_across));
+    let discriminant = fma(-k, bend, m_along * m_along);
+    let meets = discriminant >= 0.0;
+    let q = b + copysign(sqrt(max(discriminant, 0.0)), b);
+    let leaves = ray.left == number;
+    let enters = ray.inside == number;
+    let first = select(-1.0, c / q, meets && !leaves && !enters);
+    let second = select(q, b + abs(b), enters) / k;
+    return smaller_key(first, select(-1.0, second, (meets || enters) && !leaves));
+}
+
+// The book's own arithmetic with 0 as the smallest distance and no memory of the surface left.
+fn acne_root(ray: Ray, sphere: vec4f) -> u32 {
+    let f = sphere.xyz - ray.origin;
+    let a = dot3(ray.direction, ray.direction);
+    let h = dot3(ray.direction, f);
+    let c = dot3(f, f) - sphere.w;
+    let discriminant = h * h - a * c;
+    let s = sqrt(max(discriminant, 0.0));
+    let near = (h - s) / a;
+    let far = (h + s) / a;
+    let meets = discriminant >= 0.0;
+    return smaller_key(select(-1.0, near, meets && near > 0.0), select(-1.0, far, meets && far > 0.0));
+}
+
+// A point on a surface, and the unit normal away from the centre.
+struct SurfacePoint {
+    position: vec3f,
+    outward: vec3f,
+}
+
+// The point at distance `t`, moved onto the sphere along the normal, whose length one Newton step makes 1.
+fn surface_point(ray: Ray, t: f32, center: vec3f, curvature: f32, radius: f32) -> SurfacePoint {
+    let w = mul_add3(ray.direction, t, ray.origin - center) * curvature;
+    let outward = w * fma(-0.5, dot3(w, w), 1.5);
+    return SurfacePoint(mul_add3(outward, radius, center), outward);
+}
+
+// The same on an anchored sphere.
+fn anchored_surface_point(ray: Ray, t: f32, anchor: vec3f, inward: vec3f, curvature: f32) -> SurfacePoint {
+    let x = mul_add3(ray.direction, t, ray.origin - anchor);
+    let away = x * curvature - inward;
+    let length = sqrt(dot3(away, away));
+    let outward = away * (1.0 / length);
+    let c = fma(-2.0, dot3(x, inward), curvature * dot3(x, x));
+    let height = c / (1.0 + length);
+    return SurfacePoint(neg_mul_add3(outward, height, x) + anchor, outward);
+}

@@ -1,0 +1,156 @@
+//! One path, ray by ray, by the same code that renders it: what the pixel inspector shows and what tells two
+//! backends apart.
+
+use super::Isa;
+use super::kernels::recorder;
+use super::lanes::{Lanes, MAX_LANES, V3};
+use super::path::SinglePath;
+use super::sphere::NONE;
+use super::work::{DealtBlock, Work};
+use crate::film::{FIXED_POINT_SCALE, PixelSum};
+use crate::render::RenderJob;
+use crate::tables::{Real, Tables};
+
+/// What a ray of a path met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordedHit {
+    /// Index of the sphere in the scene.
+    pub sphere: usize,
+    /// Along the ray, scene units.
+    pub distance: f64,
+    /// Where the path went on from; `None` where it ended.
+    pub position: Option<[f64; 3]>,
+}
+
+/// A ray of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordedRay {
+    /// Where it starts, scene units.
+    pub origin: [f64; 3],
+    /// Where it goes, a unit vector.
+    pub direction: [f64; 3],
+    /// What light that arrives along it counts for in the pixel, linear RGB.
+    pub throughput: [f64; 3],
+    /// `None`: it left the scene.
+    pub hit: Option<RecordedHit>,
+}
+
+/// A path, from the camera on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PathRecord {
+    /// Rays in order, at least one unless the stage traces none.
+    pub rays: Vec<RecordedRay>,
+    /// What the sample adds to the pixel, linear RGB; black also where the sample was rejected.
+    pub radiance: [f64; 3],
+}
+
+/// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as `isa` traces it; `None`: in
+/// `f64`.
+pub fn record_path(job: &RenderJob, [x, y]: [u32; 2], index: u64, isa: Option<Isa>) -> PathRecord {
+    match isa {
+        Some(isa) => recorder(isa)(&Tables::new(job), [x, y], index),
+        None => record(super::lanes::Reference, &Tables::new(job), [x, y], index),
+    }
+}
+
+/// Records a path with one lane.
+#[inline(always)]
+pub(super) fn record<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: [u32; 2], index: u64) -> PathRecord {
+    let blocks = DealtBlock::of_range(index..index + 1, &tables.settings, 1);
+    let mut sums = vec![PixelSum::default(); tables.settings.half_count()];
+    let halves = sums.iter_mut().map(|sum| vec![std::slice::from_mut(sum)]).collect();
+    let mut work = Work::new(tables.settings.sampler, &blocks, pixel, halves);
+    let mut path = SinglePath::start(l, tables, &mut work);
+    let mut rays: Vec<RecordedRay> = Vec::new();
+    while path.is_alive() {
+        let mut ray = RecordedRay {
+            origin: first_lane::<L>(path.origin()),
+            direction: first_lane::<L>(path.direction()),
+            throughput: first_lane::<L>(path.throughput()),
+            hit: None,
+        };
+        let (sphere, distance) = path.advance(l, tables, &mut work);
+        let goes_on = path.is_alive() && !path.is_absorbed();
+        if sphere != NONE {
+            let position = goes_on.then(|| first_lane::<L>(path.origin()));
+            let sphere = tables.scene_index[sphere as usize] as usize;
+            ray.hit = Some(RecordedHit { sphere, distance, position });
+        }
+        rays.push(ray);
+        if !goes_on {
+            // An absorbed path's last turn adds nothing.
+            path.finish(l, tables, &mut work);
+            break;
+        }
+    }
+    let mut total = PixelSum::default();
+    sums.iter().for_each(|sum| total.add(*sum));
+    PathRecord { rays, radiance: total.0.map(|k| k as f64 / FIXED_POINT_SCALE) }
+}
+
+#[inline(always)]
+fn first_lane<L: Lanes>(v: V3<L::F>) -> [f64; 3] {
+    [v.x, v.y, v.z].map(|component| {
+        let mut buffer = [L::Real::default(); MAX_LANES];
+        L::store(component, &mut buffer);
+        buffer[0].to_f64()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+    use crate::render::Renderer;
+    use crate::render_cpu::{CpuOptions, CpuRenderer};
+    use std::sync::atomic::AtomicBool;
+
+    fn small_job(scene: &str) -> RenderJob {
+        let mut recipe = Recipe::find(scene).expect("a built-in scene");
+        (recipe.settings.width, recipe.settings.height) = (12, 7);
+        recipe.job().expect("valid")
+    }
+
+    #[test]
+    fn a_record_is_the_path_that_the_renderer_traced() {
+        for scene in ["three-spheres", "book"] {
+            let job = small_job(scene);
+            for isa in Isa::available().into_iter().map(Some).chain([None]) {
+                let mut renderer = match isa {
+                    Some(isa) => CpuRenderer::new(CpuOptions { isa: Some(isa), ..CpuOptions::default() }),
+                    None => CpuRenderer::reference(Some(1)),
+                }
+                .expect("available");
+                let mut film = job.new_film();
+                renderer.accumulate(&job, 5..6, &mut film, &AtomicBool::new(false)).expect("traced");
+                for y in 0..7 {
+                    for x in 0..12 {
+                        let record = record_path(&job, [x, y], 5, isa);
+                        let pixel = film.pixel_sum((y * 12 + x) as usize).radiance();
+                        assert_eq!(record.radiance, pixel, "{scene} {isa:?} pixel {x},{y}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_record_is_connected_and_ends_where_the_path_does() {
+        let job = small_job("three-spheres");
+        for y in 0..7 {
+            for x in 0..12 {
+                let record = record_path(&job, [x, y], 0, None);
+                for pair in record.rays.windows(2) {
+                    let hit = pair[0].hit.expect("a ray that goes on has hit");
+                    assert_eq!(hit.position, Some(pair[1].origin));
+                    let sphere = job.scene().spheres[hit.sphere];
+                    let off =
+                        (glam::DVec3::from(pair[1].origin).distance(sphere.center) - sphere.radius).abs();
+                    assert!(off < 1e-12 * sphere.radius, "{off} off the sphere");
+                }
+                let last = record.rays.last().expect("a camera ray");
+                assert!(last.hit.is_none_or(|hit| hit.position.is_none()));
+            }
+        }
+    }
+}

@@ -1,0 +1,332 @@
+//! Adapters, the device, and what can go wrong with it.
+
+use super::GpuError;
+use std::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// Storage buffers that the path tracer binds.
+const STORAGE_BUFFERS: u32 = 8;
+
+/// What an adapter is, for lists and reports.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterInfo {
+    /// As the driver calls it.
+    pub name: String,
+    /// "discrete GPU", "integrated GPU", "virtual GPU", "software" or "other".
+    pub kind: &'static str,
+    /// "Vulkan", "Metal", "DX12" or "GL".
+    pub backend: String,
+    /// Driver and its version.
+    pub driver: String,
+    /// Whether a processor computes what a GPU should.
+    pub is_software: bool,
+    /// Largest storage buffer that a shader can see at once, bytes.
+    pub storage_binding_limit: u64,
+    /// Largest buffer, bytes.
+    pub buffer_limit: u64,
+    /// Whether it can time a dispatch itself.
+    pub has_timestamps: bool,
+    /// Why the path tracer cannot run on it, if it cannot.
+    pub lacks: Option<String>,
+}
+
+impl AdapterInfo {
+    fn of(adapter: &wgpu::Adapter) -> Self {
+        let (info, limits) = (adapter.get_info(), adapter.limits());
+        let compute = wgpu::DownlevelFlags::COMPUTE_SHADERS;
+        let lacks = if !adapter.get_downlevel_capabilities().flags.contains(compute) {
+            Some("no compute shaders".to_owned())
+        } else if limits.max_storage_buffers_per_shader_stage < STORAGE_BUFFERS {
+            let count = limits.max_storage_buffers_per_shader_stage;
+            Some(format!("{count} storage buffers a shader where {STORAGE_BUFFERS} are needed"))
+        } else {
+            None
+        };
+        AdapterInfo {
+            name: info.name.trim().to_owned(),
+            kind: match info.device_type {
+                wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+                wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+                wgpu::DeviceType::VirtualGpu => "virtual GPU",
+                wgpu::DeviceType::Cpu => "software",
+                wgpu::DeviceType::Other => "other",
+            },
+            backend: match info.backend {
+                wgpu::Backend::Vulkan => "Vulkan".to_owned(),
+                wgpu::Backend::Metal => "Metal".to_owned(),
+                wgpu::Backend::Dx12 => "DX12".to_owned(),
+                wgpu::Backend::Gl => "GL".to_owned(),
+                other => format!("{other:?}"),
+            },
+            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+            // GL names every device "other", software too.
+            is_software: info.device_type == wgpu::DeviceType::Cpu || names_software(&info.name),
+            storage_binding_limit: limits.max_storage_buffer_binding_size,
+            buffer_limit: limits.max_buffer_size,
+            has_timestamps: adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY),
+            lacks,
+        }
+    }
+
+    /// Smaller is chosen first.
+    fn rank(&self) -> (bool, bool, u8, u8) {
+        let kind = match self.kind {
+            "discrete GPU" => 0,
+            "integrated GPU" => 1,
+            "virtual GPU" => 2,
+            _ => 3,
+        };
+        (self.lacks.is_some(), self.is_software, kind, u8::from(self.backend == "GL"))
+    }
+}
+
+/// As `NVIDIA H200 (discrete GPU, Vulkan, driver 580.1)`.
+impl fmt::Display for AdapterInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.is_software { "software" } else { self.kind };
+        write!(f, "{} ({kind}, {}, {})", self.name, self.backend, self.driver)
+    }
+}
+
+fn names_software(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["llvmpipe", "softpipe", "swiftshader", "swrast", "basic render"].iter().any(|s| name.contains(s))
+}
+
+/// Adapters, best first. GL is looked at only where nothing better has what is asked for: it would name the same
+/// hardware again, and its libraries print complaints of their own.
+fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, wgpu::Adapter)> {
+    let mut adapters = adapters_of(wgpu::Backends::PRIMARY);
+    if !adapters.iter().any(|(info, _)| info.lacks.is_none() && wanted(info)) {
+        adapters.extend(adapters_of(wgpu::Backends::GL));
+    }
+    adapters.sort_by_key(|(info, _)| info.rank());
+    adapters
+}
+
+fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        // Debug builds would load a driver's validation layers, which slow everything down.
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let found = pollster::block_on(instance.enumerate_adapters(backends));
+    found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect()
+}
+
+/// All adapters of this machine, that which is chosen by itself first. Software stands behind hardware.
+pub fn adapters() -> Vec<AdapterInfo> {
+    all_adapters(|_| true).into_iter().map(|(info, _)| info).collect()
+}
+
+/// The first failure of a device: what comes after it is its consequence.
+#[derive(Debug, Default)]
+pub struct Faults {
+    first: Mutex<Option<String>>,
+}
+
+impl Faults {
+    fn note(&self, what: String) {
+        self.first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
+    }
+
+    /// `Err` with the first failure, if there was one.
+    pub fn check(&self) -> Result<(), String> {
+        match &*self.first.lock().unwrap_or_else(PoisonError::into_inner) {
+            Some(what) => Err(what.clone()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// How the bindings of the shaders are grouped.
+#[derive(Debug)]
+pub struct Layouts {
+    /// Group 0: the job.
+    pub job: wgpu::BindGroupLayout,
+    /// Group 1: the dispatch.
+    pub dispatch: wgpu::BindGroupLayout,
+    /// Group 2: words in and out.
+    pub words: wgpu::BindGroupLayout,
+    /// All of them.
+    pub pipeline: wgpu::PipelineLayout,
+}
+
+impl Layouts {
+    fn new(device: &wgpu::Device) -> Self {
+        let group = |label, types: &[wgpu::BufferBindingType]| {
+            let entries: Vec<_> = types
+                .iter()
+                .zip(0..)
+                .map(|(ty, binding)| wgpu::BindGroupLayoutEntry {
+                    binding,
+                    visibility: wgpu::ShaderStages::COMPUTE,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: *ty,
+                        has_dynamic_offset: false,
+                        min_binding_size: None,
+                    },
+                    count: None,
+                })
+                .collect();
+            let entries = entries.as_slice();
+            device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+        };
+        let uniform = wgpu::BufferBindingType::Uniform;
+        let read = wgpu::BufferBindingType::Storage { read_only: true };
+        let write = wgpu::BufferBindingType::Storage { read_only: false };
+        let job = group("job", &[uniform, read, read, read, read]);
+        let dispatch = group("dispatch", &[uniform, read, write, write]);
+        let words = group("words", &[write]);
+        let pipeline = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("weekender"),
+            bind_group_layouts: &[Some(&job), Some(&dispatch), Some(&words)],
+            immediate_size: 0,
+        });
+        Layouts { job, dispatch, words, pipeline }
+    }
+}
+
+/// An open device.
+#[derive(Debug)]
+pub struct Gpu {
+    /// The adapter it is of.
+    pub adapter: AdapterInfo,
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Its bindings.
+    pub layouts: Layouts,
+    /// Its failures.
+    pub faults: Arc<Faults>,
+}
+
+/// Longer than any dispatch takes: a device that has not finished by then hangs.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+impl Gpu {
+    /// Opens the first adapter whose name, backend or driver contains `wanted` (in any case), or the first of
+    /// all. A software adapter must be allowed.
+    ///
+    /// # Errors
+    /// [`GpuError`] with the adapters that there are.
+    pub fn open(wanted: Option<&str>, allow_software: bool) -> Result<Self, GpuError> {
+        let matches = |info: &AdapterInfo| {
+            let text = info.to_string().to_lowercase();
+            wanted.is_none_or(|wanted| text.contains(&wanted.to_lowercase()))
+        };
+        let candidates = all_adapters(matches);
+        let listed = || candidates.iter().map(|(info, _)| info.to_string()).collect::<Vec<_>>();
+        if candidates.is_empty() {
+            return Err(GpuError::None);
+        }
+        let Some((info, adapter)) = candidates.iter().find(|(info, _)| matches(info)) else {
+            let wanted = wanted.unwrap_or_default().to_owned();
+            return Err(GpuError::NoMatch { wanted, available: listed() });
+        };
+        if let Some(lacks) = &info.lacks {
+            return Err(GpuError::Lacks { adapter: info.to_string(), lacks: lacks.clone() });
+        }
+        if info.is_software && !allow_software {
+            return Err(GpuError::Software { available: listed() });
+        }
+        let limits = adapter.limits();
+        let opened = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("weekender"),
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: wgpu::Limits {
+                max_storage_buffers_per_shader_stage: STORAGE_BUFFERS,
+                max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
+                max_buffer_size: limits.max_buffer_size,
+                ..wgpu::Limits::downlevel_defaults()
+            },
+            memory_hints: wgpu::MemoryHints::Performance,
+            ..Default::default()
+        }));
+        let (device, queue) = opened
+            .map_err(|error| GpuError::Device { adapter: info.to_string(), reason: error.to_string() })?;
+        let faults = Arc::new(Faults::default());
+        let noted = Arc::clone(&faults);
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| noted.note(error.to_string())));
+        let noted = Arc::clone(&faults);
+        device.set_device_lost_callback(move |reason, message| {
+            noted.note(format!("the device was lost ({reason:?}): {message}"));
+        });
+        let layouts = Layouts::new(&device);
+        let gpu = Gpu { adapter: info.clone(), device, queue, layouts, faults };
+        gpu.faults.check().map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
+        Ok(gpu)
+    }
+
+    /// Runs `create` and returns what it made, or what the device had against it.
+    pub fn guarded<T>(&self, create: impl FnOnce() -> T) -> Result<T, String> {
+        let filters =
+            [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
+        let mut scopes = filters.map(|filter| Some(self.device.push_error_scope(filter)));
+        let made = create();
+        let mut error = None;
+        for scope in scopes.iter_mut().rev() {
+            let caught = scope.take().and_then(|scope| pollster::block_on(scope.pop()));
+            error = error.or(caught);
+        }
+        match error {
+            Some(error) => Err(error.to_string()),
+            None => self.faults.check().map(|()| made),
+        }
+    }
+
+    /// A buffer of zeros.
+    pub fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, String> {
+        let size = size.max(16).next_multiple_of(16);
+        self.guarded(|| {
+            self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage,
+                mapped_at_creation: false,
+            })
+        })
+        .map_err(|reason| format!("no buffer of {size} bytes for {label}: {reason}"))
+    }
+
+    /// A buffer with `data` in it.
+    pub fn filled(
+        &self,
+        label: &str,
+        data: &[u8],
+        usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, String> {
+        let buffer = self.buffer(label, data.len() as u64, usage | wgpu::BufferUsages::COPY_DST)?;
+        self.queue.write_buffer(&buffer, 0, data);
+        Ok(buffer)
+    }
+
+    /// Bindings `0 ..` to whole buffers.
+    pub fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
+        let entries: Vec<_> = buffers
+            .iter()
+            .zip(0..)
+            .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+            .collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    /// Waits until a submission is done.
+    pub fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), String> {
+        let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
+        let polled = self.device.poll(wait);
+        self.faults.check()?;
+        match polled {
+            Ok(_) => Ok(()),
+            Err(error) => {
+                // A loss is told to the callback at the next poll.
+                let _ = self.device.poll(wgpu::PollType::Poll);
+                self.faults.check()?;
+                Err(format!("waiting for the device: {error}"))
+            }
+        }
+    }
+}

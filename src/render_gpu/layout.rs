@@ -1,0 +1,288 @@
+//! What the host and the shaders share, byte for byte. Nothing else is here.
+//!
+//! Twin: shaders/bindings.wgsl. A test holds the offsets against the shaders' own.
+
+use crate::render::RenderSettings;
+use crate::tables::hierarchy::{self, Hierarchy};
+use crate::tables::{AnchoredSphere, CameraTable, Row, Tables};
+use bytemuck::{Pod, Zeroable};
+
+/// Spheres that fit the uniform buffer: as long as there are no more, all threads read them from there.
+pub const UNIFORM_SPHERES: usize = 32;
+
+/// The same for anchored spheres.
+pub const UNIFORM_ANCHORED: usize = 4;
+
+/// Threads of a workgroup.
+pub const WORKGROUP_SIZE: u32 = 64;
+
+/// Twin: `Camera` in camera.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuCamera {
+    /// The eye.
+    pub eye: [f32; 3],
+    /// Tangent of half the defocus angle.
+    pub tau: f32,
+    /// Right.
+    pub u: [f32; 3],
+    /// Radius of the lens.
+    pub focus_tau: f32,
+    /// Up.
+    pub v: [f32; 3],
+    /// Width of a pixel on the plane at distance 1.
+    pub scale_x: f32,
+    /// Against the view.
+    pub w: [f32; 3],
+    /// Height of a pixel, negative.
+    pub scale_y: f32,
+    /// The picture's left and upper edge.
+    pub offset: [f32; 2],
+    /// Pixels across and down.
+    pub size: [f32; 2],
+}
+
+impl GpuCamera {
+    /// The camera of a picture of `width` by `height` pixels.
+    pub fn new(camera: &CameraTable<f32>, width: u32, height: u32) -> Self {
+        GpuCamera {
+            eye: camera.eye,
+            tau: camera.tau,
+            u: camera.u,
+            focus_tau: camera.focus_tau,
+            v: camera.v,
+            scale_x: camera.scale[0],
+            w: camera.w,
+            scale_y: camera.scale[1],
+            offset: camera.offset,
+            size: [width as f32, height as f32],
+        }
+    }
+}
+
+/// Twin: `AnchoredSphere` in sphere.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuAnchoredSphere {
+    /// A point of the surface.
+    pub anchor: [f32; 3],
+    /// 1 / radius.
+    pub curvature: f32,
+    /// Unit vector from the anchor to the centre.
+    pub inward: [f32; 3],
+    /// Radius.
+    pub radius: f32,
+}
+
+impl From<&AnchoredSphere<f32>> for GpuAnchoredSphere {
+    fn from(sphere: &AnchoredSphere<f32>) -> Self {
+        GpuAnchoredSphere {
+            anchor: sphere.anchor,
+            curvature: sphere.curvature,
+            inward: sphere.inward,
+            radius: 1.0 / sphere.curvature,
+        }
+    }
+}
+
+/// Twin: `Job` in bindings.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuJob {
+    /// The camera.
+    pub camera: GpuCamera,
+    /// Sky radiance at the horizon times `2^24`.
+    pub sky_middle: [f32; 3],
+    /// Largest coordinate of any box.
+    pub extent: f32,
+    /// Growth of the sky radiance with the direction's y, times `2^24`.
+    pub sky_slope: [f32; 3],
+    /// Most rays of a path.
+    pub max_depth: u32,
+    /// The sampler's seed.
+    pub seed: u32,
+    /// Spheres of one root.
+    pub opaque_count: u32,
+    /// Spheres of two.
+    pub two_root_count: u32,
+    /// Huge spheres.
+    pub anchored_count: u32,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Pixels across a workgroup's tile.
+    pub tile_width: u32,
+    /// Most nodes that a traversal can visit.
+    pub visit_limit: u32,
+    /// The spheres, where they are few.
+    pub few_spheres: [[f32; 4]; UNIFORM_SPHERES],
+    /// The anchored spheres, where they are few.
+    pub few_anchored: [GpuAnchoredSphere; UNIFORM_ANCHORED],
+}
+
+impl GpuJob {
+    /// What the shaders know of a job.
+    pub fn new(tables: &Tables<f32>) -> Self {
+        let RenderSettings { width, height, max_depth, seed, .. } = tables.settings;
+        let mut few_spheres = [[0.0; 4]; UNIFORM_SPHERES];
+        for (to, from) in few_spheres.iter_mut().zip(tables.opaque.iter().chain(&tables.two_root)) {
+            *to = *from;
+        }
+        let mut few_anchored = [GpuAnchoredSphere::zeroed(); UNIFORM_ANCHORED];
+        for (to, from) in few_anchored.iter_mut().zip(&tables.anchored) {
+            *to = from.into();
+        }
+        let nodes = tables.hierarchy.as_ref().map_or(0, |h| h.nodes.len());
+        GpuJob {
+            camera: GpuCamera::new(&tables.camera, width, height),
+            sky_middle: tables.sky_middle,
+            extent: tables.hierarchy.as_ref().map_or(0.0, |h| h.extent),
+            sky_slope: tables.sky_slope,
+            max_depth,
+            seed,
+            opaque_count: tables.opaque.len() as u32,
+            two_root_count: tables.two_root.len() as u32,
+            anchored_count: tables.anchored.len() as u32,
+            width,
+            height,
+            tile_width: tile_size(width, height)[0],
+            visit_limit: nodes as u32,
+            few_spheres,
+            few_anchored,
+        }
+    }
+}
+
+/// Pixels across and down that a workgroup has: square, unless the picture is too narrow or low for that.
+pub fn tile_size(width: u32, height: u32) -> [u32; 2] {
+    let mut tile_width = 8;
+    while tile_width < WORKGROUP_SIZE && height * tile_width <= WORKGROUP_SIZE / 2 {
+        tile_width *= 2;
+    }
+    while tile_width > 1 && width <= tile_width / 2 {
+        tile_width /= 2;
+    }
+    [tile_width, WORKGROUP_SIZE / tile_width]
+}
+
+/// Twin: `Dispatch` in bindings.wgsl.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuDispatch {
+    /// First tile of the film.
+    pub first_tile: u32,
+    /// Tiles.
+    pub tile_count: u32,
+    /// Blocks of samples.
+    pub block_count: u32,
+    /// Most rays of one pixel.
+    pub ray_limit: u32,
+    /// First row of the picture that the film buffer holds.
+    pub first_row: u32,
+    /// Rows that it holds.
+    pub row_count: u32,
+    /// For resolve: samples in the film.
+    pub sample_count: u32,
+    /// For resolve: a `TRANSFER_` tag.
+    pub transfer: u32,
+}
+
+/// Twin: `Block` in bindings.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuBlock {
+    /// Half of the film.
+    pub half: u32,
+    /// The sampler's counter of the first sample.
+    pub counter: u32,
+    /// What it grows by.
+    pub step: u32,
+    /// Samples.
+    pub count: u32,
+}
+
+/// Twin: `Row` in bindings.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuRow {
+    /// Centre, or anchor.
+    pub reference: [f32; 3],
+    /// 1 / radius.
+    pub curvature: f32,
+    /// Reflected share.
+    pub albedo: [f32; 3],
+    /// Of the unit vector; with a minus sign where the direction is a reflection.
+    pub weight: f32,
+    /// Radius.
+    pub radius: f32,
+    /// Refraction index; 0 if not glass.
+    pub index: f32,
+    /// 1 / refraction index.
+    pub inverse_index: f32,
+    /// Schlick's share at normal incidence.
+    pub normal_share: f32,
+    /// From the anchor to the centre.
+    pub inward: [f32; 3],
+    /// 1 if anchored.
+    pub is_anchored: f32,
+}
+
+impl From<&Row<f32>> for GpuRow {
+    fn from(row: &Row<f32>) -> Self {
+        bytemuck::cast(row.0)
+    }
+}
+
+/// Twin: `Node` in bvh.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuNode {
+    /// Lowest corner.
+    pub low: [f32; 3],
+    /// First sphere, or the first of two children.
+    pub first: u32,
+    /// Highest corner.
+    pub high: [f32; 3],
+    /// Spheres of a leaf.
+    pub count: u32,
+}
+
+impl GpuNode {
+    /// The nodes of a hierarchy.
+    pub fn all(hierarchy: &Hierarchy<f32>) -> Vec<GpuNode> {
+        let node = |n: &hierarchy::Node<f32>| GpuNode {
+            low: n.min,
+            first: n.first,
+            high: n.max,
+            count: n.count & hierarchy::COUNT_MASK,
+        };
+        hierarchy.nodes.iter().map(node).collect()
+    }
+}
+
+/// Twin: `PixelSum` in bindings.wgsl; the bytes of a [`crate::film::PixelSum`].
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuPixelSum {
+    /// Low and high word.
+    pub red: [u32; 2],
+    /// Low and high word.
+    pub green: [u32; 2],
+    /// Low and high word.
+    pub blue: [u32; 2],
+}
+
+/// Twin: `Counters` in bindings.wgsl.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuCounters {
+    /// Rays traced, low word.
+    pub rays: u32,
+    /// High word.
+    pub rays_high: u32,
+    /// Samples left out, low word.
+    pub rejected: u32,
+    /// High word.
+    pub rejected_high: u32,
+}

@@ -1,0 +1,169 @@
+//! How much a dispatch does: blocks of samples and tiles of the picture, by measured time.
+
+use super::layout::GpuBlock;
+use crate::render::RenderSettings;
+use crate::sampling::SampleBlock;
+use std::collections::VecDeque;
+use std::ops::Range;
+use std::time::Duration;
+
+/// Paths of the first dispatch: few enough for the slowest adapter.
+const FIRST_PATHS: f64 = 4096.0;
+
+/// A dispatch has at most so many times the paths of the one before.
+const GROWTH_LIMIT: f64 = 4.0;
+
+/// Most blocks of a dispatch: what their buffer holds.
+pub const BLOCK_LIMIT: usize = 1024;
+
+/// Paths that a dispatch should have, learnt from the ones before.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    paths: f64,
+    target: Duration,
+}
+
+impl Budget {
+    /// Starts small. `target` is what a dispatch should take.
+    pub fn new(target: Duration) -> Self {
+        Budget { paths: FIRST_PATHS, target }
+    }
+
+    /// Paths of the next dispatch.
+    pub fn paths(&self) -> u64 {
+        self.paths as u64
+    }
+
+    /// What a dispatch should take from now on.
+    pub fn set_target(&mut self, target: Duration) {
+        let change = target.as_secs_f64() / self.target.as_secs_f64().max(1e-6);
+        self.paths = (self.paths * change).max(1.0);
+        self.target = target;
+    }
+
+    /// Learns from a dispatch: halves when it took twice what it should, else moves towards the target, a
+    /// little at a time.
+    pub fn learn(&mut self, paths: u64, took: Duration) {
+        let ratio = self.target.as_secs_f64() / took.as_secs_f64().max(1e-9);
+        let fitting = paths as f64 * ratio;
+        // A dispatch far below the budget says how long it takes to start one, not how much one can do.
+        let least = if 2.0 * (paths as f64) < self.paths { self.paths } else { self.paths / 2.0 };
+        self.paths = if ratio < 0.5 {
+            self.paths.min(paths as f64) / 2.0
+        } else {
+            fitting.clamp(least, self.paths * GROWTH_LIMIT)
+        }
+        .clamp(64.0, 1e12);
+    }
+}
+
+/// Samples that are still to be traced, as blocks.
+#[derive(Debug)]
+pub struct Blocks {
+    settings: RenderSettings,
+    left: VecDeque<SampleBlock>,
+}
+
+impl Blocks {
+    /// All samples of `range`; `limit` is the most that a sum in 32 bits holds.
+    pub fn of_range(range: Range<u64>, settings: &RenderSettings, limit: u32) -> Self {
+        let left = SampleBlock::split(range, settings.half_count() as u32, limit).into();
+        Blocks { settings: *settings, left }
+    }
+
+    /// The next blocks, together at most `samples` (at least one sample), and their number of samples.
+    pub fn take(&mut self, samples: u64) -> (Vec<GpuBlock>, u64) {
+        let (mut taken, mut total) = (Vec::new(), 0);
+        while taken.len() < BLOCK_LIMIT {
+            let Some(mut block) = self.left.pop_front() else { break };
+            let room = samples.max(1) - total;
+            if u64::from(block.count) > room {
+                if room == 0 || !taken.is_empty() {
+                    self.left.push_front(block);
+                    break;
+                }
+                // The block's first part; what is left are parts twice as large each time.
+                let part = 1_u32 << room.ilog2();
+                let mut end = block.count;
+                while end > part {
+                    self.left.push_front(SampleBlock {
+                        half: block.half,
+                        first: block.first + end / 2,
+                        count: end / 2,
+                    });
+                    end /= 2;
+                }
+                block.count = part;
+            }
+            let (counter, step) = block.counter(&self.settings);
+            taken.push(GpuBlock { half: block.half, counter, step, count: block.count });
+            total += u64::from(block.count);
+        }
+        (taken, total)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::SamplerKind;
+
+    fn settings(estimate_error: bool) -> RenderSettings {
+        RenderSettings {
+            width: 1,
+            height: 1,
+            max_depth: 1,
+            sampler: SamplerKind::Sobol,
+            seed: 0,
+            estimate_error,
+        }
+    }
+
+    /// Reversed indices within a half.
+    fn indices(blocks: &[GpuBlock]) -> Vec<(u32, u32)> {
+        let mut all = Vec::new();
+        for block in blocks {
+            for i in 0..block.count {
+                let counter = block.counter.wrapping_add(i.wrapping_mul(block.step));
+                all.push((block.half, counter.reverse_bits()));
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn parts_are_the_whole_once() {
+        for halves in [false, true] {
+            for piece in [1, 2, 3, 5, 16, 100, 1000] {
+                let mut blocks = Blocks::of_range(37..1111, &settings(halves), 128);
+                let mut all = Vec::new();
+                loop {
+                    let (taken, total) = blocks.take(piece);
+                    if taken.is_empty() {
+                        break;
+                    }
+                    assert!(total <= piece);
+                    all.extend(indices(&taken));
+                }
+                all.sort_unstable();
+                let half_count = if halves { 2 } else { 1 };
+                let mut expected: Vec<_> = (37..1111_u32).map(|i| (i % half_count, i / half_count)).collect();
+                expected.sort_unstable();
+                assert_eq!(all, expected, "{halves} {piece}");
+            }
+        }
+    }
+
+    #[test]
+    fn budget_finds_the_target_and_recovers() {
+        let mut budget = Budget::new(Duration::from_millis(50));
+        for _ in 0..20 {
+            let paths = budget.paths();
+            budget.learn(paths, Duration::from_secs_f64(1e-4 + paths as f64 / 1e9));
+        }
+        assert!((0.9e9 * 0.05..1.1e9 * 0.05).contains(&(budget.paths() as f64)));
+        let before = budget.paths();
+        budget.learn(before, Duration::from_secs(1));
+        assert_eq!(budget.paths(), before / 2);
+    }
+}

@@ -1,0 +1,144 @@
+//! Who knows whom: each room may use only the rooms listed for it. The layers are in ARCHITECTURE.md.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A room and the rooms that it may use. Lower layers first.
+const ROOMS: &[(&str, &[&str])] = &[
+    ("scene", &[]),
+    ("stages", &["scene"]),
+    ("film", &["stages"]),
+    ("render", &["scene", "stages", "film"]),
+    ("recipe", &["scene", "stages", "render"]),
+    ("output", &["stages", "film"]),
+    ("sampling", &["render"]),
+    ("tables", &["scene", "stages", "film", "render"]),
+    ("render_cpu", &["stages", "film", "render", "sampling", "tables"]),
+    ("render_gpu", &["stages", "film", "render", "sampling", "tables"]),
+    ("backends", &["render", "render_cpu", "render_gpu"]),
+    ("progressive", &["stages", "film", "render", "backends"]),
+    ("describe", &["scene", "stages", "film", "recipe", "progressive"]),
+    ("failure", &[]),
+    (
+        "cli",
+        &[
+            "scene",
+            "stages",
+            "film",
+            "render",
+            "recipe",
+            "output",
+            "render_cpu",
+            "render_gpu",
+            "backends",
+            "progressive",
+            "failure",
+        ],
+    ),
+    (
+        "batch",
+        &[
+            "scene",
+            "stages",
+            "film",
+            "render",
+            "recipe",
+            "output",
+            "render_cpu",
+            "render_gpu",
+            "backends",
+            "progressive",
+            "cli",
+            "describe",
+            "failure",
+        ],
+    ),
+];
+
+/// Crates that only some rooms may use.
+const CRATES: &[(&str, &[&str])] = &[
+    ("egui", &["app"]),
+    ("eframe", &["app"]),
+    ("egui_plot", &["app"]),
+    ("rfd", &["app"]),
+    ("wgpu", &["render_gpu"]),
+    ("rayon", &["render_cpu"]),
+    ("fearless_simd", &["render_cpu"]),
+    ("obvhs", &["tables"]),
+    ("indicatif", &["batch"]),
+    ("clap", &["cli", "failure"]),
+];
+
+fn source_root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+fn rust_files(at: &Path, into: &mut Vec<PathBuf>) {
+    if at.is_dir() {
+        for entry in fs::read_dir(at).expect("readable") {
+            rust_files(&entry.expect("readable").path(), into);
+        }
+    } else if at.extension().is_some_and(|ending| ending == "rs") {
+        into.push(at.to_owned());
+    }
+}
+
+/// The room that a file belongs to: the first part of its path below `src`.
+fn room_of(file: &Path) -> String {
+    let below = file.strip_prefix(source_root()).expect("below src");
+    let first = below.components().next().expect("a name").as_os_str().to_string_lossy().into_owned();
+    first.trim_end_matches(".rs").to_owned()
+}
+
+/// The code of a file without comments and without its tests, which may use any room.
+fn code_of(file: &Path) -> String {
+    let text = fs::read_to_string(file).expect("UTF-8");
+    let before_tests = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    before_tests.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
+}
+
+fn names_after<'a>(code: &'a str, prefix: &'a str) -> impl Iterator<Item = &'a str> {
+    code.match_indices(prefix).map(move |(at, _)| {
+        let rest = &code[at + prefix.len()..];
+        let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
+        &rest[..end]
+    })
+}
+
+fn files() -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    rust_files(&source_root(), &mut files);
+    assert!(files.len() > 30, "the sources were not found");
+    files
+}
+
+#[test]
+fn rooms_use_only_the_rooms_below_them() {
+    let mut faults = BTreeSet::new();
+    for file in files() {
+        let room = room_of(&file);
+        let Some((_, allowed)) = ROOMS.iter().find(|(name, _)| *name == room) else { continue };
+        for used in names_after(&code_of(&file), "crate::") {
+            let is_room = ROOMS.iter().any(|(name, _)| *name == used) || used == "app" || used == "report";
+            if is_room && used != room && !allowed.contains(&used) {
+                faults.insert(format!("{room} uses {used} in {}", file.display()));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+#[test]
+fn crates_stay_in_their_rooms() {
+    let mut faults = BTreeSet::new();
+    for file in files() {
+        let (room, code) = (room_of(&file), code_of(&file));
+        for (name, rooms) in CRATES {
+            if code.contains(&format!("{name}::")) && !rooms.contains(&room.as_str()) {
+                faults.insert(format!("{room} uses {name} in {}", file.display()));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{faults:#?}");
+}

@@ -1,0 +1,64 @@
+//! What the GPU's tests share.
+#![allow(dead_code)]
+
+use weekender::render::{RenderJob, RenderSettings, SamplerKind};
+use weekender::render_cpu::{CpuOptions, CpuRenderer};
+use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer};
+use weekender::scene::builtin::BuiltinScene;
+use weekender::scene::{Camera, Scene};
+use weekender::stages::{Rules, Stage};
+
+/// A renderer on any adapter, software too, or on that which `WEEKENDER_TEST_ADAPTER` names. Without one the test says so and passes, unless
+/// `WEEKENDER_REQUIRE_GPU=1`.
+pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
+    let adapter = std::env::var("WEEKENDER_TEST_ADAPTER").ok();
+    match GpuRenderer::new(GpuOptions { adapter, allow_software: true, ..options }) {
+        Ok(renderer) => Some(renderer),
+        Err(GpuError::None) if std::env::var("WEEKENDER_REQUIRE_GPU").as_deref() != Ok("1") => {
+            println!("no graphics adapter: nothing was tested");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// The control.
+pub fn cpu() -> CpuRenderer {
+    CpuRenderer::new(CpuOptions::default()).unwrap()
+}
+
+pub fn job_of(
+    scene: &Scene,
+    camera: Camera,
+    [width, height]: [u32; 2],
+    max_depth: u32,
+    sampler: SamplerKind,
+    estimate_error: bool,
+) -> RenderJob {
+    let settings = RenderSettings { width, height, max_depth, sampler, seed: 3, estimate_error };
+    RenderJob::new(scene.clone(), camera, settings, Rules::default()).unwrap()
+}
+
+/// Every stage and every built-in scene.
+pub fn jobs(width: u32, height: u32) -> Vec<(String, RenderJob)> {
+    let settings = |max_depth| RenderSettings {
+        width,
+        height,
+        max_depth,
+        sampler: SamplerKind::Sobol,
+        seed: 0,
+        estimate_error: false,
+    };
+    let mut jobs = Vec::new();
+    for stage in Stage::ALL {
+        let setup = &stage.setup;
+        let job = RenderJob::new((setup.scene)(), setup.camera, settings(setup.max_depth), setup.rules);
+        jobs.push((format!("stage {}", stage.id), job.unwrap()));
+    }
+    for scene in BuiltinScene::ALL.iter() {
+        let (spheres, camera) = (scene.build)();
+        let job = RenderJob::new(spheres, camera, settings(scene.max_depth), Rules::default());
+        jobs.push((format!("scene {}", scene.name), job.unwrap()));
+    }
+    jobs
+}

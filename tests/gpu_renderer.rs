@@ -1,0 +1,241 @@
+//! The GPU renderer as a whole: known radiance, odd sizes, films that go on elsewhere, failures.
+
+mod gpu_common;
+
+use glam::DVec3;
+use gpu_common::{cpu, gpu, job_of};
+use std::sync::atomic::AtomicBool;
+use weekender::film::Film;
+use weekender::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind};
+use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer, adapters};
+use weekender::scene::builtin::BuiltinScene;
+use weekender::scene::{Camera, Material, Scene, Sky};
+use weekender::stages::{Rules, Transfer};
+
+fn go_on() -> AtomicBool {
+    AtomicBool::new(false)
+}
+
+fn three_spheres(size: [u32; 2], max_depth: u32, estimate_error: bool) -> RenderJob {
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    job_of(&scene, camera, size, max_depth, SamplerKind::Sobol, estimate_error)
+}
+
+fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Film {
+    let mut film = job.new_film();
+    let stats = renderer.accumulate(job, 0..samples, &mut film, &go_on()).unwrap();
+    assert_eq!(stats.rejected, 0);
+    assert_eq!(film.sample_count(), samples);
+    film
+}
+
+#[test]
+fn adapters_are_listed() {
+    for adapter in adapters() {
+        println!("{adapter}, binds {} bytes", adapter.storage_binding_limit);
+        assert!(!adapter.name.is_empty());
+    }
+}
+
+#[test]
+fn software_is_taken_only_when_allowed() {
+    let Some(software) = adapters().into_iter().find(|a| a.is_software) else { return };
+    let options = GpuOptions { adapter: Some(software.name.clone()), ..GpuOptions::default() };
+    assert!(matches!(GpuRenderer::new(options), Err(GpuError::Software { .. })));
+    let options = GpuOptions { adapter: Some("no such thing".into()), ..GpuOptions::default() };
+    let error = GpuRenderer::new(options).err().unwrap().to_string();
+    assert!(error.contains(&software.name), "{error}");
+}
+
+#[test]
+fn white_furnace_is_white() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    for material in [
+        Material::Lambertian { albedo: DVec3::ONE },
+        Material::Metal { albedo: DVec3::ONE, fuzz: 0.0 },
+        Material::Dielectric { refraction_index: 1.5 },
+    ] {
+        let mut scene = Scene { sky: Sky { bottom: DVec3::ONE, top: DVec3::ONE }, ..Scene::default() };
+        let white = scene.add_material("white", material);
+        scene.add_sphere(DVec3::new(0.0, 0.0, -1.0), 0.5, white);
+        let job = job_of(&scene, Camera::default(), [64, 36], 200, SamplerKind::Sobol, false);
+        for mean in rendered(&mut gpu, &job, 16).means() {
+            assert!(mean.iter().all(|x| (x - 1.0).abs() <= 1e-6), "{material:?}: {mean:?}");
+        }
+    }
+}
+
+#[test]
+fn depth_1_is_black_or_sky() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let job = three_spheres([64, 36], 1, false);
+    assert_eq!(rendered(&mut gpu, &job, 1).means().len(), 64 * 36);
+    let (on_gpu, on_cpu) = (rendered(&mut gpu, &job, 1), rendered(&mut cpu(), &job, 1));
+    for (a, b) in on_gpu.means().iter().zip(on_cpu.means()) {
+        assert_eq!(a == &[0.0; 3], b == [0.0; 3]);
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+}
+
+#[test]
+fn odd_sizes() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    for size in [[1, 1], [1, 2000], [2000, 1], [3, 5], [65, 9], [2, 700]] {
+        let job = three_spheres(size, 8, false);
+        let (on_gpu, on_cpu) = (rendered(&mut gpu, &job, 3), rendered(&mut cpu(), &job, 3));
+        let mut parted = 0;
+        for (a, b) in on_gpu.means().iter().zip(on_cpu.means()) {
+            parted += usize::from(a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-4));
+        }
+        assert!(parted <= 2, "{size:?}: {parted}");
+    }
+}
+
+#[test]
+fn dispatches_and_slabs_do_not_show() {
+    let Some(mut whole) = gpu(GpuOptions::default()) else { return };
+    let job = three_spheres([50, 43], 12, true);
+    let expected = rendered(&mut whole, &job, 37);
+    let row = 50 * 2 * 24;
+    for options in [
+        GpuOptions { samples_per_dispatch: Some(1), ..GpuOptions::default() },
+        GpuOptions { samples_per_dispatch: Some(37), ..GpuOptions::default() },
+        GpuOptions { film_limit: Some(row * 11), ..GpuOptions::default() },
+        GpuOptions { dispatch_target: std::time::Duration::from_micros(50), ..GpuOptions::default() },
+    ] {
+        let mut renderer = gpu(options.clone()).unwrap();
+        assert!(rendered(&mut renderer, &job, 37) == expected, "{options:?}");
+    }
+    let mut renderer = gpu(GpuOptions { film_limit: Some(row), ..GpuOptions::default() }).unwrap();
+    let error = renderer.prepare(&job).unwrap_err().to_string();
+    assert!(error.contains("the adapter binds at most"), "{error}");
+}
+
+#[test]
+fn specialised_is_general() {
+    let Some(mut specialised) = gpu(GpuOptions::default()) else { return };
+    let Some(mut general) = gpu(GpuOptions { specialise: false, ..GpuOptions::default() }) else { return };
+    for scene in &BuiltinScene::ALL[..2] {
+        let (spheres, camera) = (scene.build)();
+        let job = job_of(&spheres, camera, [96, 54], 20, SamplerKind::Sobol, false);
+        let (a, b) = (rendered(&mut specialised, &job, 1), rendered(&mut general, &job, 1));
+        let parted = a
+            .means()
+            .iter()
+            .zip(b.means())
+            .filter(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3))
+            .count();
+        assert!(parted <= 3, "{}: {parted}", scene.name);
+    }
+}
+
+#[test]
+fn film_goes_on_from_cpu_to_gpu_and_back() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let mut cpu = cpu();
+    let job = three_spheres([80, 45], 24, true);
+    let mut film = job.new_film();
+    cpu.accumulate(&job, 0..30, &mut film, &go_on()).unwrap();
+    gpu.accumulate(&job, 30..77, &mut film, &go_on()).unwrap();
+    cpu.accumulate(&job, 77..100, &mut film, &go_on()).unwrap();
+    gpu.accumulate(&job, 100..128, &mut film, &go_on()).unwrap();
+    assert_eq!(film.sample_count(), 128);
+    assert_eq!([film.half_sample_count(0), film.half_sample_count(1)], [64, 64]);
+    let alone = rendered(&mut cpu, &job, 128);
+    let difference: f64 = film
+        .means()
+        .iter()
+        .zip(alone.means())
+        .map(|(a, b)| (0..3).map(|i| f64::from(a[i] - b[i])).sum::<f64>() / 3.0)
+        .sum::<f64>()
+        / (80.0 * 45.0);
+    assert!(difference.abs() < 1e-5, "{difference}");
+
+    // The same samples twice are refused, and nothing is added.
+    let before = film.clone();
+    assert!(matches!(gpu.accumulate(&job, 120..130, &mut film, &go_on()), Err(RenderError::Film(_))));
+    assert!(film == before);
+}
+
+#[test]
+fn cancelled_between_dispatches() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let job = three_spheres([64, 36], 8, false);
+    let expected = rendered(&mut gpu, &job, 4);
+    let mut film = job.new_film();
+    let result = gpu.accumulate(&job, 0..4, &mut film, &AtomicBool::new(true));
+    assert!(matches!(result, Err(RenderError::Cancelled)));
+    assert!(film == job.new_film());
+    assert!(rendered(&mut gpu, &job, 4) == expected);
+}
+
+#[test]
+fn lost_device_leaves_the_film_and_the_cpu_goes_on() {
+    let options = GpuOptions {
+        samples_per_dispatch: Some(1),
+        simulate_device_lost_after: Some(20),
+        ..GpuOptions::default()
+    };
+    let Some(mut gpu) = gpu(options) else { return };
+    let job = three_spheres([64, 36], 8, false);
+    let mut film = job.new_film();
+    let mut next = 0;
+    let error = loop {
+        let before = film.clone();
+        match gpu.accumulate(&job, next..next + 4, &mut film, &go_on()) {
+            Ok(_) => next += 4,
+            Err(error) => {
+                assert!(film == before);
+                break error;
+            }
+        }
+        assert!(next < 100);
+    };
+    println!("{error}");
+    assert!(matches!(error, RenderError::Backend { backend: "gpu", .. }));
+    // It stays lost.
+    assert!(gpu.accumulate(&job, next..next + 4, &mut film, &go_on()).is_err());
+    cpu().accumulate(&job, next..next + 4, &mut film, &go_on()).unwrap();
+    assert_eq!(film.sample_count(), next + 4);
+}
+
+#[test]
+fn resolves_to_the_films_picture() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let job = three_spheres([64, 37], 8, true);
+    let film = rendered(&mut gpu, &job, 8);
+    for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {
+        let picture = gpu.resolve(&job, &film, transfer).unwrap();
+        let expected = film.to_rgb8(transfer);
+        for (word, rgb) in picture.iter().zip(expected.chunks_exact(3)) {
+            let bytes = word.to_le_bytes();
+            assert_eq!(bytes[3], 255);
+            assert!(bytes.iter().zip(rgb).all(|(a, b)| a.abs_diff(*b) <= 1), "{bytes:?} {rgb:?}");
+        }
+    }
+}
+
+#[test]
+fn many_spheres_and_large_radiance() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    // The brightest sky: a block's sum fits 32 bits because blocks are short.
+    let sky = Sky { bottom: DVec3::splat(100.0), top: DVec3::splat(100.0) };
+    let scene = Scene { sky, ..Scene::default() };
+    let job = job_of(&scene, Camera::default(), [16, 9], 4, SamplerKind::Independent, false);
+    for mean in rendered(&mut gpu, &job, 1000).means() {
+        assert!(mean.iter().all(|x| (x - 100.0).abs() < 1e-4), "{mean:?}");
+    }
+    let (scene, camera) = weekender::scene::builtin::field(3000);
+    let settings = RenderSettings {
+        width: 64,
+        height: 36,
+        max_depth: 10,
+        sampler: SamplerKind::Sobol,
+        seed: 0,
+        estimate_error: false,
+    };
+    let job = RenderJob::new(scene, camera, settings, Rules::default()).unwrap();
+    let (a, b) = (rendered(&mut gpu, &job, 1), rendered(&mut cpu(), &job, 1));
+    let parted = a.means().iter().zip(b.means()).filter(|(a, b)| (a[0] - b[0]).abs() > 1e-3).count();
+    assert!(parted <= 4, "{parted}");
+}

@@ -1,0 +1,126 @@
+//! The shaders' text: valid to naga (and tint, where it is installed), and laid out as the host has it.
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use std::collections::HashMap;
+use std::mem::offset_of;
+use weekender::render_gpu::layout::*;
+use weekender::render_gpu::shader_source::{EntryPoint, source};
+
+fn parsed(entry_point: EntryPoint) -> naga::Module {
+    let text = source(entry_point);
+    match naga::front::wgsl::parse_str(&text) {
+        Ok(module) => module,
+        Err(error) => panic!("{}", error.emit_to_string_with_path(&text, entry_point.name())),
+    }
+}
+
+#[test]
+fn every_shader_is_valid() {
+    for entry_point in EntryPoint::ALL {
+        let module = parsed(entry_point);
+        let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+        if let Err(error) = validator.validate(&module) {
+            panic!("{}", error.emit_to_string_with_path(&source(entry_point), entry_point.name()));
+        }
+    }
+}
+
+#[test]
+fn every_shader_is_valid_to_tint() {
+    for entry_point in EntryPoint::ALL {
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join(format!("{}.wgsl", entry_point.name()));
+        std::fs::write(&file, source(entry_point)).unwrap();
+        let Ok(output) = std::process::Command::new("tint").args(["--format", "wgsl"]).arg(&file).output()
+        else {
+            println!("tint is not installed");
+            return;
+        };
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    }
+}
+
+fn offsets(module: &naga::Module, name: &str) -> (HashMap<String, u32>, u32) {
+    for (_, ty) in module.types.iter() {
+        if ty.name.as_deref() == Some(name) {
+            if let naga::TypeInner::Struct { members, span } = &ty.inner {
+                let offset = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset);
+                return (members.iter().map(offset).collect(), *span);
+            }
+        }
+    }
+    panic!("no struct {name} in the shaders");
+}
+
+macro_rules! same_layout {
+    ($module:expr, $rust:ident, $wgsl:literal, $($field:ident),+) => {
+        let (members, span) = offsets(&$module, $wgsl);
+        assert_eq!(span as usize, size_of::<$rust>(), "size of {}", $wgsl);
+        let mut count = 0;
+        $(
+            count += 1;
+            let offset = members.get(stringify!($field)).copied();
+            assert_eq!(offset, Some(offset_of!($rust, $field) as u32), "{}.{}", $wgsl, stringify!($field));
+        )+
+        assert_eq!(members.len(), count, "{} has members that are not compared", $wgsl);
+    };
+}
+
+#[test]
+fn layouts_agree() {
+    let module = parsed(EntryPoint::PathTrace);
+    same_layout!(module, GpuCamera, "Camera", eye, tau, u, focus_tau, v, scale_x, w, scale_y, offset, size);
+    same_layout!(module, GpuAnchoredSphere, "AnchoredSphere", anchor, curvature, inward, radius);
+    same_layout!(
+        module,
+        GpuJob,
+        "Job",
+        camera,
+        sky_middle,
+        extent,
+        sky_slope,
+        max_depth,
+        seed,
+        opaque_count,
+        two_root_count,
+        anchored_count,
+        width,
+        height,
+        tile_width,
+        visit_limit,
+        few_spheres,
+        few_anchored
+    );
+    same_layout!(
+        module,
+        GpuDispatch,
+        "Dispatch",
+        first_tile,
+        tile_count,
+        block_count,
+        ray_limit,
+        first_row,
+        row_count,
+        sample_count,
+        transfer
+    );
+    same_layout!(module, GpuBlock, "Block", half, counter, step, count);
+    same_layout!(
+        module,
+        GpuRow,
+        "Row",
+        reference,
+        curvature,
+        albedo,
+        weight,
+        radius,
+        index,
+        inverse_index,
+        normal_share,
+        inward,
+        is_anchored
+    );
+    same_layout!(module, GpuNode, "Node", low, first, high, count);
+    same_layout!(module, GpuPixelSum, "PixelSum", red, green, blue);
+    same_layout!(module, GpuCounters, "Counters", rays, rays_high, rejected, rejected_high);
+}

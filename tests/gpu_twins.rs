@@ -1,0 +1,368 @@
+//! Each small function of the shaders against its twin: integers to the bit, floats in units of the last place.
+
+mod gpu_common;
+
+use glam::DVec3;
+use gpu_common::gpu;
+use std::num::Wrapping;
+use weekender::film::FIXED_POINT_MAX;
+use weekender::render::{RenderJob, RenderSettings, SamplerKind};
+use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
+use weekender::render_cpu::lanes::{Lanes, Scalar, V3};
+use weekender::render_cpu::material::{Surface, reflectance, scatter};
+use weekender::render_cpu::sphere::{
+    NONE, Rays, acne_root, anchored_root, anchored_surface_point, near_root, nearest_root, surface_point,
+};
+use weekender::render_gpu::shader_source::{PROBE_STRIDE, Probe};
+use weekender::render_gpu::{GpuOptions, GpuRenderer};
+use weekender::sampling::{
+    GOLDEN_RATIO, LENS_BLOCK, laine_karras, mix32, pascal, pcg4d, pixel_key, sin_cos_turns, unit_float,
+};
+use weekender::scene::{Camera, Scene};
+use weekender::stages::{DielectricLaws, Rules};
+use weekender::tables::{AnchoredSphere, CameraTable};
+
+/// The CPU's arithmetic, one lane, fused.
+type L = Scalar<true>;
+const L: L = Scalar::<true>;
+
+const COUNT: usize = 4096;
+
+type Words = [u32; PROBE_STRIDE];
+
+fn job(laws: DielectricLaws) -> RenderJob {
+    let settings = RenderSettings {
+        width: 640,
+        height: 360,
+        max_depth: 4,
+        sampler: SamplerKind::Sobol,
+        seed: 0,
+        estimate_error: false,
+    };
+    let camera = Camera {
+        look_from: DVec3::new(3.0, 2.0, 5.0),
+        look_at: DVec3::new(0.0, 0.5, -1.0),
+        defocus_angle_degrees: 3.0,
+        vfov_degrees: 40.0,
+        ..Camera::default()
+    };
+    RenderJob::new(Scene::default(), camera, settings, Rules { dielectric: laws, ..Rules::default() })
+        .unwrap()
+}
+
+/// Runs a probe on `COUNT` inputs.
+fn run(
+    gpu: &mut GpuRenderer,
+    laws: DielectricLaws,
+    probe: Probe,
+    input: impl Fn(u32) -> Words,
+) -> Vec<(Words, Words)> {
+    let inputs: Vec<Words> = (0..COUNT as u32).map(input).collect();
+    let output = gpu.probe(&job(laws), probe, inputs.concat()).unwrap();
+    inputs.into_iter().zip(output.chunks_exact(PROBE_STRIDE).map(|w| w.try_into().unwrap())).collect()
+}
+
+/// Numbers in `[0, 1)` that depend on `i` and `stream`.
+fn uniform(i: u32, stream: u32) -> [f32; 4] {
+    pcg4d([i, stream, 7, 11]).map(unit_float)
+}
+
+fn unit_vector(i: u32, stream: u32) -> [f32; 3] {
+    let [a, b, ..] = uniform(i, stream);
+    weekender::sampling::unit_sphere(a, b)
+}
+
+/// Bits of floats, then zeros.
+fn words(floats: &[f32]) -> Words {
+    let mut words = [0; PROBE_STRIDE];
+    for (to, from) in words.iter_mut().zip(floats) {
+        *to = from.to_bits();
+    }
+    words
+}
+
+fn float(words: &Words, i: usize) -> f32 {
+    f32::from_bits(words[i])
+}
+
+fn vector(words: &Words, i: usize) -> V3<f32> {
+    V3 { x: float(words, i), y: float(words, i + 1), z: float(words, i + 2) }
+}
+
+fn list(v: V3<f32>) -> [f32; 3] {
+    [v.x, v.y, v.z]
+}
+
+/// The largest difference, in units of the last place of numbers as large as `scale`.
+#[derive(Default)]
+struct Ulps(f64);
+
+impl Ulps {
+    fn compare(&mut self, got: &[f32], expected: &[f32], scale: f32) {
+        let unit = f64::from(scale.next_up()) - f64::from(scale);
+        for (a, b) in got.iter().zip(expected) {
+            let difference = (f64::from(*a) - f64::from(*b)).abs() / unit;
+            assert!(!difference.is_nan(), "{got:?} {expected:?}");
+            self.0 = self.0.max(difference);
+        }
+    }
+
+    fn within(&self, what: &str, limit: f64) {
+        println!("{what}: {:.1} units of the last place", self.0);
+        assert!(self.0 <= limit, "{what}: {} > {limit}", self.0);
+    }
+}
+
+#[test]
+fn integers_are_equal_to_the_bit() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let laws = DielectricLaws::Schlick;
+    let random = |i: u32| {
+        let [a, b, c, d] = pcg4d([i, 1, 2, 3]);
+        let mut words = [0; PROBE_STRIDE];
+        words[..5].copy_from_slice(&[a, b & 1, c, d, i % 50]);
+        words
+    };
+    for (input, output) in run(&mut gpu, laws, Probe::Pcg4d, random) {
+        assert_eq!(output[..4], pcg4d([input[0], input[1], input[2], input[3]]));
+    }
+    for (input, output) in run(&mut gpu, laws, Probe::Sobol, random) {
+        let [seed, half, pixel, counter, bounce] = [0, 1, 2, 3, 4].map(|i| input[i]);
+        let key = pixel_key(seed, half, pixel);
+        let pair = |block: u32| {
+            let u = laine_karras(counter, mix32(key.wrapping_add(block.wrapping_mul(GOLDEN_RATIO))));
+            [u, pascal(u)]
+        };
+        assert_eq!(output[..4], [pair(bounce), pair(bounce.wrapping_add(LENS_BLOCK))].concat());
+    }
+    let sums = |i: u32| {
+        let x = match i {
+            0 => 0.5,
+            1 => 1.5,
+            2 => 2.5,
+            3 => FIXED_POINT_MAX as f32,
+            4 => 3e9,
+            _ => uniform(i, 5)[0] * (1_u32 << (i % 31)) as f32,
+        };
+        let [_, low, high, more] = pcg4d([i, 1, 2, 3]);
+        let mut words = words(&[x]);
+        words[1..4].copy_from_slice(&[low, high, more]);
+        words
+    };
+    for (input, output) in run(&mut gpu, laws, Probe::FixedPoint, sums) {
+        let rounded = f64::from(float(&input, 0)).round_ties_even().min(f64::from(FIXED_POINT_MAX));
+        assert_eq!(f64::from(output[0]), rounded, "{input:?}");
+        let sum = u64::from(input[1]) | u64::from(input[2]) << 32;
+        let sum = sum.wrapping_add(u64::from(input[3]));
+        assert_eq!([output[1], output[2]], [sum as u32, (sum >> 32) as u32]);
+    }
+}
+
+#[test]
+fn sine_and_cosine() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let mut ulps = Ulps::default();
+    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::SinCos, |i| {
+        let mut words = [0; PROBE_STRIDE];
+        words[0] = i << 20 | pcg4d([i, 0, 0, 0])[0] >> 12;
+        words
+    }) {
+        assert_eq!(float(&output, 0), unit_float(input[0]));
+        let (sine, cosine) = sin_cos_turns(unit_float(input[0]));
+        ulps.compare(&[float(&output, 1), float(&output, 2)], &[sine, cosine], 0.75);
+    }
+    ulps.within("sin_cos_turns", 4.0);
+}
+
+/// A ray that meets the sphere, not at its rim, where the distance is as uncertain as a root of 0.
+fn ray_words(i: u32) -> Words {
+    let [radius, distance, inside, code] = uniform(i, 20);
+    let radius = 0.1 + 2.0 * radius;
+    let center = unit_vector(i, 21).map(|x| 3.0 * x);
+    let towards = unit_vector(i, 22);
+    let reach = if inside < 0.3 { 0.9 * distance * radius } else { radius * (1.2 + 5.0 * distance) };
+    let origin = [0, 1, 2].map(|k| center[k] + reach * towards[k]);
+    let aim = unit_vector(i, 23);
+    let target = [0, 1, 2].map(|k| center[k] + 0.8 * radius * aim[k]);
+    let d = DVec3::from_array([0, 1, 2].map(|k| f64::from(target[k] - origin[k]))).normalize();
+    let mut words = words(&[origin[0], origin[1], origin[2], d.x as f32, d.y as f32, d.z as f32]);
+    (words[6], words[7]) = match (code * 4.0) as u32 {
+        0 => (1, NONE),
+        1 => (NONE, 1),
+        _ => (NONE, NONE),
+    };
+    for (to, x) in words[8..12].iter_mut().zip([center[0], center[1], center[2], radius * radius]) {
+        *to = x.to_bits();
+    }
+    words
+}
+
+fn rays(words: &Words) -> Rays<L> {
+    Rays {
+        origin: vector(words, 0),
+        direction: vector(words, 3),
+        left: Wrapping(words[6]),
+        inside: Wrapping(words[7]),
+    }
+}
+
+/// Compares distances; those that are no hit need only be none on both sides.
+fn compare_keys(ulps: &mut Ulps, got: u32, expected: u32, what: &Words) {
+    let hits = |key: u32| key < f32::INFINITY.to_bits();
+    assert_eq!(hits(got), hits(expected), "{what:?}: {got:x} {expected:x}");
+    if hits(got) {
+        ulps.compare(&[f32::from_bits(got)], &[f32::from_bits(expected)], 4.0);
+    }
+}
+
+#[test]
+fn intersections() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let mut ulps = Ulps::default();
+    let one = Wrapping(1);
+    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Roots, ray_words) {
+        let rays = rays(&input);
+        let sphere: [f32; 4] = [8, 9, 10, 11].map(|i| float(&input, i));
+        compare_keys(&mut ulps, output[0], near_root(L, &rays, &sphere, one), &input);
+        compare_keys(&mut ulps, output[1], nearest_root(L, &rays, &sphere, one), &input);
+        compare_keys(&mut ulps, output[2], acne_root(L, &rays, &sphere), &input);
+    }
+    ulps.within("roots", 64.0);
+
+    let mut ulps = Ulps::default();
+    let surface = |i: u32| {
+        let mut words = ray_words(i);
+        let radius = float(&words, 11).sqrt();
+        words[11] = (1.0 / radius).to_bits();
+        words[12] = (2.0 * uniform(i, 24)[0]).to_bits();
+        words[13] = radius.to_bits();
+        // On the sphere, as a hit is.
+        let origin = [0, 1, 2].map(|k| float(&words, 8 + k) + radius * unit_vector(i, 25)[k]);
+        let d = vector(&words, 3);
+        let t = float(&words, 12);
+        for (k, d) in list(d).into_iter().enumerate() {
+            words[k] = (origin[k] - t * d).to_bits();
+        }
+        words
+    };
+    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Surface, surface) {
+        let [curvature, t, radius] = [11, 12, 13].map(|i| float(&input, i));
+        let point = surface_point(L, &rays(&input), t, vector(&input, 8), curvature, radius);
+        ulps.compare(&list(vector(&output, 0)), &list(point.position), 4.0);
+        ulps.compare(&list(vector(&output, 3)), &list(point.outward), 4.0);
+    }
+    ulps.within("surface_point", 8.0);
+}
+
+#[test]
+fn anchored_spheres() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let (mut roots, mut points) = (Ulps::default(), Ulps::default());
+    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Anchored, |i| {
+        let [x, height, z, code] = uniform(i, 30);
+        let [a, b, ..] = uniform(i, 31);
+        // Downwards, not grazing, on a ground of a large radius.
+        let d = DVec3::new(f64::from(a) - 0.5, -0.3 - f64::from(b), f64::from(b) - 0.5).normalize();
+        let origin = [4.0 * x, 0.1 + height, 4.0 * z];
+        let curvature = 10.0_f32.powi(-((i % 6) as i32) - 2);
+        let t = 2.0 * height;
+        let mut words = words(&[
+            origin[0], origin[1], origin[2], d.x as f32, d.y as f32, d.z as f32, 0.0, 0.0, 0.5, 0.01, 0.25,
+            curvature, 0.0, -1.0, 0.0, t,
+        ]);
+        (words[6], words[7]) = if code < 0.2 { (1, NONE) } else { (NONE, NONE) };
+        words
+    }) {
+        let sphere = AnchoredSphere {
+            anchor: list(vector(&input, 8)),
+            inward: list(vector(&input, 12)),
+            curvature: float(&input, 11),
+        };
+        let rays = rays(&input);
+        compare_keys(&mut roots, output[0], anchored_root(L, &rays, &sphere, Wrapping(1)), &input);
+        let (anchor, inward) = (vector(&input, 8), vector(&input, 12));
+        let point = anchored_surface_point(L, &rays, float(&input, 15), anchor, inward, sphere.curvature);
+        points.compare(&list(vector(&output, 1)), &list(point.position), 4.0);
+        points.compare(&list(vector(&output, 4)), &list(point.outward), 1.0);
+    }
+    roots.within("anchored_root", 64.0);
+    points.within("anchored_surface_point", 8.0);
+}
+
+#[test]
+fn scattering() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    for laws in [DielectricLaws::RefractOnly, DielectricLaws::TotalReflection, DielectricLaws::Schlick] {
+        let mut ulps = Ulps::default();
+        let mut parted = 0;
+        for (input, output) in run(&mut gpu, laws, Probe::Scatter, |i| {
+            let [index, weight, coin, front] = uniform(i, 40);
+            let (weight, index) = match i % 3 {
+                0 => (1.0, 0.0),
+                1 => (-weight, 0.0),
+                _ => (-0.0, 0.5 + 1.5 * index),
+            };
+            let normal = DVec3::from_array(unit_vector(i, 41).map(f64::from));
+            let incoming = DVec3::from_array(unit_vector(i, 42).map(f64::from));
+            let incoming = if incoming.dot(normal) > 0.0 { -incoming } else { incoming };
+            let [d, n] = [incoming, normal].map(|v| v.to_array().map(|x| x as f32));
+            let unit = unit_vector(i, 43);
+            let share = ((1.0 - index) / (1.0 + index)).powi(2);
+            let inverse = if index > 0.0 { 1.0 / index } else { 0.0 };
+            let cosine = (-incoming.dot(normal)) as f32;
+            let mut words = words(&[
+                weight, index, inverse, share, d[0], d[1], d[2], n[0], n[1], n[2], unit[0], unit[1], unit[2],
+                cosine, 0.0, coin,
+            ]);
+            words[14] = u32::from(front < 0.5);
+            words
+        }) {
+            let [weight, index, inverse_index, normal_share] = [0, 1, 2, 3].map(|i| float(&input, i));
+            let surface: Surface<L> = Surface { weight, index, inverse_index, normal_share };
+            let (cosine, coin) = (float(&input, 13), float(&input, 15));
+            let (d, n, unit) = (vector(&input, 4), vector(&input, 7), vector(&input, 10));
+            let front = input[14] != 0;
+            let sent = scatter::<L, true>(L, &surface, laws, d, n, cosine, front, unit, coin);
+            let flags = u32::from(sent.refracts) | u32::from(sent.is_metal) << 1;
+            if output[3] != flags {
+                // A coin within rounding of the reflectance.
+                parted += 1;
+                continue;
+            }
+            ulps.compare(&list(vector(&output, 0)), &list(sent.direction), 2.0);
+            ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, normal_share)], 1.0);
+        }
+        assert!(parted <= 2, "{parted} parted");
+        // Near the critical angle the inner cosine is a root of almost 0.
+        ulps.within(&format!("scatter, {laws:?}"), 512.0);
+    }
+}
+
+#[test]
+fn camera_rays() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let job = job(DielectricLaws::Schlick);
+    let settings = job.settings();
+    let camera = CameraTable::<f32>::new(job.camera(), settings.width, settings.height);
+    let mut ulps = Ulps::default();
+    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Camera, |i| {
+        let [x, y, a, b] = uniform(i, 50);
+        let [c, d, ..] = uniform(i, 51);
+        words(&[(x * 640.0).floor(), (y * 360.0).floor(), a, b, c - 0.5, d - 0.5])
+    }) {
+        let [x, y, a, b, c, d] = [0, 1, 2, 3, 4, 5].map(|i| float(&input, i));
+        let corner = screen(L, &camera, x, y);
+        let pinhole = pinhole_rays(L, &camera, corner, [a, b]);
+        let lens = lens_rays(L, &camera, corner, [a, b], [c, d]);
+        for (at, v) in [(0, pinhole.origin), (3, pinhole.direction), (6, lens.origin), (9, lens.direction)] {
+            ulps.compare(&list(vector(&output, at)), &list(v), 4.0);
+        }
+    }
+    ulps.within("camera rays", 4.0);
+}
+
+/// The lane's own constants are used, so that a change of precision does not go unseen.
+#[test]
+fn oracle_is_single_precision() {
+    assert_eq!(L.constant(0.1), 0.1_f32);
+}
