@@ -80,6 +80,13 @@ impl Compare {
         self.mode.is_none() && self.show == Show::Normals
     }
 
+    /// Whether the stage that `stage` is compared with has been pictured.
+    pub fn has_picture(&self, stage: Option<&'static Stage>) -> bool {
+        let wanted = stage.and_then(|stage| self.other_of(stage));
+        let shown = self.tracer.as_ref().and_then(Tracer::shown);
+        wanted.is_some() && shown.is_some_and(|shown| shown.document.stage() == wanted)
+    }
+
     pub fn pause(&self) {
         if let Some(tracer) = &self.tracer {
             tracer.pause();

@@ -35,6 +35,9 @@ impl Window {
             }
         }
         let also = |key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+        if also(Key::F6) {
+            context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next));
+        }
         if also(Key::Questionmark) {
             self.send(Command::Help);
         }

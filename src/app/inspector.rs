@@ -51,6 +51,8 @@ pub struct Inspector {
     asked: Option<([u32; 2], u64)>,
     is_waiting: bool,
     path: Option<Path>,
+    /// The path has just been listed and is to be scrolled to.
+    is_path_new: bool,
 }
 
 impl Inspector {
@@ -109,6 +111,7 @@ impl Inspector {
         let isa = Isa::available().into_iter().max();
         let record = record_path(&job, pixel, sample, isa);
         self.path = Some(Path { pixel, sample, record });
+        self.is_path_new = true;
     }
 
     /// The points of the listed path after the eye.
@@ -208,7 +211,7 @@ fn path_ui(window: &mut super::Window, ui: &mut Ui) {
     let mut wanted = Some(sample);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        let earlier = egui::Button::new("⏴").small();
+        let earlier = egui::Button::new("‹").small();
         let earlier = ui.add_enabled(sample > 0, earlier).on_hover_text("The sample before");
         if earlier
             .on_disabled_hover_text("This is the first")
@@ -217,7 +220,7 @@ fn path_ui(window: &mut super::Window, ui: &mut Ui) {
         {
             wanted = Some(sample - 1);
         }
-        let later = ui.add(egui::Button::new("⏵").small()).on_hover_text("The sample after");
+        let later = ui.add(egui::Button::new("›").small()).on_hover_text("The sample after");
         if later.accessible_name("Path of the sample after").clicked() {
             wanted = Some(sample + 1);
         }
@@ -227,7 +230,11 @@ fn path_ui(window: &mut super::Window, ui: &mut Ui) {
             wanted = None;
         }
     });
-    list_rays(ui, &path.record, window.document.scene());
+    let list = ui.scope(|ui| list_rays(ui, &path.record, window.document.scene())).response;
+    if window.inspector.is_path_new {
+        list.scroll_to_me(Some(egui::Align::Min));
+        window.inspector.is_path_new = false;
+    }
     match wanted {
         None => window.inspector.path = None,
         Some(wanted) if wanted != sample => {

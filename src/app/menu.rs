@@ -142,7 +142,7 @@ fn is_on(window: &Window, command: Command) -> bool {
 
 fn stage_bar(window: &mut Window, ui: &mut Ui, is_wide: bool) {
     ui.spacing_mut().item_spacing.x = 4.0;
-    step(window, ui, Command::PreviousStage, "⏴");
+    step(window, ui, Command::PreviousStage, "‹");
     let title = match window.document.stage() {
         Some(stage) => format!("{}  {}", stage.section, stage.title),
         None => window.document.origin.recipe.name.clone(),
@@ -157,7 +157,7 @@ fn stage_bar(window: &mut Window, ui: &mut Ui, is_wide: bool) {
         })
     });
     sized.inner.0.on_hover_text("All stages of the book").accessible_name("Choose a stage");
-    step(window, ui, Command::NextStage, "⏵");
+    step(window, ui, Command::NextStage, "›");
 }
 
 fn step(window: &mut Window, ui: &mut Ui, command: Command, label: &str) {

@@ -30,6 +30,7 @@ mod window;
 pub use command::{Command, Group};
 pub use device::Device;
 pub use document::{Document, Origin, Source, Stop};
+pub use remembered::Theme;
 pub use window::Window;
 
 use crate::cli::WindowOptions;

@@ -163,13 +163,13 @@ fn who(status: &Status) -> String {
     }
 }
 
-/// A number with thin gaps between thousands.
+/// A number with gaps between thousands.
 fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
         if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            text.push('\u{2009}');
+            text.push('\u{a0}');
         }
         text.push(digit);
     }
@@ -202,6 +202,6 @@ mod tests {
     #[test]
     fn thousands_are_grouped() {
         assert_eq!(grouped(0), "0");
-        assert_eq!(grouped(1234567), "1\u{2009}234\u{2009}567");
+        assert_eq!(grouped(1234567), "1\u{a0}234\u{a0}567");
     }
 }

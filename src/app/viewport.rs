@@ -477,6 +477,7 @@ fn paint_path(window: &Window, ui: &Ui, painter: &egui::Painter, rect: Rect) {
         let [x, y] = document.camera.place_of(point, document.aspect())?;
         Some(rect.min + vec2(x as f32, y as f32) * rect.size())
     };
+    let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
     let points: Vec<Pos2> = window.inspector.path_points().map_while(place).collect();
     for pair in points.windows(2) {
         painter.line_segment([pair[0], pair[1]], Stroke::new(3.0, Color32::from_black_alpha(120)));

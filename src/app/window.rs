@@ -56,6 +56,8 @@ pub struct Window {
     pub(super) is_paused: bool,
     pub(super) is_full_screen: bool,
     pub(super) frame_log: Option<FrameLog>,
+    /// What was carried out last.
+    pub(super) performed: Option<Command>,
     backend: BackendChoice,
     forced_backend: Option<BackendChoice>,
     last_document: Document,
@@ -101,6 +103,7 @@ impl Window {
             is_paused: false,
             is_full_screen: false,
             frame_log,
+            performed: None,
             backend: options.backend,
             forced_backend,
             last_document: document.clone(),
@@ -146,6 +149,11 @@ impl Window {
         self.main.shown().map(|shown| (shown.samples, shown.divisor))
     }
 
+    /// What was carried out last.
+    pub fn performed(&self) -> Option<Command> {
+        self.performed
+    }
+
     /// Whether a dialog is open.
     pub fn has_dialog(&self) -> bool {
         self.dialog.is_some()
@@ -154,6 +162,11 @@ impl Window {
     /// Whether two stages are compared.
     pub fn is_comparing(&self) -> bool {
         self.compare.mode.is_some()
+    }
+
+    /// Whether there is a second picture, of what is compared now.
+    pub fn has_other_picture(&self) -> bool {
+        self.compare.has_picture(self.document.stage())
     }
 
     /// Asks for a command, to be carried out in the next frame.

@@ -20,7 +20,7 @@ const MOUSE: [(&str, &str); 10] = [
 pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
     ui.heading("Keyboard and mouse");
     ui.add_space(6.0);
-    egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
         egui::Grid::new("help").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
             for (keys, what) in MOUSE {
                 ui.label(RichText::new(keys).strong());

@@ -34,7 +34,7 @@ impl Window {
             ui.set_max_width((room.x - 40.0).min(560.0));
             match &mut dialog {
                 Dialog::Palette(palette) => palette.ui(self, ui),
-                Dialog::Help => help::ui(ui, room.y - 80.0),
+                Dialog::Help => help::ui(ui, (room.y - 140.0).max(100.0)),
                 Dialog::Path(path_box) => path_box.ui(self, ui),
             }
         });

@@ -12,15 +12,17 @@ pub struct Palette {
     chosen: usize,
 }
 
-/// Commands whose names or help have every word of `text`; those where the name has them first.
+/// Commands whose names or help have every word of `text`: the one of this name, then those where the name has
+/// them, then the others.
 fn matching(text: &str) -> Vec<Command> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
     let has = |place: &str| words.iter().all(|word| place.to_lowercase().contains(word.as_str()));
     let all = || Command::all().into_iter().filter(|command| *command != Command::Palette);
-    let by_name = |command: &Command| has(&command.name());
+    let is_it = |command: &Command| command.name() == text;
+    let by_name = |command: &Command| has(&command.name()) && !is_it(command);
     let by_help =
-        |command: &Command| !by_name(command) && has(&format!("{} {}", command.name(), command.help()));
-    all().filter(by_name).chain(all().filter(by_help)).collect()
+        |command: &Command| !has(&command.name()) && has(&format!("{} {}", command.name(), command.help()));
+    all().filter(is_it).chain(all().filter(by_name)).chain(all().filter(by_help)).collect()
 }
 
 impl Palette {

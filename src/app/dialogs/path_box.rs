@@ -80,7 +80,7 @@ impl PathBox {
             edit = edit.hint_text("File name; or drop the file on the window");
         }
         let output = edit.show(ui);
-        let response = output.response.response.accessible_name("File");
+        let response = output.response.response.accessible_name("File name");
         if self.is_new {
             self.is_new = false;
             response.request_focus();
