@@ -2,6 +2,7 @@
 //!
 //! `gpu_bench trace SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS [general] [samples=N] [target_ms=N] [adapter=NAME]`
 //! prints one row of a table: the median of RUNS after a warm-up, tracing alone.
+//! `gpu_bench adapter [adapter=NAME]` prints the adapter.
 //! `gpu_bench size SCENE...` prints how large each scene's kernel is, general and specialised.
 
 use naga::back::pipeline_constants::process_overrides;
@@ -22,8 +23,12 @@ fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.split_first() {
         Some((mode, rest)) if mode == "trace" => trace(rest),
+        Some((mode, rest)) if mode == "adapter" => {
+            println!("{}", GpuRenderer::new(options_of(rest)?)?.adapter());
+            Ok(())
+        }
         Some((mode, rest)) if mode == "size" => rest.iter().try_for_each(|scene| size(scene)),
-        _ => anyhow::bail!("the first argument must be trace or size"),
+        _ => anyhow::bail!("the first argument must be trace, adapter or size"),
     }
 }
 
@@ -47,13 +52,9 @@ fn job(scene: &str, [width, height, max_depth]: [u32; 3]) -> anyhow::Result<Rend
     Ok(RenderJob::new(spheres, camera, settings, Rules::default())?)
 }
 
-fn trace(arguments: &[String]) -> anyhow::Result<()> {
-    let [scene, width, height, samples, depth, runs, rest @ ..] = arguments else {
-        anyhow::bail!("trace needs SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS");
-    };
-    let job = job(scene, [width.parse()?, height.parse()?, depth.parse()?])?;
+fn options_of(arguments: &[String]) -> anyhow::Result<GpuOptions> {
     let mut options = GpuOptions { allow_software: true, ..GpuOptions::default() };
-    for option in rest {
+    for option in arguments {
         match option.split_once('=') {
             None if option == "general" => options.specialise = false,
             Some(("samples", count)) => options.samples_per_dispatch = Some(count.parse()?),
@@ -62,6 +63,15 @@ fn trace(arguments: &[String]) -> anyhow::Result<()> {
             _ => anyhow::bail!("unknown option {option}"),
         }
     }
+    Ok(options)
+}
+
+fn trace(arguments: &[String]) -> anyhow::Result<()> {
+    let [scene, width, height, samples, depth, runs, rest @ ..] = arguments else {
+        anyhow::bail!("trace needs SCENE WIDTH HEIGHT SAMPLES DEPTH RUNS");
+    };
+    let job = job(scene, [width.parse()?, height.parse()?, depth.parse()?])?;
+    let options = options_of(rest)?;
     let mut renderer = GpuRenderer::new(options)?;
     let range = 0..samples.parse()?;
     let go_on = AtomicBool::new(false);

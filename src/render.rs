@@ -266,6 +266,22 @@ pub trait Renderer: Send {
     /// What this is.
     fn info(&self) -> BackendInfo;
 
+    /// Who added the samples of the last [`Renderer::accumulate`], which were `added` a pixel. One renderer alone
+    /// added them all.
+    fn credits(&self, added: u64) -> Vec<(BackendInfo, u64)> {
+        vec![(self.info(), added)]
+    }
+
+    /// What the user should know and has not been told: a software adapter in use, a part that failed.
+    fn take_messages(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Wall time that building the prepared job's hierarchy took; zero where there is none.
+    fn hierarchy_time(&self) -> Duration {
+        Duration::ZERO
+    }
+
     /// Builds what tracing `job` needs (tables, hierarchy, kernels). Later calls for an equal job do nothing.
     ///
     /// # Errors

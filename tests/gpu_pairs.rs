@@ -1,5 +1,6 @@
 //! The GPU against the CPU, sample by sample: the same counters, so the same paths but for rounding.
 //! (Case 13 of docs/numerics.md.)
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
 

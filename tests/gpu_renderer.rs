@@ -1,4 +1,5 @@
 //! The GPU renderer as a whole: known radiance, odd sizes, films that go on elsewhere, failures.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
 

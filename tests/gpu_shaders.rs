@@ -1,4 +1,5 @@
 //! The shaders' text: valid to naga (and tint, where it is installed), and laid out as the host has it.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::HashMap;
@@ -42,11 +43,11 @@ fn every_shader_is_valid_to_tint() {
 
 fn offsets(module: &naga::Module, name: &str) -> (HashMap<String, u32>, u32) {
     for (_, ty) in module.types.iter() {
-        if ty.name.as_deref() == Some(name) {
-            if let naga::TypeInner::Struct { members, span } = &ty.inner {
-                let offset = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset);
-                return (members.iter().map(offset).collect(), *span);
-            }
+        if let naga::TypeInner::Struct { members, span } = &ty.inner
+            && ty.name.as_deref() == Some(name)
+        {
+            let offset = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset);
+            return (members.iter().map(offset).collect(), *span);
         }
     }
     panic!("no struct {name} in the shaders");

@@ -1,4 +1,5 @@
 //! Each small function of the shaders against its twin: integers to the bit, floats in units of the last place.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
 

@@ -61,6 +61,7 @@ pub(super) struct Summary {
     sample_ranges: String,
     added_samples_per_pixel: u64,
     prepare_seconds: f64,
+    hierarchy_seconds: f64,
     trace_seconds: f64,
     write_seconds: f64,
     total_seconds: f64,
@@ -107,7 +108,8 @@ impl Summary {
             samples_per_pixel: status.samples_per_pixel,
             sample_ranges: film.map_or_else(String::new, |film| film.samples().to_string()),
             added_samples_per_pixel: status.contributions.iter().map(|part| part.samples_per_pixel).sum(),
-            prepare_seconds: status.prepare.as_secs_f64(),
+            prepare_seconds: status.prepare.saturating_sub(status.hierarchy).as_secs_f64(),
+            hierarchy_seconds: status.hierarchy.as_secs_f64(),
             trace_seconds: status.trace.as_secs_f64(),
             write_seconds: write.as_secs_f64(),
             total_seconds: (status.elapsed + write).as_secs_f64(),
@@ -145,6 +147,12 @@ impl fmt::Display for Summary {
             let [lanes, threads] = [self.lanes, self.threads].map(Option::unwrap_or_default);
             writeln!(f, "backend  {backend} {device}, {lanes} lanes, {threads} threads")?;
         }
+        if self.backends.len() > 1 {
+            let part = |c: &Contribution| {
+                format!("{} by {} {}", c.samples_per_pixel, c.backend.name, c.backend.device)
+            };
+            writeln!(f, "shares   {}", self.backends.iter().map(part).collect::<Vec<_>>().join(", "))?;
+        }
         let added = match self.added_samples_per_pixel {
             added if added == self.samples_per_pixel => String::new(),
             added => format!(" ({added} of them now)"),
@@ -156,9 +164,10 @@ impl fmt::Display for Summary {
         )?;
         writeln!(
             f,
-            "time     {} (prepare {:.3} s, trace {:.3} s, write {:.3} s)",
+            "time     {} (prepare {:.3} s, build hierarchy {:.3} s, trace {:.3} s, write {:.3} s)",
             seconds(self.total_seconds),
             self.prepare_seconds,
+            self.hierarchy_seconds,
             self.trace_seconds,
             self.write_seconds
         )?;

@@ -4,12 +4,13 @@ use super::Request;
 use super::raw::{ProgressChoice, RawDevice, RawRender};
 use super::sources::{self, CliError, Source};
 use super::values::{Level, Simd};
-use crate::backends::{BackendChoice, BackendError};
+use crate::backends::BackendChoice;
 use crate::output::OutputFormat;
 use crate::progressive::Plan;
 use crate::recipe::Recipe;
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::CpuOptions;
+use crate::render_gpu::GpuOptions;
 use crate::stages::Stage;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -241,10 +242,28 @@ fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
     let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
     let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
     let cpu = CpuOptions { isa, lanes, threads };
+    let gpu = GpuOptions {
+        adapter: raw.adapter.clone(),
+        // Whoever names a software adapter wants it.
+        allow_software: raw.adapter.is_some(),
+        simulate_device_lost_after: raw.simulate_device_lost,
+        ..GpuOptions::default()
+    };
+    let gpu_flag = match (&raw.adapter, raw.simulate_device_lost) {
+        (Some(_), _) => Some("--adapter"),
+        (None, Some(_)) => Some("--simulate-device-lost"),
+        (None, None) => None,
+    };
+    if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, raw.device) {
+        let other = if raw.device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
+        return Err(CliError::Together { flag, other, reason: "it is for the GPU; leave one of them out" });
+    }
     match raw.device {
-        RawDevice::Auto => Ok(BackendChoice::auto(cpu)),
+        RawDevice::Auto if raw.adapter.is_some() => Ok(BackendChoice::Gpu(gpu)),
+        RawDevice::Auto => Ok(BackendChoice::auto(cpu, gpu)),
         RawDevice::Cpu => Ok(BackendChoice::Cpu(cpu)),
-        RawDevice::Gpu => Err(BackendError::NoGpu.into()),
+        RawDevice::Gpu => Ok(BackendChoice::Gpu(gpu)),
+        RawDevice::Both => Ok(BackendChoice::Both(cpu, gpu)),
         RawDevice::Reference if lanes.is_some() || isa.is_some() => Err(CliError::Together {
             flag: if lanes.is_some() { "--simd" } else { "--isa" },
             other: "--device reference",

@@ -110,9 +110,15 @@ pub(super) struct RawRender {
     #[arg(long, value_enum, help_heading = "When to stop (the first one met)")]
     pub estimate_error: Option<RawSwitch>,
 
-    /// What renders; auto is the fastest there is
+    /// What renders; auto is the fastest there is; cpu,gpu are both at once, into one film
     #[arg(long, value_enum, default_value = "auto", help_heading = "Device")]
     pub device: RawDevice,
+    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    #[arg(long, value_name = "SUBSTRING", help_heading = "Device")]
+    pub adapter: Option<String>,
+    /// Lose the GPU after so many dispatches, to see that the CPU goes on: a drill
+    #[arg(long, value_name = "DISPATCHES", help_heading = "Device")]
+    pub simulate_device_lost: Option<u64>,
     /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16
     #[arg(long, value_name = "LANES", value_parser = parse_simd, default_value = "auto",
           help_heading = "Device")]
@@ -157,6 +163,8 @@ pub(super) enum RawDevice {
     Auto,
     Cpu,
     Gpu,
+    #[value(name = "cpu,gpu", alias = "gpu,cpu")]
+    Both,
     Reference,
 }
 

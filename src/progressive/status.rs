@@ -74,6 +74,8 @@ pub struct Status {
     pub stats: Stats,
     /// Wall time of preparing.
     pub prepare: Duration,
+    /// Of that, wall time of building the hierarchy.
+    pub hierarchy: Duration,
     /// Wall time of passes.
     pub trace: Duration,
     /// Wall time since the start, without pauses.
@@ -103,6 +105,14 @@ impl Status {
     pub fn lane_occupancy(&self) -> Option<f64> {
         let Stats { busy_lanes, offered_lanes, .. } = self.stats;
         (offered_lanes > 0).then(|| busy_lanes as f64 / offered_lanes as f64)
+    }
+
+    pub(super) fn say(&mut self, messages: Vec<String>) {
+        for message in messages {
+            if !self.messages.contains(&message) {
+                self.messages.push(message);
+            }
+        }
     }
 
     pub(super) fn credit(&mut self, backend: &BackendInfo, samples: u64) {

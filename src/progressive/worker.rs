@@ -306,6 +306,8 @@ impl Render {
         if let Some((_, renderer)) = backend {
             renderer.prepare(&self.job)?;
             self.status.backend = Some(renderer.info());
+            self.status.say(renderer.take_messages());
+            self.status.hierarchy += renderer.hierarchy_time();
             self.is_prepared = true;
             self.status.phase = Phase::Tracing;
             self.status.prepare += begin.elapsed();
@@ -339,10 +341,12 @@ impl Render {
         self.sizer.measured(added, took, self.plan.pass_target);
         self.status.stats.add(&stats);
         self.status.trace += took;
+        for (info, samples) in renderer.credits(added) {
+            self.status.credit(&info, samples);
+        }
         // A renderer that changes with use (an adapter lost, threads given up) says so.
-        let info = renderer.info();
-        self.status.credit(&info, added);
-        self.status.backend = Some(info);
+        self.status.backend = Some(renderer.info());
+        self.status.say(renderer.take_messages());
         self.note_film();
         Ok(())
     }

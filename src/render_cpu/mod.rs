@@ -23,7 +23,7 @@ use kernels::Kernel;
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use tiles::{tile_side, tiles};
 use work::{DealtBlock, TileStats, Work};
 
@@ -132,6 +132,14 @@ impl Renderer for CpuRenderer {
         match self.packets {
             Some((isa, lanes)) => BackendInfo { name: "cpu", device: isa.to_string(), lanes, threads },
             None => BackendInfo { name: "reference", device: "f64".into(), lanes: 1, threads },
+        }
+    }
+
+    fn hierarchy_time(&self) -> Duration {
+        match &self.prepared {
+            Some(Prepared::Single(tables, _)) => tables.hierarchy_time,
+            Some(Prepared::Double(tables, _)) => tables.hierarchy_time,
+            None => Duration::ZERO,
         }
     }
 

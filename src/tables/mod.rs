@@ -11,6 +11,7 @@ use crate::scene::{Camera, Material, Scene, Sphere};
 use crate::stages::{Rules, Surface};
 use glam::DVec3;
 use hierarchy::Hierarchy;
+use std::time::{Duration, Instant};
 
 /// Spheres from which on there is a hierarchy. On generated fields at 8 lanes the list was faster with 4 spheres
 /// and the hierarchy with 48, by a tenth; between 12 and 32 they were alike.
@@ -40,6 +41,8 @@ pub struct Tables<R> {
     pub anchored: Vec<AnchoredSphere<R>>,
     /// Over `two_root`.
     pub hierarchy: Option<Hierarchy<R>>,
+    /// Wall time that building it took.
+    pub hierarchy_time: Duration,
     /// By row, what shading needs: centre or anchor, 1/radius | albedo, weight of the unit vector (with a minus
     /// sign where the direction is a reflection) | radius, refraction index (0: not glass), its inverse,
     /// Schlick's share at normal incidence | the anchor's inward unit normal, 1 if anchored.
@@ -145,6 +148,7 @@ impl<R: Real> Tables<R> {
             group.push(index as u32);
         }
         let mut hierarchy = None;
+        let begin = Instant::now();
         if exact && opaque.len() + two_root.len() >= HIERARCHY_MIN_SPHERES {
             opaque.append(&mut two_root);
             let spheres: Vec<Sphere> = opaque.iter().map(|i| scene.spheres[*i as usize]).collect();
@@ -153,16 +157,11 @@ impl<R: Real> Tables<R> {
             opaque.clear();
             hierarchy = Some(built);
         }
-        Tables::from_groups(job, &opaque, &two_root, &anchored, hierarchy)
+        let hierarchy_time = if hierarchy.is_some() { begin.elapsed() } else { Duration::ZERO };
+        Tables { hierarchy, hierarchy_time, ..Tables::from_groups(job, &opaque, &two_root, &anchored) }
     }
 
-    fn from_groups(
-        job: &RenderJob,
-        opaque: &[u32],
-        two_root: &[u32],
-        anchored: &[u32],
-        hierarchy: Option<Hierarchy<R>>,
-    ) -> Self {
+    fn from_groups(job: &RenderJob, opaque: &[u32], two_root: &[u32], anchored: &[u32]) -> Self {
         let (scene, settings) = (job.scene(), *job.settings());
         let sphere = |index: &u32| &scene.spheres[*index as usize];
         let packed = |index: &u32| {
@@ -192,7 +191,8 @@ impl<R: Real> Tables<R> {
             opaque: opaque.iter().map(packed).collect(),
             two_root: two_root.iter().map(packed).collect(),
             anchored: anchored_spheres,
-            hierarchy,
+            hierarchy: None,
+            hierarchy_time: Duration::ZERO,
             rows,
             columns,
             scene_index: opaque.iter().chain(two_root).chain(anchored).copied().collect(),

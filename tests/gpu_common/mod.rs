@@ -1,5 +1,5 @@
 //! What the GPU's tests share.
-#![allow(dead_code)]
+#![allow(dead_code, reason = "each test uses some of it")]
 
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};

@@ -1,8 +1,13 @@
 //! The list of backends and their factory. A new backend is a variant of [`BackendChoice`] and an arm of
 //! [`create`]; command line, window and reports read the rest from here.
 
+mod together;
+
+pub use together::Together;
+
 use crate::render::Renderer;
 use crate::render_cpu::{CpuError, CpuOptions, CpuRenderer, Isa};
+use crate::render_gpu::{AdapterInfo, GpuError, GpuOptions, GpuRenderer, adapters};
 use thiserror::Error;
 
 /// Which backend renders, and with what.
@@ -10,6 +15,10 @@ use thiserror::Error;
 pub enum BackendChoice {
     /// `f32` on the CPU, in SIMD packets or scalar.
     Cpu(CpuOptions),
+    /// A compute shader.
+    Gpu(GpuOptions),
+    /// Both at once, into one film.
+    Both(CpuOptions, GpuOptions),
     /// Scalar `f64` on the CPU: what rounding is measured against.
     Reference {
         /// Threads; by default one a core.
@@ -18,9 +27,15 @@ pub enum BackendChoice {
 }
 
 impl BackendChoice {
-    /// The best for this machine: the widest CPU kernel.
-    pub fn auto(cpu: CpuOptions) -> Self {
-        BackendChoice::Cpu(cpu)
+    /// The best for this machine: a GPU if there is one, else the widest CPU kernel. Whoever chooses among the
+    /// CPU's options means the CPU.
+    pub fn auto(cpu: CpuOptions, gpu: GpuOptions) -> Self {
+        let is_fit = |adapter: &AdapterInfo| !adapter.is_software && adapter.lacks.is_none();
+        if cpu == CpuOptions::default() && adapters().iter().any(is_fit) {
+            BackendChoice::Gpu(gpu)
+        } else {
+            BackendChoice::Cpu(cpu)
+        }
     }
 
     /// What goes on when another backend fails: the CPU, with everything at its default.
@@ -28,10 +43,12 @@ impl BackendChoice {
         BackendChoice::Cpu(CpuOptions::default())
     }
 
-    /// "cpu" or "reference".
+    /// As `--device` calls it.
     pub fn name(&self) -> &'static str {
         match self {
             BackendChoice::Cpu(_) => "cpu",
+            BackendChoice::Gpu(_) => "gpu",
+            BackendChoice::Both(..) => "cpu,gpu",
             BackendChoice::Reference { .. } => "reference",
         }
     }
@@ -43,9 +60,9 @@ pub enum BackendError {
     /// The CPU's options cannot be met.
     #[error(transparent)]
     Cpu(#[from] CpuError),
-    /// There is no GPU backend.
-    #[error("device gpu: this build has no GPU backend; use --device cpu, or auto for the fastest there is")]
-    NoGpu,
+    /// There is no GPU to be had.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
 }
 
 /// Starts a backend.
@@ -55,6 +72,12 @@ pub enum BackendError {
 pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>, BackendError> {
     Ok(match choice {
         BackendChoice::Cpu(options) => Box::new(CpuRenderer::new(*options)?),
+        BackendChoice::Gpu(options) => Box::new(GpuRenderer::new(options.clone())?),
+        BackendChoice::Both(cpu, gpu) => {
+            // The GPU first: it is the one that may not be there.
+            let gpu = GpuRenderer::new(gpu.clone())?;
+            Box::new(Together::new(vec![Box::new(CpuRenderer::new(*cpu)?), Box::new(gpu)]))
+        }
         BackendChoice::Reference { threads } => Box::new(CpuRenderer::reference(*threads)?),
     })
 }
@@ -74,13 +97,29 @@ pub struct BackendListing {
 pub fn list() -> Vec<BackendListing> {
     let levels = Isa::available();
     let best = levels.last().copied();
+    let adapters = adapters();
+    let auto_adapter = adapters.iter().position(|adapter| !adapter.is_software && adapter.lacks.is_none());
     let cpu = levels.into_iter().map(|isa| {
         let lanes: Vec<String> = isa.lane_counts().iter().map(usize::to_string).collect();
         let chosen = isa.native_lanes();
         BackendListing {
             device: "cpu",
             about: format!("--isa {isa}: --simd {} lanes, {chosen} by default", lanes.join(", ")),
-            is_auto: Some(isa) == best,
+            is_auto: auto_adapter.is_none() && Some(isa) == best,
+        }
+    });
+    let gpu = adapters.iter().enumerate().map(|(index, adapter)| {
+        let mib = |bytes: u64| bytes >> 20;
+        let lacks = adapter.lacks.as_ref().map_or(String::new(), |lacks| format!("; unfit: {lacks}"));
+        let software = if adapter.is_software { "; only when named with --adapter" } else { "" };
+        BackendListing {
+            device: "gpu",
+            about: format!(
+                "{adapter}: buffers to {} MiB, {} MiB seen at once{lacks}{software}",
+                mib(adapter.buffer_limit),
+                mib(adapter.storage_binding_limit)
+            ),
+            is_auto: auto_adapter == Some(index),
         }
     });
     let reference = BackendListing {
@@ -88,7 +127,7 @@ pub fn list() -> Vec<BackendListing> {
         about: "f64, one lane: slow, and what rounding is measured against".to_owned(),
         is_auto: false,
     };
-    cpu.chain([reference]).collect()
+    cpu.chain(gpu).chain([reference]).collect()
 }
 
 #[cfg(test)]

@@ -1,0 +1,239 @@
+//! Several renderers at once on one film: each takes samples as it finishes, the faster ones more.
+
+use crate::film::Film;
+use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A member's next piece is this share of what is left, times its share of the speed: so that the members finish
+/// together without asking often.
+const PIECE_SHARE: f64 = 0.5;
+
+struct Member {
+    renderer: Box<dyn Renderer>,
+    /// Samples of all pixels a second, as last measured.
+    samples_per_second: Option<f64>,
+    added: u64,
+}
+
+/// Renders with all members. A member that fails is left out from then on, and the others take its samples.
+pub struct Together {
+    members: Vec<Member>,
+    messages: Vec<String>,
+}
+
+/// What a member did with its pieces of a range.
+struct Outcome {
+    film: Option<Film>,
+    stats: Stats,
+    error: Option<RenderError>,
+}
+
+/// Samples that nobody has taken yet.
+struct Pieces {
+    left: Vec<Range<u64>>,
+    grain: u64,
+}
+
+impl Pieces {
+    /// At most `share` of what is left, whole grains, at least one.
+    fn take(&mut self, share: f64) -> Option<Range<u64>> {
+        let total: u64 = self.left.iter().map(|range| range.end - range.start).sum();
+        let range = self.left.last_mut()?;
+        let wanted = (total as f64 * share) as u64 / self.grain * self.grain;
+        let end = range.end.min(range.start + wanted.max(self.grain));
+        let piece = range.start..end;
+        range.start = end;
+        if range.is_empty() {
+            self.left.pop();
+        }
+        Some(piece)
+    }
+
+    fn give_back(&mut self, piece: Range<u64>) {
+        self.left.push(piece);
+    }
+}
+
+impl Together {
+    /// All of these at once; at least one.
+    pub fn new(renderers: Vec<Box<dyn Renderer>>) -> Self {
+        let member = |renderer| Member { renderer, samples_per_second: None, added: 0 };
+        Together { members: renderers.into_iter().map(member).collect(), messages: Vec::new() }
+    }
+
+    /// Leaves out the members that failed; their last error if none is left.
+    fn leave_out(&mut self, failed: Vec<(usize, RenderError)>) -> Result<(), RenderError> {
+        let mut last = None;
+        for (index, error) in failed.into_iter().rev() {
+            self.members.remove(index);
+            if !self.members.is_empty() {
+                let names: Vec<&str> = self.members.iter().map(|m| m.renderer.info().name).collect();
+                self.messages.push(format!("{error}; {} goes on with the same picture", names.join(", ")));
+            }
+            last = Some(error);
+        }
+        match last {
+            Some(error) if self.members.is_empty() => Err(error),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Renderer for Together {
+    fn info(&self) -> BackendInfo {
+        let mut parts = self.members.iter().map(|member| member.renderer.info());
+        let Some(first) = parts.next() else {
+            return BackendInfo { name: "none", device: String::new(), lanes: 0, threads: 0 };
+        };
+        parts.fold(first, |all, part| BackendInfo {
+            name: if all.name == "cpu" && part.name == "gpu" { "cpu,gpu" } else { all.name },
+            device: format!("{} and {}", all.device, part.device),
+            lanes: all.lanes,
+            threads: all.threads + part.threads,
+        })
+    }
+
+    fn credits(&self, _: u64) -> Vec<(BackendInfo, u64)> {
+        self.members.iter().map(|member| (member.renderer.info(), member.added)).collect()
+    }
+
+    fn take_messages(&mut self) -> Vec<String> {
+        let members = self.members.iter_mut().flat_map(|member| member.renderer.take_messages());
+        self.messages.drain(..).chain(members).collect()
+    }
+
+    fn hierarchy_time(&self) -> Duration {
+        self.members.iter().map(|member| member.renderer.hierarchy_time()).sum()
+    }
+
+    fn prepare(&mut self, job: &RenderJob) -> Result<(), RenderError> {
+        let prepared = self.members.iter_mut().enumerate();
+        let failed =
+            prepared.filter_map(|(index, m)| m.renderer.prepare(job).err().map(|e| (index, e))).collect();
+        self.leave_out(failed)
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        let begin = Instant::now();
+        let grain = film.halves().len() as u64;
+        let pieces = Mutex::new(Pieces { left: vec![range], grain });
+        let mut stats = Stats::default();
+        // A film for each member; only whole pieces are in it. They are added to the caller's at the end, so
+        // that an error leaves it as it was.
+        let mut films: Vec<Film> = Vec::new();
+        self.members.iter_mut().for_each(|member| member.added = 0);
+        loop {
+            let total: f64 = self.members.iter().filter_map(|member| member.samples_per_second).sum();
+            let count = self.members.len() as f64;
+            let outcomes: Vec<Outcome> = std::thread::scope(|scope| {
+                let pieces = &pieces;
+                let run = |member| move || work_off(member, total, count, job, pieces, cancel);
+                let threads: Vec<_> = self.members.iter_mut().map(|m| scope.spawn(run(m))).collect();
+                threads
+                    .into_iter()
+                    .map(|thread| thread.join().unwrap_or_else(|_| Outcome::panicked()))
+                    .collect()
+            });
+            let mut failed = Vec::new();
+            for (index, outcome) in outcomes.into_iter().enumerate() {
+                stats.add(&outcome.stats);
+                films.extend(outcome.film);
+                match outcome.error {
+                    Some(RenderError::Cancelled) => return Err(RenderError::Cancelled),
+                    Some(error) => failed.push((index, error)),
+                    None => {}
+                }
+            }
+            let nothing_left = pieces.lock().unwrap_or_else(PoisonError::into_inner).left.is_empty();
+            self.leave_out(failed)?;
+            if nothing_left {
+                break;
+            }
+        }
+        for part in &films {
+            film.merge(part)?;
+        }
+        stats.trace = begin.elapsed();
+        Ok(stats)
+    }
+}
+
+impl Outcome {
+    fn panicked() -> Self {
+        let reason = "its thread ended by a panic".to_owned();
+        let error = Some(RenderError::Backend { backend: "a renderer", reason });
+        Outcome { film: None, stats: Stats::default(), error }
+    }
+}
+
+/// Takes pieces until none is left.
+fn work_off(
+    member: &mut Member,
+    total_speed: f64,
+    member_count: f64,
+    job: &RenderJob,
+    pieces: &Mutex<Pieces>,
+    cancel: &AtomicBool,
+) -> Outcome {
+    // Whoever has not been measured yet takes the smallest piece.
+    let share = member.samples_per_second.map_or(0.0, |speed| {
+        if total_speed > 0.0 { PIECE_SHARE * speed / total_speed } else { PIECE_SHARE / member_count }
+    });
+    let mut outcome = Outcome { film: None, stats: Stats::default(), error: None };
+    loop {
+        if cancel.load(Ordering::Relaxed) {
+            outcome.error = Some(RenderError::Cancelled);
+            return outcome;
+        }
+        let Some(piece) = pieces.lock().unwrap_or_else(PoisonError::into_inner).take(share) else {
+            return outcome;
+        };
+        let film = outcome.film.get_or_insert_with(|| job.new_film());
+        let begin = Instant::now();
+        match member.renderer.accumulate(job, piece.clone(), film, cancel) {
+            Ok(stats) => {
+                let samples = piece.end - piece.start;
+                member.samples_per_second = Some(samples as f64 / begin.elapsed().as_secs_f64().max(1e-9));
+                member.added += samples;
+                outcome.stats.add(&stats);
+            }
+            Err(error) => {
+                pieces.lock().unwrap_or_else(PoisonError::into_inner).give_back(piece);
+                outcome.error = Some(error);
+                return outcome;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pieces_cover_a_range_once_in_whole_grains() {
+        let mut pieces = Pieces { left: vec![6..120], grain: 2 };
+        let mut covered = Vec::new();
+        for turn in 0.. {
+            let share = [0.0, 0.25, 0.5, 0.1][turn % 4];
+            let Some(piece) = pieces.take(share) else { break };
+            assert_eq!((piece.start % 2, piece.end % 2), (0, 0), "{piece:?} tears a pair of samples apart");
+            if turn == 2 {
+                pieces.give_back(piece);
+                continue;
+            }
+            covered.extend(piece);
+        }
+        covered.sort_unstable();
+        assert_eq!(covered, (6..120).collect::<Vec<u64>>());
+    }
+}

@@ -1,0 +1,138 @@
+//! The camera: cases 31 to 34. (Book 1, sections 12 and 13.)
+//!
+//! That scene files refuse what cannot be rendered, with the line, is tested in tests/scene_files.rs, and that
+//! flags do in tests/cli.rs.
+
+use crate::common::*;
+use glam::{DMat3, DVec3};
+use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
+use weekender::render_cpu::lanes::{Lanes, Scalar};
+use weekender::scene::builtin::{LeftSphere, three_spheres};
+use weekender::scene::{Camera, SceneError};
+use weekender::tables::CameraTable;
+
+#[test]
+fn case_31_up_along_the_view() {
+    for view in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(1.0, -2.0, 0.5), DVec3::splat(1e-9)] {
+        for vup in [view, -view, view * 1e100, DVec3::ZERO, view + DVec3::splat(1e-17)] {
+            let camera = Camera { look_at: view, vup, ..Camera::BOOK };
+            camera.validate().unwrap();
+            let basis = camera.basis();
+            let frame = DMat3::from_cols(basis.u, basis.v, basis.w);
+            let off = frame.transpose() * frame - DMat3::IDENTITY;
+            assert!(off.to_cols_array().iter().all(|x| x.abs() < 1e-12), "{camera:?}: {basis:?}");
+            let film = render(
+                &mut widest(),
+                &job(&three_spheres(LeftSphere::HollowGlass), camera, size(8, 8)),
+                0..2,
+            );
+            assert!(mean(&film) > 0.0);
+        }
+    }
+    let nowhere = Camera { look_from: DVec3::ONE, look_at: DVec3::ONE, ..Camera::BOOK };
+    assert!(matches!(nowhere.validate(), Err(SceneError::NoDirection { .. })));
+}
+
+#[test]
+fn case_32_fields_of_view() {
+    for vfov_degrees in [0.0, 180.0, f64::NAN] {
+        let refused = Camera { vfov_degrees, ..Camera::BOOK }.validate().unwrap_err().to_string();
+        assert!(refused.contains("vfov_degrees"), "{refused}");
+        assert!(vfov_degrees.is_nan() || refused.contains("within 0.01 and 179 degrees"), "{refused}");
+    }
+    for vfov_degrees in [0.01, 179.0] {
+        let camera = Camera { vfov_degrees, ..Camera::BOOK };
+        let film =
+            render(&mut widest(), &job(&three_spheres(LeftSphere::HollowGlass), camera, size(16, 9)), 0..4);
+        assert!(mean(&film) > 0.0);
+    }
+}
+
+#[test]
+fn case_33_lenses() {
+    for (defocus_angle_degrees, focus_distance, is_valid) in [
+        (0.0, Some(0.0), false),
+        (180.0, Some(1.0), false),
+        (179.0, Some(1.0), false),
+        (178.9, Some(1.0), true),
+        (0.6, Some(1e-18), true),
+        (178.9, Some(1e18), true),
+    ] {
+        let camera = Camera { defocus_angle_degrees, focus_distance, ..Camera::BOOK };
+        match camera.validate() {
+            Ok(()) => {
+                assert!(is_valid, "{camera:?}");
+                let scene = three_spheres(LeftSphere::HollowGlass);
+                for mut renderer in [widest(), baseline()] {
+                    render(&mut renderer, &job(&scene, camera, size(16, 9)), 0..4);
+                }
+            }
+            Err(error) => {
+                assert!(!is_valid, "{error}");
+                let message = error.to_string();
+                assert!(message.contains("focus_distance") || message.contains("below 179"), "{message}");
+            }
+        }
+    }
+}
+
+/// Where in the picture a direction points, in pixels.
+fn pixel_of(camera: &Camera, width: u32, height: u32, d: DVec3) -> [f64; 2] {
+    let basis = camera.basis();
+    let pixel = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan() / f64::from(height);
+    let depth = -d.dot(basis.w);
+    [
+        d.dot(basis.u) / depth / pixel + 0.5 * f64::from(width),
+        -d.dot(basis.v) / depth / pixel + 0.5 * f64::from(height),
+    ]
+}
+
+fn pixel_error<L: Lanes>(l: L, camera: &Camera) -> f64 {
+    let (width, height) = (800, 450);
+    let table = CameraTable::<L::Real>::new(camera, width, height);
+    let tau = (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
+    let pixel = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan() / f64::from(height);
+    let mut random = Random::new(8);
+    let mut largest = 0.0_f64;
+    for _ in 0..20_000 {
+        let (x, y) = (random.within(0.0, 800.0).floor(), random.within(0.0, 450.0).floor());
+        let jitter = [random.unit(), random.unit()].map(|u| f64::from(u as f32));
+        let corner = screen(l, &table, l.constant(x), l.constant(y));
+        let in_pixel = jitter.map(|u| l.constant(u));
+        let (turn, radius) = (random.within(0.0, std::f64::consts::TAU), random.unit().sqrt());
+        let on_lens = [radius * turn.cos(), radius * turn.sin()].map(|u| f64::from(u as f32));
+        let (rays, shift) = if tau > 0.0 {
+            let rays = lens_rays(l, &table, corner, in_pixel, on_lens.map(|u| l.constant(u)));
+            (rays, on_lens.map(|u| tau * u / pixel))
+        } else {
+            (pinhole_rays(l, &table, corner, in_pixel), [0.0; 2])
+        };
+        let found = pixel_of(camera, width, height, vector::<L>(rays.direction));
+        // The lens moves the origin by `F tau xi`, so the direction points as far back at the focus distance.
+        let expected = [x + jitter[0] - shift[0], y + jitter[1] + shift[1]];
+        largest = largest.max((found[0] - expected[0]).abs()).max((found[1] - expected[1]).abs());
+    }
+    largest
+}
+
+#[test]
+fn case_34_camera_at_a_million() {
+    let look_from = DVec3::new(1e6, -1e6, 1e6);
+    for defocus_angle_degrees in [0.0, 0.6] {
+        let camera = Camera {
+            look_from,
+            look_at: look_from + DVec3::new(0.3, 0.2, -1.0),
+            vfov_degrees: 20.0,
+            focus_distance: Some(1.0),
+            defocus_angle_degrees,
+            ..Camera::BOOK
+        };
+        for (name, error) in [
+            ("fused", pixel_error(Scalar::<true>, &camera)),
+            ("unfused", pixel_error(Scalar::<false>, &camera)),
+        ] {
+            println!("case 34 {name}, defocus {defocus_angle_degrees}: {error:.2e} pixels");
+            assert!(error <= 1e-3, "{name}, defocus {defocus_angle_degrees}: {error} pixels");
+        }
+    }
+}

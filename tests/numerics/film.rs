@@ -1,0 +1,107 @@
+//! The exact sum: cases 23 to 25, through the tracer. (The film by itself: tests/film.rs.)
+
+use crate::common::*;
+use glam::DVec3;
+use weekender::film::Film;
+use weekender::render::{RenderJob, RenderSettings};
+use weekender::render_cpu::lanes::Scalar;
+use weekender::render_cpu::path::{needs, trace};
+use weekender::render_cpu::work::{DealtBlock, TileStats, Work};
+use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
+use weekender::scene::{Camera, Sky};
+use weekender::tables::Tables;
+
+const GENERAL: u32 = needs::GLASS | needs::LENS | needs::ANCHORED | needs::HIERARCHY | needs::RULES;
+
+/// Traces tables as they are, in one tile of at most 256 pixels a side.
+pub fn trace_tables(tables: &Tables<f32>, film: &mut Film, samples: std::ops::Range<u64>) -> TileStats {
+    let settings = tables.settings;
+    let blocks = DealtBlock::of_range(samples.clone(), &settings, tables.block_limit);
+    let rows =
+        film.halves_mut().iter_mut().map(|half| half.chunks_mut(settings.width as usize).collect()).collect();
+    let mut work = Work::new(settings.sampler, &blocks, [0, 0], rows);
+    let stats = trace::<_, GENERAL>(Scalar::<false>, tables, &mut work);
+    film.record(samples, stats.rejected).unwrap();
+    stats
+}
+
+#[test]
+fn case_23_ten_million_samples() {
+    let mut scene = empty();
+    scene.sky = Sky { bottom: DVec3::splat(0.7), top: DVec3::splat(0.7) };
+    let film = render(&mut widest(), &job(&scene, Camera::BOOK, size(1, 1)), 0..10_000_000);
+    for x in film.mean(0) {
+        println!("case 23: relative error {:.2e}", x / 0.7 - 1.0);
+        assert!((x / 0.7 - 1.0).abs() <= 1e-7, "{x}");
+    }
+}
+
+#[test]
+fn case_24_another_order() {
+    let scene = three_spheres(LeftSphere::HollowGlass);
+    let settings = RenderSettings { estimate_error: true, ..size(64, 36) };
+    let job = job(&scene, Camera::BOOK, settings);
+    let mut renderer = widest();
+    let at_once = render(&mut renderer, &job, 0..23);
+    let mut in_parts = job.new_film();
+    for range in [17..23, 0..1, 5..17, 3..5, 1..3] {
+        in_parts.merge(&render(&mut renderer, &job, range)).unwrap();
+    }
+    assert_eq!(in_parts, at_once);
+}
+
+/// A lone ball whose colour or sky is no number: each path that sees it is counted and left out, and no other.
+#[test]
+fn case_25_not_a_number() {
+    const SAMPLES: u64 = 4;
+    let ball = scene(&[(DVec3::new(0.0, 0.0, -1.0), 0.5, lambertian(0.5))]);
+    let job = sharp_job(&ball, Camera::BOOK, RenderSettings { estimate_error: true, ..size(64, 36) });
+    let clean = Tables::<f32>::new(&job);
+    let mut expected = job.new_film();
+    assert_eq!(trace_tables(&clean, &mut expected, 0..SAMPLES).rejected, 0);
+    assert_eq!(expected, render(&mut baseline(), &job, 0..SAMPLES), "the tables are rendered as they are");
+    let is_ball = |x: u32, y: u32| {
+        let (o, d) = centre_ray(&Camera::BOOK, 64, 36, x, y);
+        exact_roots(o, d, DVec3::new(0.0, 0.0, -1.0), 0.5).is_some()
+    };
+
+    for bad in [f32::NAN, f32::INFINITY, f32::MAX] {
+        let mut tables = clean.clone();
+        // One channel of three is enough.
+        tables.rows[0].0[5] = bad;
+        let mut film = job.new_film();
+        let stats = trace_tables(&tables, &mut film, 0..SAMPLES);
+        let mut hits = 0;
+        for y in 0..36 {
+            for x in 0..64 {
+                let pixel = (y * 64 + x) as usize;
+                if is_ball(x, y) {
+                    hits += 1;
+                    assert_eq!(film.pixel_sum(pixel).0, [0; 3], "{bad} at {x}, {y}");
+                } else {
+                    assert_eq!(film.pixel_sum(pixel), expected.pixel_sum(pixel), "{bad} at {x}, {y}");
+                }
+            }
+        }
+        assert!(hits > 100);
+        assert_eq!(stats.rejected, hits * SAMPLES, "{bad}");
+        assert_eq!(film.rejected(), stats.rejected);
+        assert!(film.means().iter().flatten().all(|x| x.is_finite()));
+    }
+
+    // Geometry that is no number is never hit; a sky that is none spoils every sample.
+    let mut tables = clean.clone();
+    tables.opaque[0] = [f32::NAN; 4];
+    let mut film = job.new_film();
+    assert_eq!(trace_tables(&tables, &mut film, 0..SAMPLES).rejected, 0);
+    let bare = RenderJob::new(empty(), *job.camera(), *job.settings(), *job.rules()).unwrap();
+    assert_eq!(film, render(&mut baseline(), &bare, 0..SAMPLES));
+    let mut tables = clean;
+    tables.sky_middle[1] = f32::INFINITY;
+    let mut film = job.new_film();
+    // The four packets that wait for their first work are counted too.
+    assert_eq!(trace_tables(&tables, &mut film, 0..SAMPLES).rejected, 64 * 36 * SAMPLES + 4);
+    for pixel in 0..64 * 36 {
+        assert_eq!(film.pixel_sum(pixel).0, [0; 3]);
+    }
+}

@@ -1,0 +1,155 @@
+//! The hierarchy of boxes finds what testing every sphere finds: the same distance, bit for bit, on the same
+//! sphere.
+
+use crate::common::*;
+use crate::film::trace_tables;
+use glam::DVec3;
+use weekender::render::RenderSettings;
+use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
+use weekender::render_cpu::lanes::{Lanes, Reference, Scalar};
+use weekender::render_cpu::sphere::{NONE, Nearest, Rays, nearest_root, surface_point};
+use weekender::scene::Sphere;
+use weekender::scene::builtin::{BOOK_CAMERA, book};
+use weekender::tables::Tables;
+use weekender::tables::hierarchy::Hierarchy;
+
+/// Spheres of sizes over many powers of ten, some touching, some at one place.
+fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> Vec<Sphere> {
+    let mut spheres: Vec<Sphere> = Vec::with_capacity(count);
+    for index in 0..count {
+        if index % 8 == 7 {
+            // The same sphere again: a tie.
+            spheres.push(spheres[index - 1 - (random.bits() % 7) as usize]);
+            continue;
+        }
+        let radius = random.log_within(radii[0], radii[1]);
+        let center = match index % 8 {
+            0 if index > 0 => spheres[index - 1].center,
+            1 if index > 1 => {
+                let other = spheres[index - 2];
+                other.center + random.direction() * (other.radius + radius)
+            }
+            2 => DVec3::new(random.within(-spread, spread), 0.0, 0.0),
+            _ => random.in_box(spread),
+        };
+        spheres.push(Sphere { center, radius, material: 0 });
+    }
+    spheres
+}
+
+fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64) -> Rays<L> {
+    let index = (random.bits() % spheres.len() as u64) as usize;
+    let target = spheres[index];
+    let aim = target.center + random.direction() * target.radius * random.within(0.0, 1.001);
+    match random.bits() % 5 {
+        // From the surface of a sphere outwards, or inwards.
+        kind @ (0 | 1) => {
+            let from = ray(l, target.center, random.direction());
+            let [center, radius] = [target.center, DVec3::splat(target.radius)];
+            let t = l.constant(target.radius);
+            let inverse = l.constant(1.0 / target.radius);
+            let point = surface_point(l, &from, t, v3(l, center), inverse, l.constant(radius.x));
+            let mut rays = ray(l, DVec3::ZERO, random.direction());
+            rays.origin = point.position;
+            if kind == 0 {
+                rays.left = l.splat_u(index as u32);
+            } else {
+                rays.inside = l.splat_u(index as u32);
+            }
+            rays
+        }
+        // Along an axis, where a component of the direction is 0.
+        2 => {
+            let mut direction = [0.0; 3];
+            direction[(random.bits() % 3) as usize] = if random.bits() & 1 == 0 { 1.0 } else { -1.0 };
+            ray(
+                l,
+                aim - DVec3::from_array(direction) * spread * random.log_within(0.1, 100.0),
+                DVec3::from_array(direction),
+            )
+        }
+        // From afar past the point where a sphere touches its box, nearly along another axis.
+        3 => {
+            let axis = (random.bits() % 3) as usize;
+            let [touching, along] = [DVec3::AXES[axis], DVec3::AXES[(axis + 1) % 3]];
+            let aim = target.center + touching * target.radius * (1.0 + random.within(-1e-6, 1e-6));
+            let direction = along + random.direction() * random.log_within(1e-9, 1e-3);
+            ray(l, aim - direction * target.radius * random.log_within(1.0, 1e4), direction)
+        }
+        // From afar.
+        _ => {
+            let origin = random.direction() * spread * random.log_within(0.1, 1000.0);
+            ray(l, origin, aim - origin)
+        }
+    }
+}
+
+fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 2]) -> u32 {
+    let mut random = Random::new(seed);
+    let listed = spheres(&mut random, count, spread, radii);
+    let (hierarchy, order) = Hierarchy::<L::Real>::build(&listed);
+    let ordered: Vec<Sphere> = order.iter().map(|index| listed[*index as usize]).collect();
+    assert_eq!(ordered.len(), count, "each sphere is in one leaf");
+    let rows: Vec<_> = ordered.iter().map(|s| packed::<L>(s.center, s.radius)).collect();
+    let mut stack = EMPTY_STACK;
+    let mut hits = 0;
+    for _ in 0..4000 {
+        let rays = one_ray(l, &mut random, &ordered, spread);
+        let mut found = Nearest::nothing(l);
+        traverse(l, &hierarchy, &rows, &rays, l.mask(1), &mut stack, &mut found);
+        let mut expected = Nearest::nothing(l);
+        for (number, row) in rows.iter().enumerate() {
+            let number = l.splat_u(number as u32);
+            expected.take_in_any_order(nearest_root(l, &rays, row, number), number);
+        }
+        let same = L::eq_key(found.key, expected.key) & L::eq_u(found.sphere, expected.sphere);
+        assert_eq!(
+            L::bits(same) & 1,
+            1,
+            "seed {seed}, {count} spheres, spread {spread}: {:?}, not {:?}, from {} to {}",
+            distance::<L>(found.key),
+            distance::<L>(expected.key),
+            vector::<L>(rays.origin),
+            vector::<L>(rays.direction),
+        );
+        hits += L::bits(!L::eq_u(found.sphere, l.splat_u(NONE))) & 1;
+    }
+    hits
+}
+
+#[test]
+fn hierarchy_and_list_agree() {
+    let mut hits = 0;
+    for (seed, count, spread, radii) in [
+        (1, 1, 1.0, [0.1, 1.0]),
+        (2, 2, 1.0, [0.1, 1.0]),
+        (3, 30, 1.0, [0.1, 0.5]),
+        (4, 300, 10.0, [0.01, 1.0]),
+        (5, 300, 100.0, [1e-4, 100.0]),
+        (6, 300, 1e-3, [1e-8, 1e-3]),
+        (7, 300, 1e6, [1e-2, 1e5]),
+        (8, 300, 1e3, [1e-4, 1e-3]),
+        (9, 100, 1e12, [1e6, 1e12]),
+        (10, 300, 1e-9, [1e-12, 1e-9]),
+    ] {
+        hits += same_hits(Scalar::<false>, seed, count, spread, radii);
+        hits += same_hits(Scalar::<true>, seed, count, spread, radii);
+        hits += same_hits(Reference, seed, count, spread, radii);
+    }
+    println!("hierarchy: {hits} hits of {} rays", 10 * 3 * 4000);
+    assert!(hits > 40_000, "{hits}");
+}
+
+/// The book's final picture with and without it.
+#[test]
+fn hierarchy_and_list_render_the_same_film() {
+    let job = job(&book(), BOOK_CAMERA, RenderSettings { estimate_error: true, ..size(48, 27) });
+    let mut tables = Tables::<f32>::new(&job);
+    let mut with = job.new_film();
+    trace_tables(&tables, &mut with, 0..4);
+    assert!(tables.hierarchy.take().is_some(), "the book has a hierarchy");
+    let mut without = job.new_film();
+    trace_tables(&tables, &mut without, 0..4);
+    assert_eq!(with, without);
+    assert!(mean(&with) > 0.1);
+}

@@ -1,0 +1,418 @@
+//! Rays against spheres: cases 1 to 9 and 19. (Book 1, section 5.)
+
+use crate::common::*;
+use glam::DVec3;
+use weekender::render::RenderJob;
+use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, dot};
+use weekender::render_cpu::material::{Surface, scatter};
+use weekender::render_cpu::sphere::{
+    NONE, Rays, SurfacePoint, anchored_root, anchored_surface_point, near_root, nearest_root, surface_point,
+};
+use weekender::scene::Camera;
+use weekender::stages::{DielectricLaws, Rules};
+use weekender::tables::{Real, Tables};
+
+const FUSED: Scalar<true> = Scalar;
+const UNFUSED: Scalar<false> = Scalar;
+
+/// A sphere's number in these tests.
+const NUMBER: u32 = 7;
+
+/// What rays aimed at a sphere tell about the root that they find.
+#[derive(Debug, Default)]
+struct Aimed {
+    hits: u32,
+    false_misses: u32,
+    false_hits: u32,
+    rays: u32,
+    largest_error: f64,
+}
+
+impl Aimed {
+    fn misclassified(&self) -> f64 {
+        f64::from(self.false_misses + self.false_hits) / f64::from(self.rays)
+    }
+}
+
+/// Aims `count` rays at the disk of radius `reach` radii around a sphere at `distance_away` from the origin, and
+/// compares with the exact roots of the very rays that the lanes hold.
+fn aim<L: Lanes>(l: L, distance_away: f64, radius: f64, reach: f64, count: u32) -> Aimed {
+    let mut random = Random::new(1);
+    let number = l.splat_u(NUMBER);
+    let mut result = Aimed { rays: count, ..Aimed::default() };
+    for _ in 0..count {
+        let towards = random.direction();
+        let center = (towards * distance_away).as_vec3().as_dvec3();
+        let radius = f64::from(radius as f32);
+        let across = perpendicular(center, &mut random) * (reach * radius * random.unit().sqrt());
+        let rays = ray(l, DVec3::ZERO, center + across);
+        let found = distance::<L>(near_root(l, &rays, &packed::<L>(center, radius), number));
+        let both = distance::<L>(nearest_root(l, &rays, &packed::<L>(center, radius), number));
+        assert_eq!(found, both, "one root or two");
+        let exact = exact_roots(DVec3::ZERO, vector::<L>(rays.direction), center, radius);
+        match (found, exact) {
+            (Some(t), Some([near, _])) => {
+                result.hits += 1;
+                result.largest_error = result.largest_error.max((t - near).abs());
+            }
+            (None, Some(_)) => result.false_misses += 1,
+            (Some(_), None) => result.false_hits += 1,
+            (None, None) => {}
+        }
+        if let Some(t) = found {
+            let point = surface_of(l, &rays, t, center, radius);
+            assert!(point.position.is_finite() && point.outward.is_finite());
+        }
+    }
+    result
+}
+
+struct Point {
+    position: DVec3,
+    outward: DVec3,
+}
+
+fn surface_of<L: Lanes>(l: L, rays: &Rays<L>, t: f64, center: DVec3, radius: f64) -> Point {
+    let point = surface_at(l, rays, t, center, radius);
+    Point { position: vector::<L>(point.position), outward: vector::<L>(point.outward) }
+}
+
+fn surface_at<L: Lanes>(l: L, rays: &Rays<L>, t: f64, center: DVec3, radius: f64) -> SurfacePoint<L> {
+    surface_point(l, rays, l.constant(t), v3(l, center), l.constant(1.0 / radius), l.constant(radius))
+}
+
+#[test]
+fn case_01_far_sphere() {
+    for (name, aimed) in
+        [("fused", aim(FUSED, 1e3, 0.5, 1.0, 200_000)), ("unfused", aim(UNFUSED, 1e3, 0.5, 1.0, 200_000))]
+    {
+        let missed = f64::from(aimed.false_misses) / f64::from(aimed.hits + aimed.false_misses);
+        println!("case 1 {name}: false misses {missed:.2e}, distance {:.2e}", aimed.largest_error);
+        assert!(missed <= 1e-4, "{name}: {missed:e} of the hits are missed");
+        assert!(aimed.largest_error <= 5e-3, "{name}: {aimed:?}");
+    }
+}
+
+#[test]
+fn case_02_sphere_at_a_million() {
+    for (name, aimed) in
+        [("fused", aim(FUSED, 1e6, 0.5, 2.0, 100_000)), ("unfused", aim(UNFUSED, 1e6, 0.5, 2.0, 100_000))]
+    {
+        println!("case 2 {name}: misclassified {:.2e}", aimed.misclassified());
+        assert!(aimed.misclassified() <= 0.03, "{name}: {aimed:?}");
+    }
+}
+
+#[test]
+fn case_03_tiny_sphere() {
+    for (name, aimed) in
+        [("fused", aim(FUSED, 3.0, 1e-3, 1.0, 200_000)), ("unfused", aim(UNFUSED, 3.0, 1e-3, 1.0, 200_000))]
+    {
+        let missed = f64::from(aimed.false_misses) / f64::from(aimed.hits + aimed.false_misses);
+        println!("case 3 {name}: distance {:.2e}, false misses {missed:.2e}", aimed.largest_error);
+        assert!(aimed.largest_error <= 2e-5, "{name}: {aimed:?}");
+    }
+}
+
+/// A ground with its top at height 0, a ball on it and an eye at height 1.
+fn ground_job(radius: f64) -> RenderJob {
+    let scene = scene(&[
+        (DVec3::new(0.0, -radius, 0.0), radius, lambertian(0.5)),
+        (DVec3::new(0.0, 0.5, -2.0), 0.5, lambertian(0.5)),
+    ]);
+    let camera =
+        Camera { look_from: DVec3::new(0.0, 1.0, 0.0), look_at: DVec3::new(0.0, 0.5, -2.0), ..Camera::BOOK };
+    job(&scene, camera, size(16, 9))
+}
+
+/// The nearer root for a sphere whose top is the origin. `f.f - r^2` is written without the radius squared, so
+/// that `f64` resolves it also for a radius of 1e7.
+fn exact_ground_root(origin: DVec3, direction: DVec3, radius: f64) -> Option<f64> {
+    let a = direction.length_squared();
+    let b = direction.dot(origin) + radius * direction.y;
+    let c = origin.length_squared() + 2.0 * radius * origin.y;
+    let d = b * b - a * c;
+    (d >= 0.0 && b < 0.0).then(|| c / (-b + d.sqrt()))
+}
+
+/// Largest error of the distance, and of the height of the hit point above the ground.
+fn ground_errors<L: Lanes>(l: L, radius: f64) -> [f64; 2] {
+    let tables: Tables<L::Real> = Tables::new(&ground_job(radius));
+    assert_eq!(tables.anchored.len(), 1, "the ground is anchored");
+    let sphere = &tables.anchored[0];
+    let mut random = Random::new(2);
+    let mut largest = [0.0_f64; 2];
+    for _ in 0..100_000 {
+        let origin = DVec3::new(random.within(-3.0, 3.0), 1.0, random.within(-3.0, 3.0));
+        let down = random.within(-1.0, -0.1);
+        let turn = random.within(0.0, std::f64::consts::TAU);
+        let level = (1.0 - down * down).sqrt();
+        let rays = ray(l, origin, DVec3::new(level * turn.cos(), down, level * turn.sin()));
+        let (o, d) = (vector::<L>(rays.origin), vector::<L>(rays.direction));
+        let exact = exact_ground_root(o, d, radius).unwrap();
+        let t = distance::<L>(anchored_root(l, &rays, sphere, l.splat_u(NUMBER))).unwrap();
+        largest[0] = largest[0].max((t - exact).abs());
+        let point = anchored_surface_point(
+            l,
+            &rays,
+            l.constant(t),
+            v3(l, DVec3::from_array(sphere.anchor.map(Real::to_f64))),
+            v3(l, DVec3::from_array(sphere.inward.map(Real::to_f64))),
+            l.splat(sphere.curvature),
+        );
+        let p = vector::<L>(point.position);
+        let height = (p.length_squared() + 2.0 * radius * p.y) / (2.0 * radius);
+        largest[1] = largest[1].max(height.abs());
+        assert!((vector::<L>(point.outward).length() - 1.0).abs() < 1e-6);
+    }
+    largest
+}
+
+fn ground_case(number: u32, radius: f64) {
+    for (name, [distance, height]) in
+        [("fused", ground_errors(FUSED, radius)), ("unfused", ground_errors(UNFUSED, radius))]
+    {
+        println!("case {number} {name}: distance {distance:.2e}, height of the hit {height:.2e}");
+        assert!(distance <= 2e-5, "{name}: {distance:e}");
+    }
+    let [distance, _] = ground_errors(Reference, radius);
+    assert!(distance <= 1e-8, "the reference itself: {distance:e}");
+}
+
+#[test]
+fn case_04_ground_of_radius_1e3() {
+    ground_case(4, 1e3);
+}
+
+#[test]
+fn case_05_ground_of_radius_1e5() {
+    ground_case(5, 1e5);
+}
+
+#[test]
+fn case_06_ground_of_radius_1e7() {
+    ground_case(6, 1e7);
+}
+
+#[test]
+fn case_07_direction_of_any_length() {
+    let mut random = Random::new(3);
+    let mut largest = 0.0_f64;
+    for _ in 0..20_000 {
+        let center = random.in_box(3.0).as_vec3().as_dvec3();
+        let origin = (center + random.direction() * random.within(1.0, 10.0)).as_vec3().as_dvec3();
+        let across = perpendicular(center - origin, &mut random) * (0.45 * random.unit().sqrt());
+        let towards = center + across - origin;
+        let hit = |length: f64| {
+            let rays = ray(UNFUSED, origin, towards.normalize() * length);
+            let key = near_root(
+                UNFUSED,
+                &rays,
+                &packed::<Scalar<false>>(center, 0.5),
+                Lanes::splat_u(UNFUSED, NUMBER),
+            );
+            distance::<Scalar<false>>(key)
+        };
+        let [short, one, long] = [1e-3, 1.0, 1e6].map(|length| hit(length).expect("the same hit"));
+        for other in [short, long] {
+            largest = largest.max((other / one - 1.0).abs());
+        }
+    }
+    println!("case 7: relative distance {largest:.2e}");
+    assert!(largest <= 1e-5, "{largest:e}");
+}
+
+/// A ray arrives from outside somewhere on a sphere and is sent on.
+fn arrival<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> Option<SurfacePoint<L>> {
+    let origin = center + random.direction() * radius * random.log_within(1.5, 1e3);
+    let across = perpendicular(center - origin, random) * (0.95 * radius * random.unit().sqrt());
+    let rays = ray(l, origin, center + across - origin);
+    let key = near_root(l, &rays, &packed::<L>(center, radius), l.splat_u(NUMBER));
+    distance::<L>(key).map(|t| surface_at(l, &rays, t, center, radius))
+}
+
+#[test]
+fn case_08_no_ray_meets_the_surface_that_it_leaves() {
+    let l = UNFUSED;
+    let mut random = Random::new(4);
+    let number = Lanes::splat_u(l, NUMBER);
+    let mut left = 0;
+    while left < 100_000 {
+        let (center, radius) = (random.in_box(100.0), random.log_within(1e-3, 1e3));
+        let Some(point) = arrival(l, &mut random, center, radius) else { continue };
+        let normal = vector::<Scalar<false>>(point.outward);
+        // Down to grazing, where the offsets of other tracers fail.
+        let lift = random.log_within(1e-7, 1.0);
+        let direction = perpendicular(normal, &mut random) + normal * lift;
+        let mut rays = ray(l, DVec3::ZERO, direction);
+        (rays.origin, rays.left) = (point.position, number);
+        let sphere = packed::<Scalar<false>>(center, radius);
+        assert_eq!(distance::<Scalar<false>>(near_root(l, &rays, &sphere, number)), None);
+        assert_eq!(distance::<Scalar<false>>(nearest_root(l, &rays, &sphere, number)), None);
+        left += 1;
+    }
+    // A ground, seen from its anchor.
+    let tables: Tables<f32> = Tables::new(&ground_job(1e5));
+    for _ in 0..10_000 {
+        let origin = DVec3::new(random.within(-3.0, 3.0), 0.0, random.within(-3.0, 3.0));
+        let mut rays = ray(l, origin, random.direction() + DVec3::Y);
+        rays.left = number;
+        assert_eq!(distance::<Scalar<false>>(anchored_root(l, &rays, &tables.anchored[0], number)), None);
+    }
+}
+
+/// The same in whole pictures: a path that leaves a lone sphere meets nothing more, whatever depth is allowed.
+#[test]
+fn case_08_lone_spheres_are_met_once() {
+    let mut renderer = widest();
+    for (radius, away) in [(0.5, 1e3), (1e-4, 1.0), (1.0, 3.0), (1e4, 2e4)] {
+        let scene = scene(&[(DVec3::new(0.0, 0.0, -away), radius, lambertian(0.5))]);
+        let vfov_degrees = (2.2 * (radius / away).atan()).to_degrees().max(0.01);
+        let camera = Camera { vfov_degrees, ..Camera::BOOK };
+        let of_depth =
+            |max_depth| job(&scene, camera, weekender::render::RenderSettings { max_depth, ..size(64, 64) });
+        let (shallow, _) = render_with_stats(&mut renderer, &of_depth(2), 0..32);
+        let (deep, stats) = render_with_stats(&mut renderer, &of_depth(50), 0..32);
+        assert_eq!(shallow, deep, "radius {radius} at {away}");
+        assert!(stats.rays > stats.paths + stats.paths / 4, "the sphere is in view: {stats:?}");
+    }
+}
+
+/// Enters through the surface as glass of index 1.5 makes it, and runs to the other side.
+fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> Option<f64> {
+    let number = l.splat_u(NUMBER);
+    let sphere = packed::<L>(center, radius);
+    let origin = center + random.direction() * 3.0;
+    let across = perpendicular(center - origin, random) * (0.98 * radius * random.unit().sqrt());
+    let rays = ray(l, origin, center + across - origin);
+    let t = distance::<L>(near_root(l, &rays, &sphere, number))?;
+    let point = surface_at(l, &rays, t, center, radius);
+    let cosine = -dot::<L>(rays.direction, point.outward);
+    let surface = Surface::<L> {
+        weight: l.constant(-0.0),
+        index: l.constant(1.5),
+        inverse_index: l.constant(1.0 / 1.5),
+        normal_share: l.constant(0.04),
+    };
+    let zero = v3(l, DVec3::ZERO);
+    let bounced = scatter::<L, true>(
+        l,
+        &surface,
+        DielectricLaws::RefractOnly,
+        rays.direction,
+        point.outward,
+        cosine,
+        l.mask(1),
+        zero,
+        zero.x,
+    );
+    assert_eq!(L::bits(bounced.refracts) & 1, 1);
+    let inner = Rays::<L> {
+        origin: point.position,
+        direction: normalised(l, bounced.direction),
+        left: l.splat_u(NONE),
+        inside: number,
+    };
+    let chord = distance::<L>(nearest_root(l, &inner, &sphere, number)).unwrap();
+    let [center, radius] = [center.as_vec3().as_dvec3(), DVec3::splat(f64::from(radius as f32))];
+    let exact = exact_roots(vector::<L>(inner.origin), vector::<L>(inner.direction), center, radius.x);
+    let [_, far] = exact.unwrap();
+    Some((chord / far - 1.0).abs())
+}
+
+#[test]
+fn case_09_chord_inside_a_tiny_sphere() {
+    let mut random = Random::new(5);
+    let (mut chords, mut largest) = (0, 0.0_f64);
+    while chords < 100_000 {
+        let center = random.in_box(1.0);
+        for error in
+            [chord_error(UNFUSED, &mut random, center, 1e-4), chord_error(FUSED, &mut random, center, 1e-4)]
+                .into_iter()
+                .flatten()
+        {
+            largest = largest.max(error);
+            chords += 1;
+        }
+    }
+    println!("case 9: relative chord {largest:.2e}");
+    assert!(largest <= 1e-2, "{largest:e}");
+}
+
+/// Follows total reflection around the inside of a glass ball. Largest distance of a hit from the sphere over
+/// its radius, and largest change of the sine of the angle of incidence.
+fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
+    let mut random = Random::new(6);
+    let number = l.splat_u(NUMBER);
+    let sphere = packed::<L>(center, radius);
+    let normal = random.direction();
+    let along = perpendicular(normal, &mut random);
+    let mut rays = Rays::<L> {
+        origin: v3(l, center + normal * radius),
+        direction: normalised(l, v3(l, along * sine - normal * (1.0 - sine * sine).sqrt())),
+        left: l.splat_u(NONE),
+        inside: number,
+    };
+    let surface = Surface::<L> {
+        weight: l.constant(-0.0),
+        index: l.constant(1.5),
+        inverse_index: l.constant(1.0 / 1.5),
+        normal_share: l.constant(0.04),
+    };
+    let zero = l.constant(0.0);
+    let rounded_center = vector::<L>(v3(l, center));
+    let mut largest = [0.0_f64; 2];
+    for _ in 0..1000 {
+        let t = distance::<L>(nearest_root(l, &rays, &sphere, number)).unwrap();
+        let point = surface_at(l, &rays, t, center, radius);
+        let away = vector::<L>(point.position) - rounded_center;
+        largest[0] = largest[0].max((away.length() / radius - 1.0).abs());
+        let now = vector::<L>(rays.direction).normalize().cross(away.normalize()).length();
+        largest[1] = largest[1].max((now - sine).abs());
+        let cosine = L::max(zero, L::min(l.constant(1.0), dot::<L>(rays.direction, point.outward)));
+        let inward = V3 { x: -point.outward.x, y: -point.outward.y, z: -point.outward.z };
+        let bounced = scatter::<L, true>(
+            l,
+            &surface,
+            DielectricLaws::Schlick,
+            rays.direction,
+            inward,
+            cosine,
+            l.mask(0),
+            v3(l, DVec3::ZERO),
+            l.constant(0.999_999),
+        );
+        assert_eq!(L::bits(bounced.refracts) & 1, 0, "total reflection");
+        rays.origin = point.position;
+        rays.direction = normalised(l, bounced.direction);
+    }
+    largest
+}
+
+#[test]
+fn case_19_a_thousand_internal_reflections() {
+    for sine in [0.7, 0.8, 0.9, 0.99] {
+        for (center, radius) in
+            [(DVec3::ZERO, 1.0), (DVec3::new(-1.0, 0.0, -1.0), 0.5), (DVec3::new(0.3, 0.2, 0.4), 0.2)]
+        {
+            for (name, [off, turned]) in [
+                ("fused", drift(FUSED, center, radius, sine)),
+                ("unfused", drift(UNFUSED, center, radius, sine)),
+            ] {
+                println!("case 19 {name}, sine {sine}, radius {radius}: off {off:.2e}, sine {turned:.2e}");
+                assert!(off <= 1e-6, "{name}, sine {sine}, radius {radius}: {off:e} off the sphere");
+                assert!(turned <= 1e-4, "{name}, sine {sine}, radius {radius}: drifts by {turned:e}");
+            }
+        }
+    }
+}
+
+/// The rules that these cases rest on: nothing but the finished tracer's.
+#[test]
+fn the_acne_stage_alone_anchors_nothing() {
+    let job = ground_job(1e5);
+    let acne = Rules { surface: weekender::stages::Surface::Acne, ..Rules::FINISHED };
+    let acne = RenderJob::new(job.scene().clone(), *job.camera(), *job.settings(), acne).unwrap();
+    assert!(Tables::<f32>::new(&acne).anchored.is_empty());
+    assert_eq!(Tables::<f32>::new(&job).anchored.len(), 1);
+}

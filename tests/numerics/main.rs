@@ -1,0 +1,19 @@
+//! What the arithmetic is held to. Each numbered test is a case of docs/numerics.md, with the tolerance given
+//! there; run with `--nocapture`, it prints what it measures.
+//!
+//! Single functions run in lanes of `f32`, with and without fused multiply and add, against closed forms in
+//! `f64`; whole pictures run in the widest packets against the `f64` reference, sample by sample. That the
+//! other widths render the same bits is the subject of [`parity`].
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+
+mod camera;
+mod common;
+mod film;
+mod hierarchy;
+mod images;
+mod intersection;
+mod materials;
+mod parity;
+mod sampling;
+mod statistics;

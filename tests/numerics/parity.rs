@@ -1,0 +1,79 @@
+//! All packets of one class render the same bits. Levels with fused multiply and add are one class, those
+//! without are the other.
+//!
+//! At a level's own lane count the path loop is specialised for what the job needs, at the other lane counts
+//! there is only the general one; so equality over the widths is also case 39, on the CPU and to the bit.
+
+use crate::common::*;
+use std::collections::BTreeMap;
+use weekender::film::Film;
+use weekender::recipe::Recipe;
+use weekender::render::{RenderJob, RenderSettings, SamplerKind};
+use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
+use weekender::scene::builtin::BuiltinScene;
+use weekender::stages::Stage;
+
+/// One renderer for each level and lane count of this machine.
+fn all_packets() -> Vec<(Isa, usize, CpuRenderer)> {
+    Isa::available()
+        .into_iter()
+        .flat_map(|isa| isa.lane_counts().iter().map(move |lanes| (isa, *lanes, packets(isa, *lanes))))
+        .collect()
+}
+
+fn small(recipe: &Recipe, sampler: SamplerKind) -> RenderJob {
+    let settings = RenderSettings { width: 48, height: 27, sampler, ..recipe.settings };
+    RenderJob::new(recipe.scene.clone(), recipe.camera, settings, recipe.rules).unwrap()
+}
+
+fn assert_parity(recipes: impl Iterator<Item = Recipe>, samples: u64) {
+    let mut renderers = all_packets();
+    for (index, recipe) in recipes.enumerate() {
+        let job = small(&recipe, SamplerKind::ALL[index % 2]);
+        let mut classes: BTreeMap<bool, (String, Film)> = BTreeMap::new();
+        for (isa, lanes, renderer) in &mut renderers {
+            let film = render(renderer, &job, 0..samples);
+            let name = format!("{isa} with {lanes} lanes");
+            let (first, expected) =
+                classes.entry(isa.is_fused()).or_insert_with(|| (name.clone(), film.clone()));
+            assert!(film == *expected, "{}: {name} differs from {first}", recipe.name);
+        }
+    }
+}
+
+#[test]
+fn case_39_all_packets_render_the_same_stages() {
+    assert_parity(Stage::ALL.iter().map(Stage::recipe), 5);
+}
+
+#[test]
+fn case_39_all_packets_render_the_same_scenes() {
+    assert_parity(BuiltinScene::ALL.iter().map(|scene| Recipe::find(scene.name).unwrap()), 5);
+}
+
+/// Neither the cut into tiles, nor threads, nor passes show.
+#[test]
+fn tiles_threads_and_passes_do_not_show() {
+    let threaded = |threads| CpuRenderer::new(CpuOptions { threads: Some(threads), ..CpuOptions::default() });
+    for name in ["three-spheres", "close-up"] {
+        let recipe = Recipe::find(name).unwrap();
+        for sampler in SamplerKind::ALL {
+            for estimate_error in [false, true] {
+                let settings =
+                    RenderSettings { width: 131, height: 70, sampler, estimate_error, ..recipe.settings };
+                let job =
+                    RenderJob::new(recipe.scene.clone(), recipe.camera, settings, recipe.rules).unwrap();
+                let expected = render(&mut threaded(1).unwrap(), &job, 0..13);
+                for threads in [2, 5] {
+                    let film = render(&mut threaded(threads).unwrap(), &job, 0..13);
+                    assert!(film == expected, "{name} on {threads} threads");
+                }
+                let mut film = job.new_film();
+                for range in [0..1, 1..2, 2..7, 7..8, 8..13] {
+                    film.merge(&render(&mut widest(), &job, range)).unwrap();
+                }
+                assert!(film == expected, "{name} in passes");
+            }
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Random numbers: cases 26 and 27, and the lanes against their scalar oracle.
+
+use crate::common::{Random, first};
+use proptest::prelude::*;
+use std::collections::HashSet;
+use weekender::render::{RenderSettings, SAMPLE_LIMIT, SamplerKind};
+use weekender::render_cpu::lanes::{Lanes, MAX_LANES, Reference, Scalar, unit_float};
+use weekender::render_cpu::rng;
+use weekender::sampling::{self, LENS_BLOCK, SampleBlock};
+
+fn settings(sampler: SamplerKind, estimate_error: bool, seed: u32) -> RenderSettings {
+    RenderSettings { sampler, estimate_error, seed, ..RenderSettings::default() }
+}
+
+#[test]
+fn case_26_no_draw_repeats() {
+    for sampler in SamplerKind::ALL {
+        let settings = settings(sampler, true, 0);
+        let draws: HashSet<[u32; 4]> =
+            (0..100_000).map(|index| sampling::numbers(&settings, 230 | 69 << 16, index, 0)).collect();
+        assert_eq!(draws.len(), 100_000, "{sampler:?}");
+    }
+}
+
+#[test]
+fn case_27_the_largest_number_is_below_1() {
+    fn largest<L: Lanes>(l: L) -> f64 {
+        first::<L>(unit_float(l, l.splat_u(u32::MAX)))
+    }
+    let below_1 = 1.0 - 1.0 / 16_777_216.0;
+    assert_eq!(f64::from(sampling::unit_float(u32::MAX)), below_1);
+    assert_eq!(largest(Scalar::<false>), below_1);
+    assert_eq!(largest(Reference), below_1);
+    assert_eq!(sampling::unit_float(0), 0.0);
+}
+
+/// Every number of the lanes against the oracle, bit for bit.
+#[inline(always)]
+fn assert_twins<L: Lanes>(l: L) {
+    let mut random = Random::new(9);
+    for _ in 0..500 {
+        let mut words = || {
+            let mut row = [0; MAX_LANES];
+            row.iter_mut().for_each(|word| *word = random.bits() as u32);
+            row
+        };
+        let [a, b, c, d] = [words(), words(), words(), words()];
+        let [la, lb, lc, ld] = [a, b, c, d].map(|row| l.load_u(&row));
+        let same = |found: L::U, what: &str, expected: &dyn Fn(usize) -> u32| {
+            let mut row = [0; MAX_LANES];
+            L::store_u(found, &mut row);
+            for (lane, word) in row.into_iter().enumerate().take(L::WIDTH) {
+                assert_eq!(word, expected(lane), "{what}, lane {lane} of {}", L::WIDTH);
+            }
+        };
+        same(rng::mix32(l, la), "mix32", &|i| sampling::mix32(a[i]));
+        same(rng::laine_karras(l, la, lb), "laine_karras", &|i| sampling::laine_karras(a[i], b[i]));
+        same(rng::pascal(l, la), "pascal", &|i| sampling::pascal(a[i]));
+        for (which, found) in rng::pcg4d(l, [la, lb, lc, ld]).into_iter().enumerate() {
+            same(found, "pcg4d", &|i| sampling::pcg4d([a[i], b[i], c[i], d[i]])[which]);
+        }
+        // A whole draw: lane by lane its own pixel and index, at one bounce.
+        let (half, bounce, seed) = (a[0] & 1, b[0] % 50, c[0]);
+        let index = |i: usize| d[i] >> 1 << 1 | half;
+        let pixel = |i: usize| a[i] & 0x3FFF_3FFF;
+        let settings = settings(SamplerKind::Sobol, true, seed);
+        let (mut keys, mut counters) = ([0; MAX_LANES], [0; MAX_LANES]);
+        for i in 0..MAX_LANES {
+            keys[i] = sampling::pixel_key(seed, half, pixel(i));
+            counters[i] = (index(i) / 2).reverse_bits();
+        }
+        let (keys, counters, at) = (l.load_u(&keys), l.load_u(&counters), l.splat_u(bounce));
+        let first_pair = rng::sobol_pair(l, counters, rng::stream_of(l, keys, at));
+        let lens_pair = rng::sobol_pair(l, counters, rng::lens_stream_of(l, keys, at));
+        for (which, found) in first_pair.into_iter().chain(lens_pair).enumerate() {
+            same(found, "numbers", &|i| sampling::numbers(&settings, pixel(i), index(i), bounce)[which]);
+        }
+        const { assert!(LENS_BLOCK > weekender::render::DEPTH_LIMIT) };
+    }
+}
+
+#[test]
+fn lanes_draw_the_numbers_of_the_oracle() {
+    assert_twins(Scalar::<false>);
+    assert_twins(Reference);
+    #[cfg(target_arch = "x86_64")]
+    {
+        use fearless_simd::{Level, Simd};
+        use weekender::render_cpu::lanes::{Lanes4, Lanes8, Lanes16};
+        let level = Level::new();
+        if let Some(simd) = level.as_sse4_2() {
+            simd.vectorize(
+                #[inline(always)]
+                || assert_twins(Lanes4(simd)),
+            );
+        }
+        if let Some(simd) = level.as_avx2() {
+            simd.vectorize(
+                #[inline(always)]
+                || assert_twins(Lanes8(simd)),
+            );
+            simd.vectorize(
+                #[inline(always)]
+                || assert_twins(Lanes16(simd)),
+            );
+        }
+    }
+}
+
+/// The polynomial against the library's sine in `f64`: within two units of `2^-23`, each for itself
+/// and in the length of the two together.
+#[test]
+fn sine_and_cosine_of_turns() {
+    let (mut largest, mut length) = (0.0_f64, 0.0_f64);
+    for step in (0..1 << 24).step_by(37).chain([1 << 22, 1 << 23, 3 << 22, (1 << 24) - 1]) {
+        let u = step as f32 / 16_777_216.0;
+        let (sine, cosine) = sampling::sin_cos_turns(u);
+        assert_eq!(Scalar::<false>.sin_cos_turns(u), (sine, cosine), "the lanes' own");
+        let exact = (f64::from(u) * std::f64::consts::TAU).sin_cos();
+        let [sine, cosine] = [sine, cosine].map(f64::from);
+        largest = largest.max((sine - exact.0).abs()).max((cosine - exact.1).abs());
+        length = length.max((sine.hypot(cosine) - 1.0).abs());
+        let fused = Scalar::<true>.sin_cos_turns(u);
+        largest = largest.max((f64::from(fused.0) - exact.0).abs()).max((f64::from(fused.1) - exact.1).abs());
+        let reference = Reference.sin_cos_turns(f64::from(u));
+        assert!((reference.0 - exact.0).abs() < 1e-15 && (reference.1 - exact.1).abs() < 1e-15);
+    }
+    println!("sine and cosine: {largest:.2e}, length {length:.2e}");
+    assert!(largest <= 2e-7, "{largest:e}");
+    assert!(length <= 2e-7, "{length:e}");
+}
+
+#[test]
+fn unit_vectors_have_length_1() {
+    let mut random = Random::new(10);
+    for _ in 0..100_000 {
+        let [u0, u1] = [random.bits(), random.bits()].map(|bits| sampling::unit_float(bits as u32));
+        let [x, y, z] = sampling::unit_sphere(u0, u1).map(f64::from);
+        assert!(((x * x + y * y + z * z).sqrt() - 1.0).abs() < 1e-6, "{u0}, {u1}");
+        let [x, y] = sampling::unit_disk(u0, u1).map(f64::from);
+        assert!(x.hypot(y) < 1.0 + 1e-6, "{u0}, {u1}");
+    }
+}
+
+proptest! {
+    /// Blocks cover the samples of a range once each, and their counters run through just those.
+    #[test]
+    fn blocks_cover_a_range_once(
+        start in prop_oneof![0..2000_u64, SAMPLE_LIMIT - 2000..SAMPLE_LIMIT],
+        length in 0..1500_u64,
+        limit in 0..8_u32,
+        estimate_error: bool,
+        sobol: bool,
+    ) {
+        let range = start..(start + length).min(SAMPLE_LIMIT);
+        let sampler = if sobol { SamplerKind::Sobol } else { SamplerKind::Independent };
+        let settings = settings(sampler, estimate_error, 3);
+        let halves = settings.half_count() as u32;
+        let blocks = SampleBlock::split(range.clone(), halves, 1 << limit);
+        let mut seen = Vec::new();
+        for block in &blocks {
+            prop_assert!(block.count.is_power_of_two() && block.count <= 1 << limit);
+            prop_assert_eq!(block.first % block.count, 0);
+            let (mut counter, step) = block.counter(&settings);
+            for _ in 0..block.count {
+                let index = u64::from(counter.reverse_bits());
+                seen.push(match sampler {
+                    SamplerKind::Independent => {
+                        prop_assert_eq!(index % u64::from(halves), u64::from(block.half));
+                        index
+                    }
+                    SamplerKind::Sobol => index * u64::from(halves) + u64::from(block.half),
+                });
+                counter = counter.wrapping_add(step);
+            }
+        }
+        seen.sort_unstable();
+        prop_assert_eq!(seen, range.collect::<Vec<_>>());
+    }
+}
