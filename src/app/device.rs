@@ -2,7 +2,45 @@
 
 use crate::backends::BackendChoice;
 use crate::render_cpu::{CpuOptions, Isa};
+use crate::render_gpu::{AdapterInfo, GpuOptions, INTERACTIVE_TARGET, adapters};
 use serde::{Deserialize, Serialize};
+use std::sync::OnceLock;
+
+/// What the devices are to use, as the command line has it.
+#[derive(Clone, Debug, Default)]
+pub struct DeviceOptions {
+    cpu: CpuOptions,
+    gpu: GpuOptions,
+}
+
+impl DeviceOptions {
+    /// Those of a backend; for what it does not use, the usual ones.
+    pub fn of(choice: &BackendChoice) -> Self {
+        match choice {
+            BackendChoice::Cpu(cpu) => DeviceOptions { cpu: *cpu, ..Self::default() },
+            BackendChoice::Gpu(gpu) => DeviceOptions { gpu: gpu.clone(), ..Self::default() },
+            BackendChoice::Both(cpu, gpu) => DeviceOptions { cpu: *cpu, gpu: gpu.clone() },
+            BackendChoice::Reference { threads } => DeviceOptions {
+                cpu: CpuOptions { threads: *threads, ..CpuOptions::default() },
+                ..Self::default()
+            },
+        }
+    }
+}
+
+/// The adapter that the GPU stands for; hardware first. Looking for it takes a while, and adapters seldom come
+/// and go.
+pub fn adapter() -> Result<&'static AdapterInfo, String> {
+    static ADAPTERS: OnceLock<Vec<AdapterInfo>> = OnceLock::new();
+    let all = ADAPTERS.get_or_init(adapters);
+    match (all.iter().find(|adapter| adapter.lacks.is_none()), all.first()) {
+        (Some(fit), _) => Ok(fit),
+        (None, Some(unfit)) => {
+            Err(format!("{} cannot be used: {}", unfit.name, unfit.lacks.as_deref().unwrap_or_default()))
+        }
+        (None, None) => Err("No graphics adapter was found; the CPU does everything".to_owned()),
+    }
+}
 
 /// A device that the user can choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -27,7 +65,7 @@ impl Device {
         match self {
             Device::Cpu => "cpu",
             Device::Gpu => "gpu",
-            Device::Both => "both",
+            Device::Both => "cpu,gpu",
             Device::Reference => "reference",
         }
     }
@@ -54,31 +92,55 @@ impl Device {
         }
     }
 
+    /// What it is, with the adapter's name.
+    pub fn long_help(self) -> String {
+        match (self, adapter()) {
+            (Device::Gpu | Device::Both, Ok(adapter)) => {
+                let note =
+                    if adapter.is_software { ", which computes on the processor and is slower" } else { "" };
+                format!("{} ({}{note})", self.help(), adapter.name)
+            }
+            _ => self.help().to_owned(),
+        }
+    }
+
     /// The device of a backend.
     pub fn of(choice: &BackendChoice) -> Self {
         match choice {
             BackendChoice::Cpu(_) => Device::Cpu,
+            BackendChoice::Gpu(_) => Device::Gpu,
+            BackendChoice::Both(..) => Device::Both,
             BackendChoice::Reference { .. } => Device::Reference,
         }
     }
 
-    /// The backend that stands for it.
-    ///
-    /// # Errors
-    /// Why it cannot be had, in words.
-    pub fn backend(self, lanes: Option<usize>, threads: Option<usize>) -> Result<BackendChoice, String> {
-        let threads = threads.or_else(threads_of_window);
+    /// The backend that stands for it, with lanes and threads in place of those of the options.
+    pub fn backend(
+        self,
+        options: &DeviceOptions,
+        lanes: Option<usize>,
+        threads: Option<usize>,
+    ) -> BackendChoice {
+        let threads = threads.or(options.cpu.threads).or_else(threads_of_window);
+        let lanes = lanes.or(options.cpu.lanes);
+        let cpu = CpuOptions { isa: options.cpu.isa, lanes, threads };
+        // Whoever presses the button means it: software will do.
+        let dispatch_target = options.gpu.dispatch_target.min(2 * INTERACTIVE_TARGET);
+        let gpu = || GpuOptions { allow_software: true, dispatch_target, ..options.gpu.clone() };
         match self {
-            Device::Cpu => Ok(BackendChoice::Cpu(CpuOptions { isa: None, lanes, threads })),
-            Device::Reference => Ok(BackendChoice::Reference { threads }),
-            Device::Gpu => Err("This build has no GPU backend".to_owned()),
-            Device::Both => Err("This build has no GPU backend to share the work with".to_owned()),
+            Device::Cpu => BackendChoice::Cpu(cpu),
+            Device::Gpu => BackendChoice::Gpu(gpu()),
+            Device::Both => BackendChoice::Both(cpu, gpu()),
+            Device::Reference => BackendChoice::Reference { threads },
         }
     }
 
-    /// Why it cannot be had.
+    /// Why it cannot be had, in words.
     pub fn unavailable(self) -> Option<String> {
-        self.backend(None, None).err()
+        match self {
+            Device::Cpu | Device::Reference => None,
+            Device::Gpu | Device::Both => adapter().err(),
+        }
     }
 }
 
@@ -104,13 +166,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_device_is_there_or_says_why_not() {
+    fn every_device_has_its_backend_and_says_what_is_wrong() {
+        let options = DeviceOptions::default();
         for device in Device::ALL {
-            match device.backend(None, None) {
-                Ok(choice) => assert_eq!((Device::of(&choice), choice.name()), (device, device.name())),
-                Err(reason) => assert!(reason.len() > 10),
-            }
+            let choice = device.backend(&options, None, None);
+            assert_eq!((Device::of(&choice), choice.name()), (device, device.name()));
+            assert!(device.unavailable().is_none_or(|reason| reason.len() > 10));
         }
         assert!(!lane_counts().is_empty());
+    }
+
+    #[test]
+    fn the_command_lines_options_are_kept() {
+        let cpu = CpuOptions { isa: None, lanes: Some(1), threads: Some(1) };
+        let options = DeviceOptions::of(&BackendChoice::Cpu(cpu));
+        assert_eq!(Device::Cpu.backend(&options, None, None), BackendChoice::Cpu(cpu));
+        let changed = Device::Cpu.backend(&options, Some(4), None);
+        assert_eq!(changed, BackendChoice::Cpu(CpuOptions { lanes: Some(4), ..cpu }));
     }
 }

@@ -194,7 +194,7 @@ impl Document {
     }
 
     /// The command line that gives the same picture with `samples` samples per pixel, to the bit on the CPU.
-    pub fn command_line(&self, samples: u64, device: &str) -> String {
+    pub fn command_line(&self, samples: u64, device: &str, adapter: Option<&str>) -> String {
         let origin = &self.origin.recipe;
         let mut line = String::from("weekender --batch");
         // Writing to a string cannot fail.
@@ -247,6 +247,9 @@ impl Document {
         if device != "cpu" {
             add("--device", &device);
         }
+        if let Some(adapter) = adapter {
+            add("--adapter", &adapter);
+        }
         add("--out", &format!("{}.png", origin.name));
         line
     }
@@ -280,7 +283,12 @@ mod tests {
     fn the_command_line_gives_the_same_job() {
         for stage in Stage::ALL {
             let mut document = Document::new(Origin::of_stage(stage));
-            assert_eq!(job_of(&document.command_line(4, "cpu")), document.job(1).unwrap(), "{}", stage.id);
+            assert_eq!(
+                job_of(&document.command_line(4, "cpu", None)),
+                document.job(1).unwrap(),
+                "{}",
+                stage.id
+            );
             document.camera.look_from = DVec3::new(-1.1, 1e-20, 1.0 / 3.0);
             document.camera.look_at = DVec3::new(0.25, -7.0, 1e9);
             document.camera.vup = DVec3::new(0.0, 1.0, -0.5);
@@ -293,7 +301,7 @@ mod tests {
             for (defocus, focus) in [(0.0, Some(3.0)), (2.5, Some(3.0)), (2.5, None)] {
                 document.camera.defocus_angle_degrees = defocus;
                 document.camera.focus_distance = focus;
-                let line = document.command_line(4, "cpu");
+                let line = document.command_line(4, "cpu", None);
                 let (theirs, mine) = (job_of(&line), document.job(1).unwrap());
                 let same_focus =
                     |a: &Camera| Camera { focus_distance: Some(a.effective_focus_distance()), ..*a };

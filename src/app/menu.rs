@@ -231,7 +231,7 @@ fn device_button(window: &mut Window, ui: &mut Ui, device: Device) {
     }
     let response = ui
         .add_enabled(unavailable.is_none(), button)
-        .on_hover_text(format!("{}. The same picture goes on. (G switches CPU and GPU)", device.help()))
+        .on_hover_text(format!("{}. The same picture goes on. (G switches CPU and GPU)", device.long_help()))
         .on_disabled_hover_text(unavailable.unwrap_or_default())
         .accessible_name(Command::Device(device).name());
     if response.clicked() {

@@ -171,7 +171,12 @@ impl Window {
             (_, Some(samples)) => samples,
             _ => self.document.origin.recipe.samples_per_pixel,
         };
-        let line = self.document.command_line(samples.max(1), self.remembered.device.name());
+        let device = self.remembered.device;
+        // Software adapters are used only when they are named.
+        let is_gpu = matches!(device, Device::Gpu | Device::Both);
+        let adapter = super::device::adapter().ok().filter(|adapter| is_gpu && adapter.is_software);
+        let adapter = adapter.map(|adapter| adapter.name.as_str());
+        let line = self.document.command_line(samples.max(1), device.name(), adapter);
         context.copy_text(line);
         self.toasts.good(match &self.document.origin.source {
             Source::Embedded => "Copied; the scene is in no file yet: save the scene file beside it",

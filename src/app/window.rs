@@ -2,7 +2,7 @@
 
 use super::command::Command;
 use super::compare::Compare;
-use super::device::Device;
+use super::device::{Device, DeviceOptions};
 use super::dialogs::Dialog;
 use super::document::{Document, Origin, Source, Stop};
 use super::files::Message;
@@ -59,7 +59,7 @@ pub struct Window {
     /// What was carried out last.
     pub(super) performed: Option<Command>,
     backend: BackendChoice,
-    forced_backend: Option<BackendChoice>,
+    device_options: DeviceOptions,
     last_document: Document,
     moved: Option<Instant>,
     told_messages: (u64, usize),
@@ -72,13 +72,11 @@ impl Window {
     /// # Errors
     /// If the system gives no thread, or the frame log cannot be written.
     pub fn new(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
-        let remembered: Remembered =
-            storage.and_then(|storage| eframe::get_value(storage, STORAGE_KEY)).unwrap_or_default();
-        let mut remembered = remembered.mended();
-        let cpu_default = BackendChoice::Cpu(crate::render_cpu::CpuOptions::default());
-        let forced_backend = Some(options.backend.clone()).filter(|choice| *choice != cpu_default);
-        if let Some(choice) = &forced_backend {
-            remembered.device = Device::of(choice);
+        let earlier: Option<Remembered> = storage.and_then(|storage| eframe::get_value(storage, STORAGE_KEY));
+        let is_first = earlier.is_none();
+        let mut remembered = earlier.unwrap_or_default().mended();
+        if is_first || options.is_device_given {
+            remembered.device = Device::of(&options.backend);
         }
         let document = document_of(&options);
         let frame_log = options
@@ -104,8 +102,8 @@ impl Window {
             is_full_screen: false,
             frame_log,
             performed: None,
+            device_options: DeviceOptions::of(&options.backend),
             backend: options.backend,
-            forced_backend,
             last_document: document.clone(),
             moved: None,
             told_messages: (0, 0),
@@ -321,14 +319,7 @@ impl Window {
     /// The backend of the chosen device, with lanes and threads as chosen.
     fn chosen_backend(&self) -> BackendChoice {
         let Remembered { device, lanes, threads, .. } = self.remembered;
-        if let Some(forced) = &self.forced_backend
-            && Device::of(forced) == device
-            && lanes.is_none()
-            && threads.is_none()
-        {
-            return forced.clone();
-        }
-        device.backend(lanes, threads).unwrap_or_else(|_| self.backend.clone())
+        device.backend(&self.device_options, lanes, threads)
     }
 
     /// Passes on what the render thread had to say.

@@ -43,6 +43,8 @@ pub struct WindowOptions {
     pub file: Option<PathBuf>,
     /// Who renders.
     pub backend: BackendChoice,
+    /// Whether flags said who renders.
+    pub is_device_given: bool,
     /// When it ends, if that was said.
     pub plan: Option<Plan>,
     /// The film that goes on.
@@ -166,6 +168,10 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         stage: source.stage,
         file: raw.scene.as_ref().filter(|_| is_file).map(PathBuf::from),
         backend,
+        is_device_given: raw.device != RawDevice::Auto
+            || raw.threads.is_some()
+            || raw.adapter.is_some()
+            || (raw.simd, raw.isa) != (Simd(None), Level(None)),
         resume: raw.resume.clone(),
         frame_log: raw.frame_log.clone(),
     })

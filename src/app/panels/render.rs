@@ -73,7 +73,7 @@ fn device(window: &mut Window, ui: &mut Ui) {
                 for device in Device::ALL {
                     let reason = device.unavailable();
                     let button = egui::Button::selectable(device == chosen, device.label());
-                    let response = ui.add_enabled(reason.is_none(), button).on_hover_text(device.help());
+                    let response = ui.add_enabled(reason.is_none(), button).on_hover_text(device.long_help());
                     if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() {
                         window.remembered_mut().device = device;
                         ui.close();
