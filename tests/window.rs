@@ -7,7 +7,7 @@ use egui_kittest::{Harness, Node};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use weekender::app::{Command, Device, Window};
+use weekender::app::{Command, Device, Theme, Window};
 use weekender::cli::{self, Request};
 use weekender::output::{OutputFormat, read_description};
 use weekender::progressive::{Plan, Progressive, Work};
@@ -119,7 +119,7 @@ fn every_command_is_found_in_the_palette() {
 fn every_menu_lists_its_commands() {
     let mut harness = open(SMALL);
     for menu in ["File", "Edit", "View", "Render", "Help"] {
-        harness.get_by_label(menu).click();
+        control(&harness, menu).click();
         harness.run_steps(3);
         for command in Command::all().into_iter().filter(|command| command.group().name() == menu) {
             let name = command.name();
@@ -542,7 +542,7 @@ fn tab_hides_the_panels_and_they_fold_one_by_one() {
 }
 
 /// A picture of the whole window. Figures that change from run to run are covered.
-fn snapshot(name: &str, theme: weekender::app::Theme, size: [f32; 2], scale: f32) {
+fn snapshot(name: &str, theme: Theme, size: [f32; 2], scale: f32) {
     let mut harness = Harness::builder()
         .with_size(size)
         .with_pixels_per_point(scale)
@@ -563,9 +563,16 @@ fn snapshot(name: &str, theme: weekender::app::Theme, size: [f32; 2], scale: f32
 }
 
 #[test]
-fn pictures_of_the_window() {
-    use weekender::app::Theme;
+fn the_dark_window_looks_as_it_did() {
     snapshot("window_dark", Theme::Dark, [1280.0, 800.0], 1.0);
+}
+
+#[test]
+fn the_light_window_looks_as_it_did() {
     snapshot("window_light", Theme::Light, [1280.0, 800.0], 1.0);
+}
+
+#[test]
+fn at_twice_the_font_size_it_looks_as_it_did() {
     snapshot("window_twice_the_font", Theme::Dark, [640.0, 400.0], 2.0);
 }

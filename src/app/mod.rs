@@ -60,6 +60,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             .with_min_inner_size([480.0, 320.0])
             .with_icon(theme::icon())
             .with_drag_and_drop(true),
+        dithering: false,
         ..Default::default()
     };
     let create = Box::new(|context: &eframe::CreationContext<'_>| {

@@ -27,16 +27,23 @@ pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
-/// A name above, a control below.
+/// A name above, a control of that name below.
 pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
+    under_name(ui, about, |ui| {
+        let response = add(ui);
+        named(&response, about.name);
+        response
+    })
+}
+
+/// A name above, below it controls with names of their own.
+pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
     ui.spacing_mut().item_spacing.y = 3.0;
     let is_useful = about.useless.is_none();
     let response = ui
         .add_enabled_ui(is_useful, |ui| {
             ui.add(egui::Label::new(RichText::new(about.name).small().color(ui.visuals().weak_text_color())));
-            let response = add(ui);
-            named(&response, about.name);
-            explained(response, about)
+            explained(add(ui), about)
         })
         .inner;
     ui.add_space(5.0);
@@ -71,7 +78,7 @@ pub fn slider(
 
 /// Three numbers.
 pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, speed: f64) -> Response {
-    control(ui, about, |ui| {
+    under_name(ui, about, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let width = (ui.available_width() - 8.0) / 3.0;

@@ -62,6 +62,8 @@ pub struct Window {
     device_options: DeviceOptions,
     last_document: Document,
     moved: Option<Instant>,
+    /// The changes of this frame belong to a move that has begun before.
+    is_in_gesture: bool,
     told_messages: (u64, usize),
     is_dressed: bool,
 }
@@ -106,6 +108,7 @@ impl Window {
             backend: options.backend,
             last_document: document.clone(),
             moved: None,
+            is_in_gesture: false,
             told_messages: (0, 0),
             is_dressed: false,
             remembered,
@@ -197,6 +200,12 @@ impl Window {
         self.moved = Some(Instant::now());
     }
 
+    /// A command: what it changes is no part of a move.
+    pub(super) fn end_move(&mut self) {
+        self.moved = None;
+        self.is_in_gesture = false;
+    }
+
     fn is_moving(&self) -> bool {
         self.moved.is_some_and(|at| at.elapsed() < SETTLE)
     }
@@ -279,6 +288,10 @@ impl Window {
     /// Notes what has changed, and has it rendered.
     fn follow(&mut self, context: &egui::Context) {
         if self.document != self.last_document {
+            // What was before a change, or before a whole gesture, is what undo comes back to.
+            if !self.is_in_gesture {
+                self.undo.add_undo(&self.last_document);
+            }
             let is_by_hand = context.input(|input| input.pointer.any_down());
             if !self.document.has_same_film(&self.last_document) {
                 if is_by_hand {
@@ -292,6 +305,7 @@ impl Window {
             }
             self.last_document = self.document.clone();
         }
+        self.is_in_gesture = self.is_moving() || context.input(|input| input.pointer.any_down());
         let now = context.input(|input| input.time);
         self.undo.feed_state(now, &self.document);
 

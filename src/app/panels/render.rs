@@ -2,7 +2,7 @@
 
 use super::Group;
 use crate::app::device::{Device, core_count, lane_counts};
-use crate::app::widgets::{About, check, control, whole};
+use crate::app::widgets::{About, check, control, under_name, whole};
 use crate::app::window::Window;
 use crate::render::{DEPTH_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::stages::Shading;
@@ -125,7 +125,7 @@ fn lanes_and_threads(window: &mut Window, ui: &mut Ui) {
 fn size(window: &mut Window, ui: &mut Ui) {
     let settings = &mut window.document_mut().settings;
     let about = About::new("Size", "Width and height, pixels");
-    control(ui, about, |ui| {
+    under_name(ui, about, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let size = [(ui.available_width() - 4.0) / 2.0, ui.spacing().interact_size.y];
