@@ -15,6 +15,6 @@ fn run() -> Result<ExitCode, Failure> {
         Request::List => batch::list(),
         Request::SaveScene(options) => batch::save_scene(&options),
         Request::Merge(options) => batch::merge(&options),
-        Request::Batch(options) => batch::run(options),
+        Request::Batch(options) => batch::run(*options),
     }
 }

@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn pieces_cover_a_range_once_in_whole_grains() {
-        let mut pieces = Pieces { left: vec![6..120], grain: 2 };
+        let mut pieces = Pieces { left: vec![6..50, 50..120], grain: 2 };
         let mut covered = Vec::new();
         for turn in 0.. {
             let share = [0.0, 0.25, 0.5, 0.1][turn % 4];

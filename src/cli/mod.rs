@@ -22,11 +22,11 @@ pub enum Request {
     /// List scenes, stages and devices.
     List,
     /// Write a scene file and render nothing.
-    SaveScene(SaveSceneOptions),
+    SaveScene(Box<SaveSceneOptions>),
     /// Add films.
     Merge(MergeOptions),
     /// Render to files.
-    Batch(BatchOptions),
+    Batch(Box<BatchOptions>),
 }
 
 /// Reads the command line; the first argument is the program's name.

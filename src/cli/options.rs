@@ -126,15 +126,15 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
         _ => None,
     };
     match save_scene {
-        Some(options) if !raw.batch => Ok(Request::SaveScene(options)),
-        save_scene => Ok(Request::Batch(BatchOptions {
+        Some(options) if !raw.batch => Ok(Request::SaveScene(Box::new(options))),
+        save_scene => Ok(Request::Batch(Box::new(BatchOptions {
             renders,
             directory,
             save_scene,
             backend,
             progress: raw.progress,
             json: raw.json.map(json_target),
-        })),
+        }))),
     }
 }
 

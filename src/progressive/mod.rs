@@ -30,7 +30,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use worker::{Command, Worker};
 
-/// Makes renderers, on the render thread.
+/// Makes renderers, on the render thread or, while another renders, beside it.
 pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, BackendError> + Send>;
 
 /// Something to render.

@@ -6,9 +6,9 @@ use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::progressive::{EndReason, HistoryPoint};
 use crate::render::{RenderError, RenderJob, Renderer};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, TryRecvError};
+use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 pub(super) enum Command {
@@ -32,7 +32,7 @@ const ERROR_ESTIMATE_SHARE: u32 = 20;
 pub(super) struct Worker {
     commands: Receiver<Command>,
     shared: Arc<Shared>,
-    factory: Factory,
+    factory: Arc<Mutex<Factory>>,
     backend: Option<(BackendChoice, Box<dyn Renderer>)>,
     render: Option<Render>,
     view: View,
@@ -46,6 +46,7 @@ struct Render {
     cancel: Arc<AtomicBool>,
     choice: BackendChoice,
     is_prepared: bool,
+    upcoming: Option<Upcoming>,
     sizer: PassSizer,
     next_history_samples: u64,
     estimated_samples: u64,
@@ -53,6 +54,38 @@ struct Render {
     estimate_took: Duration,
     pictured_samples: Option<u64>,
     status: Status,
+}
+
+/// A backend that gets ready on a thread of its own while the old one renders on.
+struct Upcoming {
+    choice: BackendChoice,
+    outcome: Receiver<Result<Ready, String>>,
+}
+
+/// A renderer that has prepared the job, and what that took.
+struct Ready {
+    renderer: Box<dyn Renderer>,
+    took: Duration,
+}
+
+impl Upcoming {
+    /// Starts to prepare `job`; `None` if the system gives no thread.
+    fn start(choice: BackendChoice, job: &RenderJob, factory: &Arc<Mutex<Factory>>) -> Option<Self> {
+        let (sender, outcome) = mpsc::channel();
+        let (wanted, job, factory) = (choice.clone(), job.clone(), Arc::clone(factory));
+        let prepare = move || {
+            let begin = Instant::now();
+            let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(&wanted);
+            let ready = made.map_err(|error| error.to_string()).and_then(|mut renderer| {
+                renderer.prepare(&job).map_err(|error| error.to_string())?;
+                Ok(Ready { renderer, took: begin.elapsed() })
+            });
+            // Nobody waits any more if another backend was chosen meanwhile.
+            let _ = sender.send(ready);
+        };
+        std::thread::Builder::new().name("prepare".to_owned()).spawn(prepare).ok()?;
+        Some(Upcoming { choice, outcome })
+    }
 }
 
 /// Tells the readers if the thread ends by a panic.
@@ -68,7 +101,14 @@ impl Drop for DeathNote {
 
 impl Worker {
     pub(super) fn new(commands: Receiver<Command>, shared: Arc<Shared>, factory: Factory) -> Self {
-        Worker { commands, shared, factory, backend: None, render: None, view: View::Picture }
+        Worker {
+            commands,
+            shared,
+            factory: Arc::new(Mutex::new(factory)),
+            backend: None,
+            render: None,
+            view: View::Picture,
+        }
     }
 
     pub(super) fn run(mut self) {
@@ -122,7 +162,7 @@ impl Worker {
             Command::Pause if render.is_working() => render.status.phase = Phase::Paused,
             Command::Resume if is_stopped || render.status.phase == Phase::Paused => render.go_on(),
             Command::Stop if !render.status.phase.is_over() => render.end(EndReason::Stopped),
-            Command::Switch(choice) => render.change_backend(choice),
+            Command::Switch(choice) => render.switch(choice, &self.factory),
             Command::SetPlan(plan) => {
                 render.plan = plan;
                 render.status.planned_samples_per_pixel = render.planned_count();
@@ -175,6 +215,7 @@ impl Worker {
     /// Prepares if need be, else renders a pass.
     fn step(&mut self) {
         let Some(render) = &mut self.render else { return };
+        render.welcome_upcoming(&mut self.backend);
         let begin = Instant::now();
         let outcome = if render.is_prepared {
             match &mut self.backend {
@@ -182,7 +223,7 @@ impl Worker {
                 None => Ok(()),
             }
         } else {
-            render.prepare(&mut self.backend, &mut self.factory, begin)
+            render.prepare(&mut self.backend, &self.factory, begin)
         };
         render.status.elapsed += begin.elapsed();
         match outcome {
@@ -215,6 +256,7 @@ impl Render {
             estimate_took: Duration::ZERO,
             pictured_samples: None,
             is_prepared: false,
+            upcoming: None,
             status: Status { run, phase: Phase::Preparing, ..Status::default() },
             job,
             plan,
@@ -257,7 +299,47 @@ impl Render {
         self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
     }
 
+    /// Lets another backend take over once it is ready; until then the present one goes on.
+    fn switch(&mut self, choice: BackendChoice, factory: &Arc<Mutex<Factory>>) {
+        self.upcoming = None;
+        if choice == self.choice {
+            return;
+        }
+        if self.is_prepared {
+            self.upcoming = Upcoming::start(choice.clone(), &self.job, factory);
+        }
+        if self.upcoming.is_none() {
+            self.change_backend(choice);
+        }
+    }
+
+    /// Hands over to a backend that has become ready.
+    fn welcome_upcoming(&mut self, backend: &mut Option<(BackendChoice, Box<dyn Renderer>)>) {
+        let Some(upcoming) = &self.upcoming else { return };
+        let outcome = match upcoming.outcome.try_recv() {
+            Ok(outcome) => outcome,
+            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Disconnected) => Err("its preparation ended by a panic".to_owned()),
+        };
+        match outcome {
+            Ok(mut ready) => {
+                self.status.backend = Some(ready.renderer.info());
+                self.status.say(ready.renderer.take_messages());
+                self.status.hierarchy += ready.renderer.hierarchy_time();
+                self.status.prepare += ready.took;
+                self.choice = upcoming.choice.clone();
+                *backend = Some((self.choice.clone(), ready.renderer));
+                self.sizer.restart();
+            }
+            Err(reason) => {
+                self.status.say(vec![format!("{reason}; the {} goes on", self.choice.name())]);
+            }
+        }
+        self.upcoming = None;
+    }
+
     fn change_backend(&mut self, choice: BackendChoice) {
+        self.upcoming = None;
         if choice != self.choice {
             self.choice = choice;
             self.is_prepared = false;
@@ -282,7 +364,7 @@ impl Render {
     fn prepare(
         &mut self,
         backend: &mut Option<(BackendChoice, Box<dyn Renderer>)>,
-        factory: &mut Factory,
+        factory: &Mutex<Factory>,
         begin: Instant,
     ) -> Result<(), RenderError> {
         // A film with everything in it needs no renderer.
@@ -291,7 +373,8 @@ impl Render {
             return Ok(());
         }
         if backend.as_ref().is_none_or(|(choice, _)| *choice != self.choice) {
-            match (factory(&self.choice), &backend) {
+            let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(&self.choice);
+            match (made, &backend) {
                 (Ok(renderer), _) => *backend = Some((self.choice.clone(), renderer)),
                 (Err(error), Some((old, _))) => {
                     self.status.messages.push(format!("{error}; the {} goes on", old.name()));
