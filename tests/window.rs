@@ -59,7 +59,9 @@ fn send(harness: &mut Harness<'_, Window>, command: Command) {
 /// The control of this name, not the text that says the name.
 fn control<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> {
     let mut named = harness.get_all_by_label(name);
-    named.find(|node| node.accesskit_node().role() != egui::Role::Label).expect(name)
+    named
+        .find(|node| node.accesskit_node().role() != egui::Role::Label)
+        .unwrap_or_else(|| panic!("no control {name}"))
 }
 
 const SMALL: &str = "--stage glass-schlick --size 32x18";

@@ -207,7 +207,10 @@ fn path_ui(window: &mut super::Window, ui: &mut Ui) {
     };
     let (pixel, sample) = (path.pixel, path.sample);
     ui.add_space(6.0);
-    ui.label(RichText::new(format!("Path of pixel {}, {}", pixel[0], pixel[1])).strong());
+    let heading = ui.label(RichText::new(format!("Path of pixel {}, {}", pixel[0], pixel[1])).strong());
+    if window.inspector.is_path_new {
+        heading.scroll_to_me(Some(egui::Align::Min));
+    }
     let mut wanted = Some(sample);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
@@ -230,11 +233,8 @@ fn path_ui(window: &mut super::Window, ui: &mut Ui) {
             wanted = None;
         }
     });
-    let list = ui.scope(|ui| list_rays(ui, &path.record, window.document.scene())).response;
-    if window.inspector.is_path_new {
-        list.scroll_to_me(Some(egui::Align::Min));
-        window.inspector.is_path_new = false;
-    }
+    list_rays(ui, &path.record, window.document.scene());
+    window.inspector.is_path_new = false;
     match wanted {
         None => window.inspector.path = None,
         Some(wanted) if wanted != sample => {

@@ -111,6 +111,8 @@ impl Remembered {
         if self.device.unavailable().is_some() {
             self.device = Device::Cpu;
         }
+        // A window that opens without any panel would be a riddle.
+        self.has_panels = true;
         self.bookmarks.retain(|bookmark| bookmark.camera().validate().is_ok());
         self
     }
