@@ -234,6 +234,12 @@ impl Command {
         }
     }
 
+    /// Whether it asks for something before it does anything.
+    pub fn opens_dialog(self) -> bool {
+        use Command::{Help, LoadReference, Open, Palette, Save, SaveScene};
+        matches!(self, Open | Save(_) | SaveScene | LoadReference | Palette | Help)
+    }
+
     /// The menu in which it stands.
     pub fn group(self) -> Group {
         match self {

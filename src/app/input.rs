@@ -32,6 +32,10 @@ impl Window {
                     context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
                 }
                 self.send(command);
+                if command.opens_dialog() {
+                    // What is typed after it, be it within this frame, is for the dialog.
+                    return;
+                }
             }
         }
         let also = |key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));

@@ -145,13 +145,18 @@ fn names(scene: &Scene, sphere: usize) -> (String, String) {
 }
 
 pub fn ui(window: &mut super::Window, ui: &mut Ui) {
-    let heading = RichText::new("Pixel").strong();
-    ui.label(heading);
-    let document = &window.document;
-    let Some(pixel) = &window.inspector.pixel else {
-        ui.label(RichText::new("Move the pointer over the picture.").color(ui.visuals().weak_text_color()));
-        return;
-    };
+    ui.label(RichText::new("Pixel").strong());
+    match &window.inspector.pixel {
+        Some(pixel) => pixel_ui(&window.document, pixel, ui),
+        None => {
+            let text = "Move the pointer over the picture.";
+            ui.label(RichText::new(text).color(ui.visuals().weak_text_color()));
+        }
+    }
+    path_ui(window, ui);
+}
+
+fn pixel_ui(document: &Document, pixel: &Pixel, ui: &mut Ui) {
     let [x, y] = pixel.at;
     let decimals = |v: [f64; 3]| v.map(|v| format!("{v:.5}"));
     egui::Grid::new("pixel").num_columns(4).spacing([8.0, 3.0]).show(ui, |ui| {
@@ -196,7 +201,6 @@ pub fn ui(window: &mut super::Window, ui: &mut Ui) {
         };
         ui.add(egui::Label::new(text).wrap());
     }
-    path_ui(window, ui);
 }
 
 fn path_ui(window: &mut super::Window, ui: &mut Ui) {

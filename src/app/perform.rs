@@ -156,7 +156,7 @@ impl Window {
                 let url = self.document.stage().map_or_else(|| crate::stages::BOOK_URL.into(), |s| s.url());
                 context.open_url(egui::OpenUrl::new_tab(url));
             }
-            Command::Palette => self.dialog = Some(Dialog::Palette(Palette::default())),
+            Command::Palette => self.dialog = Some(Dialog::Palette(Palette::typed(context))),
             Command::Help => self.dialog = Some(Dialog::Help),
         }
     }

@@ -274,7 +274,7 @@ fn handle_mouse(window: &mut Window, ui: &Ui, response: &egui::Response, rect: R
         let place = [f64::from(along.x), f64::from(along.y)];
         if response.double_clicked() {
             recentre(window, place);
-        } else if response.clicked() && modifiers.alt {
+        } else if response.clicked() && (modifiers.alt || is_alt_release(ui)) {
             let settings = window.document.settings;
             if let Some(pixel) = window.viewport.pixel_at(at, [settings.width, settings.height]) {
                 window.inspector.list_path(&window.document, pixel, 0);
@@ -283,6 +283,12 @@ fn handle_mouse(window: &mut Window, ui: &Ui, response: &egui::Response, rect: R
             focus(window, place);
         }
     }
+}
+
+/// Whether Alt was held when a button was let go: in a long frame it may have been let go since.
+fn is_alt_release(ui: &Ui) -> bool {
+    let is_it = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if modifiers.alt);
+    ui.input(|input| input.events.iter().any(is_it))
 }
 
 fn vec_turn(delta: Vec2) -> (f64, f64) {
@@ -411,6 +417,8 @@ fn paint_wipe(
     }
     let name = |stage: &crate::stages::Stage| format!("{} {}", stage.section, stage.title);
     let y = rect.top().max(painter.clip_rect().top()) + 8.0;
+    // Names that would reach beyond the picture stay within it.
+    let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
     if let Some(mine) = window.document.stage() {
         badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, &name(mine), font);
     }

@@ -26,6 +26,16 @@ fn matching(text: &str) -> Vec<Command> {
 }
 
 impl Palette {
+    /// With what was typed in the frame in which it opens.
+    pub fn typed(context: &egui::Context) -> Self {
+        let typed = |event: &egui::Event| match event {
+            egui::Event::Text(text) => Some(text.clone()),
+            _ => None,
+        };
+        let text = context.input(|input| input.events.iter().filter_map(typed).collect());
+        Palette { text, chosen: 0 }
+    }
+
     pub(super) fn ui(&mut self, window: &mut Window, ui: &mut Ui) -> Outcome {
         ui.set_width(ui.available_width());
         let (up, down, enter) = ui.input_mut(|input| {
