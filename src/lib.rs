@@ -4,6 +4,7 @@ pub mod app;
 pub mod backends;
 pub mod batch;
 pub mod cli;
+pub mod describe;
 pub mod diff;
 pub mod failure;
 pub mod film;

@@ -11,7 +11,7 @@ fn main() -> ExitCode {
 
 fn run() -> Result<ExitCode, Failure> {
     match cli::parse(std::env::args_os())? {
-        Request::Window => app::run().map_err(Failure::Input),
+        Request::Window(options) => app::run(*options).map_err(Failure::Input),
         Request::List => batch::list(),
         Request::SaveScene(options) => batch::save_scene(&options),
         Request::Merge(options) => batch::merge(&options),

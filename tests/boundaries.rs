@@ -20,7 +20,8 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("render_cpu", &["stages", "film", "render", "record", "sampling", "tables"]),
     ("render_gpu", &["stages", "film", "render", "record", "sampling", "tables"]),
     ("backends", &["film", "render", "render_cpu", "render_gpu"]),
-    ("progressive", &["film", "render", "backends"]),
+    ("progressive", &["stages", "film", "render", "backends"]),
+    ("describe", &["scene", "stages", "film", "recipe", "progressive"]),
     ("failure", &[]),
     (
         "cli",
@@ -52,6 +53,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "backends",
             "progressive",
             "cli",
+            "describe",
             "failure",
         ],
     ),
@@ -76,6 +78,8 @@ const ROOMS: &[(&str, &[&str])] = &[
 const CRATES: &[(&str, &[&str])] = &[
     ("egui", &["app"]),
     ("eframe", &["app"]),
+    ("egui_plot", &["app"]),
+    ("rfd", &["app"]),
     ("wgpu", &["render_gpu"]),
     ("rayon", &["render_cpu"]),
     ("fearless_simd", &["render_cpu"]),

@@ -7,7 +7,7 @@ mod values;
 
 pub use options::{
     BatchOptions, DiffOptions, JsonTarget, MergeOptions, PathChoice, RenderOptions, SaveSceneOptions,
-    SideChoice,
+    SideChoice, WindowOptions,
 };
 pub use raw::ProgressChoice;
 pub use sources::CliError;
@@ -21,7 +21,7 @@ use std::ffi::OsString;
 #[derive(Debug)]
 pub enum Request {
     /// Open the window.
-    Window,
+    Window(Box<WindowOptions>),
     /// List scenes, stages and devices.
     List,
     /// Write a scene file and render nothing.

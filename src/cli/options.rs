@@ -32,6 +32,27 @@ pub struct BatchOptions {
     pub json: Option<JsonTarget>,
 }
 
+/// What the window opens with.
+#[derive(Clone, Debug)]
+pub struct WindowOptions {
+    /// What is rendered.
+    pub recipe: Recipe,
+    /// The stage that it is from.
+    pub stage: Option<&'static Stage>,
+    /// The scene file that it is from.
+    pub file: Option<PathBuf>,
+    /// Who renders.
+    pub backend: BackendChoice,
+    /// Whether flags said who renders.
+    pub is_device_given: bool,
+    /// When it ends, if that was said.
+    pub plan: Option<Plan>,
+    /// The film that goes on.
+    pub resume: Option<PathBuf>,
+    /// Where the times of the window's frames go.
+    pub frame_log: Option<PathBuf>,
+}
+
 /// One picture.
 #[derive(Clone, Debug)]
 pub struct RenderOptions {
@@ -185,6 +206,9 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
 pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
     let backend = backend(&raw)?;
     check_film_names(&raw)?;
+    if !raw.batch && raw.save_scene.is_none() {
+        return Ok(Request::Window(Box::new(window(&raw, backend)?)));
+    }
     let (renders, directory) = if raw.picture.stage.as_deref() == Some("all") {
         let directory = directory_of_all(&raw)?;
         let renders = Stage::ALL
@@ -206,7 +230,6 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
     };
     match save_scene {
         Some(options) if !raw.batch => Ok(Request::SaveScene(Box::new(options))),
-        _ if !raw.batch => Ok(Request::Window),
         save_scene => Ok(Request::Batch(Box::new(BatchOptions {
             renders,
             directory,
@@ -216,6 +239,45 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
             json: raw.json.map(json_target),
         }))),
     }
+}
+
+fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliError> {
+    if raw.picture.stage.as_deref() == Some("all") {
+        return Err(CliError::Needs {
+            flag: "--stage all",
+            other: "--batch",
+            reason: "the window shows one stage at a time, and leads from each to the next",
+        });
+    }
+    for (flag, is_given) in [
+        ("--out", raw.out.is_some()),
+        ("--checkpoint", raw.checkpoint.is_some()),
+        ("--json", raw.json.is_some()),
+        ("--sample-range", raw.sample_range.is_some()),
+    ] {
+        if is_given {
+            let reason = "it is for rendering to files; in the window, use the File menu";
+            return Err(CliError::Needs { flag, other: "--batch", reason });
+        }
+    }
+    let mut source = sources::find(&raw.picture, raw.resume.as_deref())?;
+    sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    source.recipe.job()?;
+    let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
+    let is_file = raw.picture.scene.as_deref().is_some_and(sources::is_file);
+    Ok(WindowOptions {
+        plan: ends.then(|| plan(raw, &source.recipe)),
+        recipe: source.recipe,
+        stage: source.stage,
+        file: raw.picture.scene.as_ref().filter(|_| is_file).map(PathBuf::from),
+        backend,
+        is_device_given: raw.device != RawDevice::Auto
+            || raw.threads.is_some()
+            || raw.adapter.is_some()
+            || (raw.simd, raw.isa) != (Simd(None), Level(None)),
+        resume: raw.resume.clone(),
+        frame_log: raw.frame_log.clone(),
+    })
 }
 
 fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {

@@ -109,6 +109,10 @@ pub(super) struct RawRender {
     #[arg(long, value_name = "FILE|-", help_heading = "Files")]
     pub json: Option<PathBuf>,
 
+    /// Write the times of the window's frames
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub frame_log: Option<PathBuf>,
+
     /// Progress on standard error; auto: when it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,

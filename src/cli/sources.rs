@@ -105,9 +105,13 @@ pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<Source, Cl
 }
 
 fn scene(name: &str) -> Result<Recipe, CliError> {
-    let path = Path::new(name);
-    let is_file = path.extension().is_some() || path.components().count() > 1;
-    if is_file { Ok(file::load(path)?) } else { Ok(Recipe::find(name)?) }
+    if is_file(name) { Ok(file::load(Path::new(name))?) } else { Ok(Recipe::find(name)?) }
+}
+
+/// Whether `--scene` names a file: a name with an ending or a directory.
+pub(super) fn is_file(scene: &str) -> bool {
+    let path = Path::new(scene);
+    path.extension().is_some() || path.components().count() > 1
 }
 
 fn of_film(path: &Path) -> Result<Source, CliError> {

@@ -9,12 +9,14 @@ mod passes;
 mod plan;
 mod shared;
 mod status;
+mod view;
 mod worker;
 
 pub use passes::PassSizer;
 pub use plan::{EndReason, NOISE_TARGET_FIRST_SAMPLES, Plan};
 pub use shared::Picture;
 pub use status::{Contribution, HistoryPoint, Phase, Status};
+pub use view::{HEAT_LIMITS, Reference, View, heat_colour, heat_place, standard_error};
 
 use crate::backends::{self, BackendChoice, BackendError};
 use crate::film::Film;
@@ -133,14 +135,35 @@ impl Progressive {
         self.shared.status()
     }
 
-    /// The newest picture, if there has been one since the last call. Asks for the next, which is resolved on
-    /// the render thread after a pass: a picture that nobody takes costs nothing.
+    /// The newest picture, if there has been one since the last call. Asks for the next: see
+    /// [`Progressive::ask_for_picture`].
     pub fn take_picture(&self) -> Option<Picture> {
-        let picture = self.shared.take_picture();
+        let picture = self.newest_picture();
+        self.ask_for_picture();
+        picture
+    }
+
+    /// The newest picture, if there has been one since the last call.
+    pub fn newest_picture(&self) -> Option<Picture> {
+        self.shared.take_picture()
+    }
+
+    /// Asks for one picture, which is resolved on the render thread as soon as there is something new to see: a
+    /// picture that nobody asks for costs nothing.
+    pub fn ask_for_picture(&self) {
         if self.shared.want_picture() {
             self.send(Command::Look);
         }
-        picture
+    }
+
+    /// What pictures show from now on.
+    pub fn set_view(&self, view: View) {
+        self.send(Command::SetView(view));
+    }
+
+    /// Calls `notice` on the render thread when a picture is there or the phase has changed. It must be quick.
+    pub fn set_notice(&self, notice: impl Fn() + Send + 'static) {
+        self.shared.set_notice(Box::new(notice));
     }
 
     /// Runs `look` on the render thread with the film as of a pass's end; without a film it is dropped.

@@ -16,9 +16,11 @@ pub struct Picture {
     pub height: u32,
     /// Samples per pixel that it shows.
     pub samples_per_pixel: u64,
-    /// Three bytes a pixel, top row first, with the job's transfer.
+    /// Three bytes a pixel, top row first.
     pub rgb8: Vec<u8>,
 }
+
+type Notice = Box<dyn Fn() + Send>;
 
 #[derive(Default)]
 pub(super) struct Shared {
@@ -26,6 +28,7 @@ pub(super) struct Shared {
     changed: Condvar,
     picture: Mutex<Option<Picture>>,
     is_picture_wanted: AtomicBool,
+    notice: Mutex<Option<Notice>>,
 }
 
 impl Shared {
@@ -33,8 +36,24 @@ impl Shared {
     pub(super) fn publish(&self, status: &Status) {
         let mut mine = lock(&self.status);
         if status.run >= mine.run {
+            let is_other_phase = mine.phase != status.phase;
             mine.clone_from(status);
             self.changed.notify_all();
+            drop(mine);
+            if is_other_phase {
+                self.give_notice();
+            }
+        }
+    }
+
+    /// Sets what is called, on the render thread, when a picture is there or the phase has changed.
+    pub(super) fn set_notice(&self, notice: Notice) {
+        *lock(&self.notice) = Some(notice);
+    }
+
+    fn give_notice(&self) {
+        if let Some(notice) = lock(&self.notice).as_ref() {
+            notice();
         }
     }
 
@@ -56,6 +75,8 @@ impl Shared {
         let mut status = lock(&self.status);
         status.phase = Phase::Failed("the render thread broke off; its film is lost".to_owned());
         self.changed.notify_all();
+        drop(status);
+        self.give_notice();
     }
 
     pub(super) fn take_picture(&self) -> Option<Picture> {
@@ -74,7 +95,9 @@ impl Shared {
     pub(super) fn put_picture(&self, picture: Picture) {
         let mut slot = lock(&self.picture);
         *slot = Some(picture);
+        drop(slot);
         self.is_picture_wanted.store(false, Ordering::Release);
+        self.give_notice();
     }
 }
 

@@ -1,7 +1,7 @@
 //! The render thread: obeys commands, then renders a pass, and so on.
 
 use super::shared::{Picture, Shared};
-use super::{Factory, PassSizer, Phase, Plan, Status, Work};
+use super::{Factory, PassSizer, Phase, Plan, Status, View, Work};
 use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::progressive::{EndReason, HistoryPoint};
@@ -21,6 +21,7 @@ pub(super) enum Command {
     SetPlan(Plan),
     Inspect(Box<dyn FnOnce(&Film) + Send>),
     Look,
+    SetView(View),
     Take(Sender<Option<Film>>),
     Finish,
 }
@@ -34,6 +35,7 @@ pub(super) struct Worker {
     factory: Arc<Mutex<Factory>>,
     backend: Option<(BackendChoice, Box<dyn Renderer>)>,
     render: Option<Render>,
+    view: View,
 }
 
 /// The render at hand.
@@ -99,7 +101,14 @@ impl Drop for DeathNote {
 
 impl Worker {
     pub(super) fn new(commands: Receiver<Command>, shared: Arc<Shared>, factory: Factory) -> Self {
-        Worker { commands, shared, factory: Arc::new(Mutex::new(factory)), backend: None, render: None }
+        Worker {
+            commands,
+            shared,
+            factory: Arc::new(Mutex::new(factory)),
+            backend: None,
+            render: None,
+            view: View::Picture,
+        }
     }
 
     pub(super) fn run(mut self) {
@@ -126,7 +135,7 @@ impl Worker {
                 None => self.step(),
             }
             if let Some(render) = &mut self.render {
-                render.show(&self.shared);
+                render.show(&self.shared, &self.view);
             }
         }
     }
@@ -134,6 +143,13 @@ impl Worker {
     fn obey(&mut self, command: Command) {
         if let Command::Start { run, work, cancel } = command {
             self.start(run, *work, cancel);
+            return;
+        }
+        if let Command::SetView(view) = command {
+            self.view = view;
+            if let Some(render) = &mut self.render {
+                render.pictured_samples = None;
+            }
             return;
         }
         let Some(render) = &mut self.render else { return };
@@ -454,7 +470,7 @@ impl Render {
     }
 
     /// Resolves a picture if someone waits for one that he has not seen.
-    fn show(&mut self, shared: &Shared) {
+    fn show(&mut self, shared: &Shared, view: &View) {
         let samples = self.film.sample_count();
         let is_new = self.pictured_samples != Some(samples);
         if is_new && samples > 0 && shared.is_picture_wanted() && !self.cancel.load(Ordering::Relaxed) {
@@ -464,7 +480,7 @@ impl Render {
                 width: self.film.width(),
                 height: self.film.height(),
                 samples_per_pixel: samples,
-                rgb8: self.film.to_rgb8(self.job.rules().transfer),
+                rgb8: view.resolve(&self.film, self.job.rules().transfer),
             });
         }
     }

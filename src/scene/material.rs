@@ -48,6 +48,14 @@ impl Material {
         }
     }
 
+    /// The share that it reflects, linear RGB; glass has none of its own.
+    pub fn albedo(&self) -> Option<DVec3> {
+        match *self {
+            Material::Lambertian { albedo } | Material::Metal { albedo, .. } => Some(albedo),
+            Material::Dielectric { .. } => None,
+        }
+    }
+
     /// The book's word for it.
     pub fn kind(&self) -> &'static str {
         match self {

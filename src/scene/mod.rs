@@ -9,12 +9,14 @@ pub mod builtin;
 mod camera;
 mod error;
 mod material;
+mod pick;
 mod sphere;
 mod suggest;
 
 pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, VFOV_LIMITS_DEGREES};
 pub use error::SceneError;
 pub use material::{Material, NamedMaterial};
+pub use pick::Pick;
 pub use sphere::Sphere;
 pub(crate) use suggest::{or_nearest, similar_names};
 

@@ -1,0 +1,327 @@
+//! Everything that the user can ask for. Menus, buttons, shortcuts, palette and help read it from here.
+
+use super::Device;
+use super::remembered::Theme;
+use super::viewport::Show;
+use crate::output::OutputFormat;
+use crate::stages::Stage;
+use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+
+/// Where a command stands in the menus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Files.
+    File,
+    /// Changes.
+    Edit,
+    /// What is seen.
+    View,
+    /// Who renders.
+    Render,
+    /// Where in the book.
+    Stage,
+    /// Help.
+    Help,
+}
+
+impl Group {
+    /// The menus, in order.
+    pub const ALL: [Group; 6] =
+        [Group::File, Group::Edit, Group::View, Group::Render, Group::Stage, Group::Help];
+
+    /// The menu's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Group::File => "File",
+            Group::Edit => "Edit",
+            Group::View => "View",
+            Group::Render => "Render",
+            Group::Stage => "Stage",
+            Group::Help => "Help",
+        }
+    }
+}
+
+/// Something that the user can ask for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Open a picture, film or scene.
+    Open,
+    /// Save what is shown.
+    Save(OutputFormat),
+    /// Save the scene file.
+    SaveScene,
+    /// Put the command line on the clipboard.
+    CopyCommand,
+    /// Load a film to compare with.
+    LoadReference,
+    /// Close the window.
+    Quit,
+    /// Take back a change.
+    Undo,
+    /// Make it again.
+    Redo,
+    /// The stage's camera.
+    Home,
+    /// Everything as the stage has it.
+    ResetAll,
+    /// Remember the camera.
+    AddBookmark,
+    /// What the picture shows.
+    Show(Show),
+    /// Divider between this stage and another.
+    Wipe,
+    /// Heat map of the difference from the other stage.
+    WipeDifference,
+    /// Whole picture in the window.
+    Fit,
+    /// One pixel to one pixel.
+    ActualSize,
+    /// Larger.
+    ZoomIn,
+    /// Smaller.
+    ZoomOut,
+    /// All panels.
+    Panels,
+    /// The panel at the left.
+    Controls,
+    /// The panel at the right.
+    Info,
+    /// The plot.
+    Plot,
+    /// Full screen.
+    FullScreen,
+    /// Colours.
+    Theme(Theme),
+    /// Stop and go on.
+    Pause,
+    /// From the beginning.
+    Restart,
+    /// CPU to GPU and back.
+    SwitchDevice,
+    /// A certain device.
+    Device(Device),
+    /// The stage before.
+    PreviousStage,
+    /// The stage after.
+    NextStage,
+    /// A certain stage.
+    Stage(&'static Stage),
+    /// The book on the web.
+    Book,
+    /// All commands by name.
+    Palette,
+    /// Keyboard help.
+    Help,
+}
+
+const fn key(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::NONE, key))
+}
+
+const fn ctrl(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND, key))
+}
+
+const fn ctrl_shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
+}
+
+impl Command {
+    /// All of them, in the menus' order.
+    pub fn all() -> Vec<Command> {
+        use Command::*;
+        let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
+        all.extend([SaveScene, CopyCommand, LoadReference, Quit]);
+        all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
+        all.extend(super::viewport::Show::ALL.map(Show));
+        all.extend([Wipe, WipeDifference, Fit, ActualSize, ZoomIn, ZoomOut]);
+        all.extend([Panels, Controls, Info, Plot, FullScreen]);
+        all.extend(self::Theme::ALL.map(Theme));
+        all.extend([Pause, Restart, SwitchDevice]);
+        all.extend(super::Device::ALL.map(Device));
+        all.extend([PreviousStage, NextStage, Book]);
+        all.extend(crate::stages::Stage::ALL.iter().map(Stage));
+        all.extend([Palette, Help]);
+        all
+    }
+
+    /// What menus and palette call it.
+    pub fn name(self) -> String {
+        match self {
+            Command::Open => "Open…".into(),
+            Command::Save(OutputFormat::Png) => "Save as PNG…".into(),
+            Command::Save(OutputFormat::P6) => "Save as PPM (P6)…".into(),
+            Command::Save(OutputFormat::Exr) => "Save film (EXR checkpoint)…".into(),
+            Command::SaveScene => "Save scene file…".into(),
+            Command::CopyCommand => "Copy as command".into(),
+            Command::LoadReference => "Load reference film…".into(),
+            Command::Quit => "Quit".into(),
+            Command::Undo => "Undo".into(),
+            Command::Redo => "Redo".into(),
+            Command::Home => "Camera of the stage".into(),
+            Command::ResetAll => "Reset everything".into(),
+            Command::AddBookmark => "Bookmark this camera".into(),
+            Command::Show(show) => format!("Show {}", show.name()),
+            Command::Wipe => "Wipe against the other stage".into(),
+            Command::WipeDifference => "Difference from the other stage".into(),
+            Command::Fit => "Fit in the window".into(),
+            Command::ActualSize => "Actual size (100 %)".into(),
+            Command::ZoomIn => "Zoom in".into(),
+            Command::ZoomOut => "Zoom out".into(),
+            Command::Panels => "Hide or show all panels".into(),
+            Command::Controls => "Controls panel".into(),
+            Command::Info => "Stage and pixel panel".into(),
+            Command::Plot => "Error plot".into(),
+            Command::FullScreen => "Full screen".into(),
+            Command::Theme(theme) => format!("{} theme", theme.name()),
+            Command::Pause => "Pause or go on".into(),
+            Command::Restart => "Start again".into(),
+            Command::SwitchDevice => "Switch between CPU and GPU".into(),
+            Command::Device(device) => format!("Trace on {}", device.label()),
+            Command::PreviousStage => "Previous stage".into(),
+            Command::NextStage => "Next stage".into(),
+            Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
+            Command::Book => "Read this section of the book".into(),
+            Command::Palette => "Command palette".into(),
+            Command::Help => "Keyboard and mouse".into(),
+        }
+    }
+
+    /// What it does, in a sentence.
+    pub fn help(self) -> &'static str {
+        match self {
+            Command::Open => {
+                "Open a scene file (.toml), or restore the view of a .png, .ppm or .exr that Weekender wrote"
+            }
+            Command::Save(OutputFormat::Png) => "8-bit picture from the film, which says how it was made",
+            Command::Save(OutputFormat::P6) => "The book's format, as bytes",
+            Command::Save(OutputFormat::Exr) => {
+                "Linear picture with the exact sums: can be resumed and merged"
+            }
+            Command::SaveScene => "Scene, camera and settings as text",
+            Command::CopyCommand => "The command line that renders this picture; on the CPU to the bit",
+            Command::LoadReference => "A film (.exr) of the same size, for the view of the difference",
+            Command::Quit => "Close the window",
+            Command::Undo => "Take back the last change",
+            Command::Redo => "Make the change again",
+            Command::Home => "Back to the camera and lens that the stage has",
+            Command::ResetAll => "Camera, lens, settings and stop conditions as the stage has them",
+            Command::AddBookmark => "Keep camera and lens to come back to",
+            Command::Show(show) => show.help(),
+            Command::Wipe => "A divider to drag between this stage and its pair, or the next; same camera",
+            Command::WipeDifference => "Where this stage and its pair differ, and by how much",
+            Command::Fit => "The whole picture, as large as there is room",
+            Command::ActualSize => "One pixel of the picture on one of the screen",
+            Command::ZoomIn => "Larger; Ctrl and the wheel zoom at the pointer",
+            Command::ZoomOut => "Smaller; Ctrl and the wheel zoom at the pointer",
+            Command::Panels => "Nothing but the picture",
+            Command::Controls => "Camera, lens, render, stop and output",
+            Command::Info => "What the stage shows, and the pixel under the pointer",
+            Command::Plot => "Estimated error against seconds",
+            Command::FullScreen => "The whole screen",
+            Command::Theme(_) => "Colours of the window",
+            Command::Pause => "Nothing is lost by a pause",
+            Command::Restart => "Throw the samples away and begin again",
+            Command::SwitchDevice => "The same picture goes on",
+            Command::Device(device) => device.help(),
+            Command::PreviousStage => "One step back in the book",
+            Command::NextStage => "One step on in the book",
+            Command::Stage(stage) => stage.what_is_new,
+            Command::Book => "Opens the web browser",
+            Command::Palette => "Every command by its name",
+            Command::Help => "All keys, and what the mouse does",
+        }
+    }
+
+    /// Whether it asks for something before it does anything.
+    pub fn opens_dialog(self) -> bool {
+        use Command::{Help, LoadReference, Open, Palette, Save, SaveScene};
+        matches!(self, Open | Save(_) | SaveScene | LoadReference | Palette | Help)
+    }
+
+    /// The menu in which it stands.
+    pub fn group(self) -> Group {
+        match self {
+            Command::Open
+            | Command::Save(_)
+            | Command::SaveScene
+            | Command::CopyCommand
+            | Command::LoadReference
+            | Command::Quit => Group::File,
+            Command::Undo | Command::Redo | Command::Home | Command::ResetAll | Command::AddBookmark => {
+                Group::Edit
+            }
+            Command::Pause | Command::Restart | Command::SwitchDevice | Command::Device(_) => Group::Render,
+            Command::PreviousStage | Command::NextStage | Command::Stage(_) | Command::Book => Group::Stage,
+            Command::Palette | Command::Help => Group::Help,
+            _ => Group::View,
+        }
+    }
+
+    /// The keys that stand for it.
+    pub fn shortcut(self) -> Option<KeyboardShortcut> {
+        match self {
+            Command::Open => ctrl(Key::O),
+            Command::Save(OutputFormat::Png) => ctrl(Key::S),
+            Command::Save(OutputFormat::P6) => ctrl_shift(Key::S),
+            Command::Save(OutputFormat::Exr) => ctrl(Key::E),
+            Command::CopyCommand => ctrl_shift(Key::C),
+            Command::Quit => ctrl(Key::Q),
+            Command::Undo => ctrl(Key::Z),
+            Command::Redo => ctrl_shift(Key::Z),
+            Command::Home => key(Key::Home),
+            Command::AddBookmark => ctrl(Key::B),
+            Command::Show(show) => ctrl(show.key()),
+            Command::Wipe => key(Key::C),
+            Command::WipeDifference => key(Key::X),
+            Command::Fit => key(Key::F),
+            Command::ActualSize => key(Key::Num1),
+            Command::ZoomIn => key(Key::CloseBracket),
+            Command::ZoomOut => key(Key::OpenBracket),
+            Command::Panels => key(Key::Tab),
+            Command::Controls => key(Key::L),
+            Command::Info => key(Key::I),
+            Command::Plot => key(Key::P),
+            Command::FullScreen => key(Key::F11),
+            Command::Pause => key(Key::Space),
+            Command::Restart => key(Key::R),
+            Command::SwitchDevice => key(Key::G),
+            Command::PreviousStage => key(Key::PageUp),
+            Command::NextStage => key(Key::PageDown),
+            Command::Palette => ctrl(Key::P),
+            Command::Help => key(Key::F1),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn shortcuts_and_names_are_unique() {
+        let all = Command::all();
+        let names: HashSet<String> = all.iter().map(|command| command.name()).collect();
+        assert_eq!(names.len(), all.len());
+        let shortcuts: Vec<_> = all.iter().filter_map(|command| command.shortcut()).collect();
+        for (index, shortcut) in shortcuts.iter().enumerate() {
+            assert!(!shortcuts[..index].contains(shortcut), "{shortcut:?}");
+        }
+    }
+
+    #[test]
+    fn no_shortcut_is_a_flying_key() {
+        let flying = [Key::W, Key::A, Key::S, Key::D, Key::Q, Key::E].map(|key| (Modifiers::NONE, key));
+        for shortcut in Command::all().into_iter().filter_map(Command::shortcut) {
+            assert!(!flying.contains(&(shortcut.modifiers, shortcut.logical_key)));
+        }
+    }
+
+    #[test]
+    fn help_says_something() {
+        assert!(Command::all().into_iter().all(|command| command.help().len() > 8));
+    }
+}

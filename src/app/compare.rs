@@ -1,0 +1,268 @@
+//! A second picture beside the main one: another stage for the wipe, or the same scene's normals.
+
+use super::document::{Document, Origin};
+use super::files::Message;
+use super::tracer::{Tracer, Want};
+use super::viewport::Show;
+use crate::progressive::{Reference, View};
+use crate::recipe::Recipe;
+use crate::scene::Camera;
+use crate::stages::{Rules, Shading, Stage, Transfer};
+use eframe::egui;
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+
+/// How two stages are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// One at each side of a divider.
+    Wipe,
+    /// A heat map of where they differ.
+    Difference,
+}
+
+/// What the second picture is.
+#[derive(Clone, Copy, PartialEq)]
+enum Other {
+    Stage(&'static Stage),
+    Normals,
+}
+
+/// The second picture.
+pub struct Compare {
+    /// Whether and how two stages are compared.
+    pub mode: Option<Mode>,
+    /// With the next stage, where there is a pair.
+    pub is_with_next: bool,
+    /// Where the divider stands, `0..=1` of the picture's width.
+    pub divider: f32,
+    /// A film to compare with.
+    pub reference: Option<Arc<Reference>>,
+    /// The tracer of the second picture, once there has been one.
+    pub tracer: Option<Tracer>,
+    show: Show,
+    origin: Option<(Other, Arc<Origin>, Arc<Origin>)>,
+    is_awake: bool,
+    measured_samples: u64,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        Compare {
+            mode: None,
+            is_with_next: false,
+            divider: 0.5,
+            reference: None,
+            tracer: None,
+            show: Show::Picture,
+            origin: None,
+            is_awake: false,
+            measured_samples: 0,
+        }
+    }
+}
+
+impl Compare {
+    pub fn toggle(&mut self, mode: Mode) {
+        self.mode = if self.mode == Some(mode) { None } else { Some(mode) };
+        self.measured_samples = 0;
+    }
+
+    /// The stage that `stage` is compared with.
+    pub fn other_of(&self, stage: &'static Stage) -> Option<&'static Stage> {
+        let pair = stage.pair.and_then(|id| Stage::find(id).ok());
+        let next = stage.next().or_else(|| stage.previous());
+        if self.is_with_next { next.or(pair) } else { pair.or(next) }
+    }
+
+    /// Whether the normals take the main picture's place.
+    pub fn has_normals(&self) -> bool {
+        self.mode.is_none() && self.show == Show::Normals
+    }
+
+    /// Whether the stage that `stage` is compared with has been pictured.
+    pub fn has_picture(&self, stage: Option<&'static Stage>) -> bool {
+        let wanted = stage.and_then(|stage| self.other_of(stage));
+        let shown = self.tracer.as_ref().and_then(Tracer::shown);
+        wanted.is_some() && shown.is_some_and(|shown| shown.document.stage() == wanted)
+    }
+
+    pub fn pause(&self) {
+        if let Some(tracer) = &self.tracer {
+            tracer.pause();
+        }
+    }
+
+    pub fn resume(&self) {
+        if let Some(tracer) = &self.tracer {
+            tracer.resume();
+        }
+    }
+
+    /// What the main picture shows from now on.
+    pub fn show(&mut self, main: &Tracer, show: Show) {
+        self.show = show;
+        self.measured_samples = 0;
+        main.set_view(self.view());
+    }
+
+    fn view(&self) -> View {
+        match (self.show, &self.reference) {
+            (Show::Error, _) => View::StandardError,
+            (Show::Difference, Some(reference)) => View::Difference(Arc::clone(reference)),
+            _ => View::Picture,
+        }
+    }
+
+    /// The other stage's film has arrived.
+    pub fn measured(&mut self, main: &Tracer, reference: Reference) {
+        if self.mode == Some(Mode::Difference) {
+            main.set_view(View::Difference(Arc::new(reference)));
+        }
+    }
+
+    /// Has the second picture rendered, if there is to be one.
+    pub fn follow(
+        &mut self,
+        context: &egui::Context,
+        want: &Want<'_>,
+        main: &Tracer,
+        sender: &Sender<Message>,
+    ) {
+        let other = match (self.mode, want.document.stage()) {
+            (Some(_), Some(stage)) => self.other_of(stage).map(Other::Stage),
+            (None, _) if self.show == Show::Normals && want.document.rules().are_finished() => {
+                Some(Other::Normals)
+            }
+            _ => None,
+        };
+        let Some(other) = other else {
+            if let Some(tracer) = &mut self.tracer {
+                tracer.abandon();
+            }
+            if self.measured_samples != 0 || self.mode.is_some() {
+                self.mode = None;
+                self.measured_samples = 0;
+                main.set_view(self.view());
+            }
+            return;
+        };
+        if self.tracer.is_none() {
+            // Without a second thread there is no second picture, and nothing else is lost.
+            self.tracer = Tracer::new().ok();
+        }
+        let document = self.document_of(other, want.document);
+        let Some(tracer) = &mut self.tracer else { return };
+        if !self.is_awake {
+            self.is_awake = true;
+            tracer.wake(context);
+        }
+        let is_new = tracer.poll(context);
+        // Both pictures end alike, so that what differs is not the noise.
+        let want = Want {
+            document: &document,
+            backend: want.backend,
+            stop: document.stop,
+            is_moving: want.is_moving,
+        };
+        if tracer.want(&want).is_err() {
+            self.mode = None;
+        }
+        let is_difference = self.mode == Some(Mode::Difference);
+        if is_difference && is_new && tracer.is_full(&document) {
+            self.measured_samples = tracer.status().samples_per_pixel.max(1);
+            let (sender, context) = (sender.clone(), context.clone());
+            tracer.inspect(move |film| {
+                // A window that has been closed wants no more pictures.
+                let _ = sender.send(Message::Measured(Reference::of(film)));
+                context.request_repaint();
+            });
+        } else if !is_difference && self.measured_samples != 0 {
+            self.measured_samples = 0;
+            main.set_view(self.view());
+        }
+    }
+
+    fn document_of(&mut self, other: Other, mine: &Document) -> Document {
+        let is_kept =
+            matches!(&self.origin, Some((kept, of, _)) if *kept == other && Arc::ptr_eq(of, &mine.origin));
+        if !is_kept {
+            self.origin = None;
+        }
+        let (_, _, origin) = self.origin.get_or_insert_with(|| {
+            let origin = match other {
+                Other::Stage(stage) => Origin::of_stage(stage),
+                Other::Normals => {
+                    let rules =
+                        Rules { shading: Shading::Normals, transfer: Transfer::Linear, ..*mine.rules() };
+                    let recipe = Recipe { rules, ..mine.origin.recipe.clone() };
+                    Origin { recipe, source: mine.origin.source.clone() }
+                }
+            };
+            (other, Arc::clone(&mine.origin), Arc::new(origin))
+        });
+        let (theirs, base) = (&origin.recipe, &mine.origin.recipe);
+        let mut settings = mine.settings;
+        if theirs.settings.max_depth != base.settings.max_depth {
+            settings.max_depth = theirs.settings.max_depth;
+        }
+        let mut stop = mine.stop;
+        if other == Other::Normals {
+            stop.samples = Some(stop.samples.unwrap_or(u64::MAX).min(64));
+        } else if super::document::Stop::for_recipe(theirs) != super::document::Stop::for_recipe(base) {
+            stop = super::document::Stop::for_recipe(theirs);
+        }
+        Document {
+            camera: camera_of(&mine.camera, &base.camera, &theirs.camera),
+            settings,
+            stop,
+            origin: Arc::clone(origin),
+        }
+    }
+}
+
+/// The same camera, but for that in which the two stages differ: that is what is to be seen.
+fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
+    fn choose<T: PartialEq>(mine: T, base: T, theirs: T) -> T {
+        if base == theirs { mine } else { theirs }
+    }
+    Camera {
+        look_from: choose(mine.look_from, base.look_from, theirs.look_from),
+        look_at: choose(mine.look_at, base.look_at, theirs.look_at),
+        vup: choose(mine.vup, base.vup, theirs.vup),
+        vfov_degrees: choose(mine.vfov_degrees, base.vfov_degrees, theirs.vfov_degrees),
+        defocus_angle_degrees: choose(
+            mine.defocus_angle_degrees,
+            base.defocus_angle_degrees,
+            theirs.defocus_angle_degrees,
+        ),
+        focus_distance: choose(mine.focus_distance, base.focus_distance, theirs.focus_distance),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_others_camera_moves_along_but_keeps_its_own() {
+        let base = Camera::BOOK;
+        let theirs = Camera { vfov_degrees: 30.0, ..base };
+        let mine = Camera { look_from: glam::DVec3::Z, vfov_degrees: 80.0, ..base };
+        let camera = camera_of(&mine, &base, &theirs);
+        assert_eq!((camera.look_from, camera.vfov_degrees), (glam::DVec3::Z, 30.0));
+        assert_eq!(camera_of(&mine, &base, &base), mine);
+    }
+
+    #[test]
+    fn every_stage_has_something_to_be_compared_with() {
+        let mut compare = Compare::default();
+        for stage in Stage::ALL {
+            compare.is_with_next = false;
+            let first = compare.other_of(stage);
+            assert!(first.is_some_and(|other| other != stage));
+            compare.is_with_next = true;
+            assert!(compare.other_of(stage).is_some_and(|other| other != stage));
+        }
+    }
+}

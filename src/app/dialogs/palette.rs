@@ -1,0 +1,116 @@
+//! The command palette: type a part of a name, Enter.
+
+use super::Outcome;
+use crate::app::command::Command;
+use crate::app::window::Window;
+use eframe::egui::{self, Key, Modifiers, RichText, Ui};
+
+/// What was typed, and which line is chosen.
+#[derive(Default)]
+pub struct Palette {
+    text: String,
+    chosen: usize,
+}
+
+/// Commands whose names or help have every word of `text`: the one of this name, then those where the name has
+/// them, then the others.
+fn matching(text: &str) -> Vec<Command> {
+    let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
+    let has = |place: &str| words.iter().all(|word| place.to_lowercase().contains(word.as_str()));
+    let all = || Command::all().into_iter().filter(|command| *command != Command::Palette);
+    let is_it = |command: &Command| command.name() == text;
+    let by_name = |command: &Command| has(&command.name()) && !is_it(command);
+    let by_help =
+        |command: &Command| !has(&command.name()) && has(&format!("{} {}", command.name(), command.help()));
+    all().filter(is_it).chain(all().filter(by_name)).chain(all().filter(by_help)).collect()
+}
+
+impl Palette {
+    /// With what was typed in the frame in which it opens.
+    pub fn typed(context: &egui::Context) -> Self {
+        let typed = |event: &egui::Event| match event {
+            egui::Event::Text(text) => Some(text.clone()),
+            _ => None,
+        };
+        let text = context.input(|input| input.events.iter().filter_map(typed).collect());
+        Palette { text, chosen: 0 }
+    }
+
+    pub(super) fn ui(&mut self, window: &mut Window, ui: &mut Ui) -> Outcome {
+        ui.set_width(ui.available_width());
+        let (up, down, enter) = ui.input_mut(|input| {
+            (
+                input.consume_key(Modifiers::NONE, Key::ArrowUp),
+                input.consume_key(Modifiers::NONE, Key::ArrowDown),
+                input.key_pressed(Key::Enter),
+            )
+        });
+        let edit = egui::TextEdit::singleline(&mut self.text)
+            .hint_text("What do you want to do?")
+            .desired_width(f32::INFINITY);
+        let response = ui.add(edit).accessible_name("Command");
+        response.request_focus();
+        if response.changed() {
+            self.chosen = 0;
+        }
+        let commands = matching(&self.text);
+        let last = commands.len().saturating_sub(1);
+        if down {
+            self.chosen = (self.chosen + 1).min(last);
+        }
+        if up {
+            self.chosen = self.chosen.saturating_sub(1);
+        }
+        let mut run = enter.then(|| commands.get(self.chosen).copied()).flatten();
+        ui.add_space(6.0);
+        egui::ScrollArea::vertical().max_height(360.0).auto_shrink([false, true]).show(ui, |ui| {
+            if commands.is_empty() {
+                ui.label(RichText::new("No command is called so").color(ui.visuals().weak_text_color()));
+            }
+            for (index, command) in commands.iter().enumerate() {
+                let useless = window.useless(*command);
+                let mut button = egui::Button::selectable(index == self.chosen, command.name());
+                if let Some(shortcut) = command.shortcut() {
+                    button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+                }
+                let button = button.min_size(egui::vec2(ui.available_width(), 0.0));
+                let response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
+                let response = response.on_disabled_hover_text(useless.unwrap_or_default());
+                if index == self.chosen && (up || down) {
+                    response.scroll_to_me(None);
+                }
+                if response.clicked() {
+                    run = Some(*command);
+                }
+            }
+        });
+        match run {
+            Some(command) => {
+                window.send(command);
+                Outcome::Close
+            }
+            None => Outcome::Stay,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::Stage;
+
+    #[test]
+    fn every_command_is_found_by_its_name() {
+        for command in Command::all().into_iter().filter(|command| *command != Command::Palette) {
+            assert!(matching(&command.name()).contains(&command), "{command:?}");
+        }
+        assert!(matching("xyzzy").is_empty());
+    }
+
+    #[test]
+    fn names_come_before_help() {
+        assert_eq!(matching("undo").first(), Some(&Command::Undo));
+        let stage = Stage::find("glass-schlick").unwrap();
+        assert_eq!(matching("11.4").first(), Some(&Command::Stage(stage)));
+    }
+}

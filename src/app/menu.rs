@@ -1,0 +1,240 @@
+//! The bar at the top: menus, stage, device, pause and save.
+
+use super::command::{Command, Group};
+use super::device::Device;
+use super::theme;
+use super::viewport::Show;
+use super::window::Window;
+use crate::output::OutputFormat;
+use crate::stages::Stage;
+use eframe::egui::{self, Align, Button, Layout, RichText, Ui};
+
+pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
+    let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(10, 6));
+    egui::Panel::top("menu").frame(frame).show(ui, |ui| {
+        let height = ui.spacing().interact_size.y + 2.0;
+        ui.horizontal(|ui| {
+            ui.set_min_height(height);
+            ui.scope(|ui| {
+                egui::containers::menu::menu_style(ui.style_mut());
+                ui.spacing_mut().item_spacing.x = 2.0;
+                menus(window, ui);
+            });
+            if !is_narrow {
+                ui.add_space(12.0);
+                stage_bar(window, ui, true);
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(window, ui));
+            }
+        });
+        if is_narrow {
+            ui.horizontal_wrapped(|ui| {
+                stage_bar(window, ui, false);
+                ui.separator();
+                devices(window, ui);
+                pause(window, ui);
+                save(window, ui);
+            });
+        }
+    });
+}
+
+fn menus(window: &mut Window, ui: &mut Ui) {
+    for group in Group::ALL {
+        ui.menu_button(group.name(), |ui| {
+            ui.set_min_width(230.0);
+            if group == Group::Stage {
+                stage_menu(window, ui);
+                return;
+            }
+            let mut last = None;
+            for command in Command::all().into_iter().filter(|command| command.group() == group) {
+                let section = section(command);
+                if last.is_some_and(|last| last != section) {
+                    ui.separator();
+                }
+                last = Some(section);
+                item(window, ui, command);
+            }
+        });
+    }
+}
+
+/// Commands with the same number stand together.
+fn section(command: Command) -> u8 {
+    match command {
+        Command::Save(_) | Command::SaveScene => 1,
+        Command::CopyCommand => 2,
+        Command::LoadReference => 3,
+        Command::Quit => 4,
+        Command::Home | Command::ResetAll => 1,
+        Command::AddBookmark => 2,
+        Command::Wipe | Command::WipeDifference => 1,
+        Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => 2,
+        Command::Panels | Command::Controls | Command::Info | Command::Plot | Command::FullScreen => 3,
+        Command::Theme(_) => 4,
+        Command::Device(_) => 1,
+        _ => 0,
+    }
+}
+
+fn stage_menu(window: &mut Window, ui: &mut Ui) {
+    for command in [Command::PreviousStage, Command::NextStage, Command::Book] {
+        item(window, ui, command);
+    }
+    ui.separator();
+    stage_list(window, ui);
+}
+
+/// All stages by chapter.
+fn stage_list(window: &mut Window, ui: &mut Ui) {
+    egui::ScrollArea::vertical().max_height(460.0).show(ui, |ui| {
+        let mut chapter = "";
+        for stage in Stage::ALL {
+            if stage.chapter() != chapter {
+                chapter = stage.chapter();
+                ui.add_space(4.0);
+                let heading = format!("{chapter}  {}", stage.chapter_title);
+                ui.label(RichText::new(heading).small().color(ui.visuals().weak_text_color()));
+            }
+            item(window, ui, Command::Stage(stage));
+        }
+    });
+}
+
+/// A command as a line of a menu.
+pub fn item(window: &mut Window, ui: &mut Ui, command: Command) {
+    let useless = window.useless(command);
+    let mut button = Button::selectable(is_on(window, command), command.name());
+    if let Some(shortcut) = command.shortcut() {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    }
+    let width = ui.available_width();
+    let button = button.min_size(egui::vec2(width, 0.0));
+    let mut response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
+    if let Some(reason) = useless {
+        response = response.on_disabled_hover_text(reason);
+    }
+    if response.clicked() {
+        window.send(command);
+        ui.close();
+    }
+}
+
+fn is_on(window: &Window, command: Command) -> bool {
+    use super::compare::Mode;
+    let remembered = &window.remembered;
+    match command {
+        Command::Show(show) => {
+            window.viewport.show == show && (show != Show::Picture || window.compare.mode.is_none())
+        }
+        Command::Wipe => window.compare.mode == Some(Mode::Wipe),
+        Command::WipeDifference => window.compare.mode == Some(Mode::Difference),
+        Command::Controls => remembered.has_controls,
+        Command::Info => remembered.has_info,
+        Command::Plot => remembered.has_plot,
+        Command::FullScreen => window.is_full_screen,
+        Command::Theme(theme) => remembered.theme == theme,
+        Command::Device(device) => remembered.device == device,
+        Command::Stage(stage) => window.document.stage() == Some(stage),
+        _ => false,
+    }
+}
+
+fn stage_bar(window: &mut Window, ui: &mut Ui, is_wide: bool) {
+    ui.spacing_mut().item_spacing.x = 4.0;
+    step(window, ui, Command::PreviousStage, "‹");
+    let title = match window.document.stage() {
+        Some(stage) => format!("{}  {}", stage.section, stage.title),
+        None => window.document.origin.recipe.name.clone(),
+    };
+    let width = if is_wide { (ui.available_width() - 400.0).clamp(160.0, 340.0) } else { 240.0 };
+    let button = Button::new(RichText::new(title).strong()).min_size(egui::vec2(width, 0.0)).truncate();
+    let sized = ui.scope(|ui| {
+        ui.set_max_width(width);
+        egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
+            ui.set_min_width(260.0);
+            stage_list(window, ui);
+        })
+    });
+    sized.inner.0.on_hover_text("All stages of the book").accessible_name("Choose a stage");
+    step(window, ui, Command::NextStage, "›");
+}
+
+fn step(window: &mut Window, ui: &mut Ui, command: Command, label: &str) {
+    let useless = window.useless(command);
+    let response = ui.add_enabled(useless.is_none(), Button::new(label)).accessible_name(command.name());
+    let response =
+        response.on_hover_text(with_keys(ui, command)).on_disabled_hover_text(useless.unwrap_or_default());
+    if response.clicked() {
+        window.send(command);
+    }
+}
+
+/// What a command does, with its keys.
+fn with_keys(ui: &Ui, command: Command) -> String {
+    match command.shortcut() {
+        Some(shortcut) => format!("{} ({})", command.help(), ui.ctx().format_shortcut(&shortcut)),
+        None => command.help().to_owned(),
+    }
+}
+
+/// From right to left.
+fn buttons(window: &mut Window, ui: &mut Ui) {
+    save(window, ui);
+    pause(window, ui);
+    ui.add_space(8.0);
+    ui.spacing_mut().item_spacing.x = 3.0;
+    for device in Device::ALL.into_iter().rev() {
+        device_button(window, ui, device);
+    }
+}
+
+fn save(window: &mut Window, ui: &mut Ui) {
+    let command = Command::Save(OutputFormat::Png);
+    let response = ui.button("Save").on_hover_text(with_keys(ui, command));
+    if response.clicked() {
+        window.send(command);
+    }
+}
+
+fn pause(window: &mut Window, ui: &mut Ui) {
+    // Both words in one width, so that nothing beside it moves.
+    let label = if window.is_paused { "Go on" } else { "Pause" };
+    let button = Button::new(label).min_size(egui::vec2(58.0, 0.0)).selected(window.is_paused);
+    let can_pause = window.is_working() || window.is_paused;
+    let response = ui
+        .add_enabled(can_pause, button)
+        .on_hover_text(with_keys(ui, Command::Pause))
+        .on_disabled_hover_text("The picture is done; see Stop for when it ends");
+    if response.clicked() {
+        window.send(Command::Pause);
+    }
+}
+
+fn devices(window: &mut Window, ui: &mut Ui) {
+    ui.spacing_mut().item_spacing.x = 3.0;
+    for device in Device::ALL {
+        device_button(window, ui, device);
+    }
+}
+
+fn device_button(window: &mut Window, ui: &mut Ui, device: Device) {
+    let is_chosen = window.remembered.device == device;
+    let unavailable = device.unavailable();
+    let mut label = RichText::new(device.label());
+    if is_chosen {
+        label = label.color(ui.visuals().selection.stroke.color);
+    }
+    let mut button = Button::new(label);
+    if is_chosen {
+        button = button.fill(theme::accent(ui));
+    }
+    let response = ui
+        .add_enabled(unavailable.is_none(), button)
+        .on_hover_text(format!("{}. The same picture goes on. (G switches CPU and GPU)", device.long_help()))
+        .on_disabled_hover_text(unavailable.unwrap_or_default())
+        .accessible_name(Command::Device(device).name());
+    if response.clicked() {
+        window.send(Command::Device(device));
+    }
+}

@@ -1,0 +1,82 @@
+//! The window: a picture that gets better while one watches, and everything that one can do to it.
+//!
+//! [`Window`] holds all state. Menus, buttons, shortcuts and the palette all send a [`Command`], which
+//! [`Window::perform`] carries out. The tracer has a thread of its own, which this one never waits for.
+
+mod command;
+mod compare;
+mod device;
+mod dialogs;
+mod document;
+mod files;
+mod frame_log;
+mod input;
+mod inspector;
+mod menu;
+mod navigation;
+mod panels;
+mod perform;
+mod plot;
+mod remembered;
+mod stage_text;
+mod status_bar;
+mod theme;
+mod toasts;
+mod tracer;
+mod viewport;
+mod widgets;
+mod window;
+
+pub use command::{Command, Group};
+pub use device::Device;
+pub use document::{Document, Origin, Source, Stop};
+pub use remembered::Theme;
+pub use window::Window;
+
+use crate::cli::WindowOptions;
+use anyhow::{Result, anyhow, bail};
+use eframe::egui;
+use std::process::ExitCode;
+
+/// What to do where there is no window to be had.
+const REMEDY: &str = "add --batch to render to a file without a window, for example: \
+                      weekender --batch --stage glass-schlick --out glass.png";
+
+/// Opens the window and returns when it is closed.
+///
+/// # Errors
+/// If there is no display, or nothing that can draw on it; the message says how to do without.
+pub fn run(options: WindowOptions) -> Result<ExitCode> {
+    if !has_display() {
+        bail!(
+            "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); {REMEDY}"
+        );
+    }
+    let native = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Weekender")
+            .with_app_id("weekender")
+            .with_inner_size([1280.0, 800.0])
+            .with_min_inner_size([480.0, 320.0])
+            .with_icon(theme::icon())
+            .with_drag_and_drop(true),
+        dithering: false,
+        ..Default::default()
+    };
+    let create = Box::new(|context: &eframe::CreationContext<'_>| {
+        Ok(Box::new(Window::new(options, context.storage)?) as Box<dyn eframe::App>)
+    });
+    eframe::run_native("weekender", native, create)
+        .map_err(|error| anyhow!("the window cannot be opened: {error}; {REMEDY}"))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Whether the system has somewhere to put a window.
+fn has_display() -> bool {
+    if !cfg!(all(unix, not(target_vendor = "apple"))) {
+        return true;
+    }
+    ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
+        .iter()
+        .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
+}

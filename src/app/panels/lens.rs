@@ -1,0 +1,56 @@
+//! The lens: how blurred, and where it is sharp.
+
+use super::Group;
+use crate::app::widgets::{About, check, slider};
+use crate::app::window::Window;
+use crate::scene::Camera;
+use eframe::egui::{self, Ui};
+
+pub(super) const GROUP: Group = Group { name: "Lens", ui, is_changed, reset };
+
+fn lens(camera: &Camera) -> (f64, Option<f64>) {
+    (camera.defocus_angle_degrees, camera.focus_distance)
+}
+
+fn is_changed(window: &Window) -> bool {
+    lens(&window.document().camera) != lens(&window.document().origin.recipe.camera)
+}
+
+fn reset(window: &mut Window) {
+    let (angle, focus) = lens(&window.document().origin.recipe.camera);
+    let camera = &mut window.document_mut().camera;
+    camera.defocus_angle_degrees = angle;
+    camera.focus_distance = focus;
+}
+
+fn ui(window: &mut Window, ui: &mut Ui) {
+    let no_rays = super::camera::useless(window);
+    let camera = &mut window.document_mut().camera;
+    let defocus = About::new(
+        "Defocus angle",
+        "Angle of the cone from the focus point to the lens, degrees; 0 is a pinhole (defocus_angle)",
+    );
+    slider(ui, defocus.useless_if(no_rays), &mut camera.defocus_angle_degrees, 0.0..=30.0, |slider| {
+        slider.suffix("°").max_decimals(2).clamping(egui::SliderClamping::Edits)
+    });
+    camera.defocus_angle_degrees = camera.defocus_angle_degrees.min(178.9);
+    let pinhole = (camera.defocus_angle_degrees == 0.0)
+        .then_some("A pinhole is sharp everywhere: open the defocus angle");
+    let useless = no_rays.or(pinhole);
+    let mut follows = camera.focus_distance.is_none();
+    let about = About::new("Focus on Look at", "Keep the point that is looked at sharp");
+    if check(ui, about.useless_if(useless), &mut follows).changed() {
+        camera.focus_distance = (!follows).then(|| camera.effective_focus_distance());
+    }
+    let about = About::new(
+        "Focus distance",
+        "Distance to the plane that is sharp, scene units (focus_distance). A click on the picture sets it too",
+    );
+    let mut distance = camera.effective_focus_distance();
+    let slider = slider(ui, about.useless_if(useless), &mut distance, 0.01..=1000.0, |slider| {
+        slider.logarithmic(true).max_decimals(3).clamping(egui::SliderClamping::Never)
+    });
+    if slider.changed() && distance > 0.0 {
+        camera.focus_distance = Some(distance);
+    }
+}

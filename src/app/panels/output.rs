@@ -1,0 +1,31 @@
+//! What becomes of the picture.
+
+use super::Group;
+use crate::app::command::Command;
+use crate::app::window::Window;
+use crate::output::OutputFormat;
+use eframe::egui::{self, Ui};
+
+pub(super) const GROUP: Group = Group { name: "Output", ui, is_changed: |_| false, reset: |_| {} };
+
+fn ui(window: &mut Window, ui: &mut Ui) {
+    ui.horizontal_wrapped(|ui| {
+        for (name, command) in [
+            ("PNG", Command::Save(OutputFormat::Png)),
+            ("PPM", Command::Save(OutputFormat::P6)),
+            ("EXR film", Command::Save(OutputFormat::Exr)),
+            ("Scene", Command::SaveScene),
+        ] {
+            let response = ui.button(name).on_hover_text(command.help());
+            if response.accessible_name(format!("Save {name}")).clicked() {
+                window.send(command);
+            }
+        }
+    });
+    let command = Command::CopyCommand;
+    let width = ui.available_width();
+    let button = egui::Button::new(command.name()).min_size(egui::vec2(width, 0.0));
+    if ui.add(button).on_hover_text(command.help()).clicked() {
+        window.send(command);
+    }
+}

@@ -1,0 +1,148 @@
+//! Who renders, and how.
+
+use super::Group;
+use crate::app::device::{Device, core_count, lane_counts};
+use crate::app::widgets::{About, check, control, under_name, whole};
+use crate::app::window::Window;
+use crate::render::{DEPTH_LIMIT, SIZE_LIMIT, SamplerKind};
+use crate::stages::Shading;
+use eframe::egui::{self, ComboBox, DragValue, Ui};
+
+pub(super) const GROUP: Group = Group { name: "Render", ui, is_changed, reset };
+
+fn is_changed(window: &Window) -> bool {
+    window.document().settings != window.document().origin.recipe.settings
+}
+
+fn reset(window: &mut Window) {
+    let settings = window.document().origin.recipe.settings;
+    window.document_mut().settings = settings;
+}
+
+fn ui(window: &mut Window, ui: &mut Ui) {
+    device(window, ui);
+    lanes_and_threads(window, ui);
+    size(window, ui);
+    let shading = window.document().rules().shading;
+    let no_rays = super::camera::useless(window);
+    let one_ray =
+        (shading != Shading::Path).then_some("In this stage a ray sees no further than its first hit");
+    let no_chance = (!window.document().rules().antialiasing && shading != Shading::Path)
+        .then_some("In this stage nothing depends on chance");
+
+    let settings = &mut window.document_mut().settings;
+    let mut depth = u64::from(settings.max_depth);
+    let about = About::new("Depth", "Most rays of a path, the camera's included (max_depth)");
+    whole(ui, about.useless_if(no_rays.or(one_ray)), &mut depth, 1..=u64::from(DEPTH_LIMIT), 0.2);
+    settings.max_depth = u32::try_from(depth).unwrap_or(DEPTH_LIMIT);
+
+    let about = About::new(
+        "Sampler",
+        "Where random numbers come from: Sobol points need fewer samples, independent ones are the book's",
+    );
+    control(ui, about.useless_if(no_chance), |ui| {
+        ComboBox::from_id_salt("sampler")
+            .width(ui.available_width())
+            .selected_text(settings.sampler.name())
+            .show_ui(ui, |ui| {
+                for sampler in SamplerKind::ALL {
+                    ui.selectable_value(&mut settings.sampler, sampler, sampler.name());
+                }
+            })
+            .response
+    });
+    let mut seed = u64::from(settings.seed);
+    let about = About::new("Seed", "Chooses among pictures that differ in noise alone");
+    whole(ui, about.useless_if(no_chance), &mut seed, 0..=u64::from(u32::MAX), 0.05);
+    settings.seed = u32::try_from(seed).unwrap_or(u32::MAX);
+    let about = About::new(
+        "Estimate error",
+        "Keep the samples in two halves, whose difference tells the error; off takes half the memory",
+    );
+    check(ui, about, &mut settings.estimate_error);
+}
+
+fn device(window: &mut Window, ui: &mut Ui) {
+    let chosen = window.remembered_mut().device;
+    let about = About::new("Device", "Who traces. Switching does not restart: the same film goes on (G)");
+    control(ui, about, |ui| {
+        ComboBox::from_id_salt("device")
+            .width(ui.available_width())
+            .selected_text(chosen.label())
+            .show_ui(ui, |ui| {
+                for device in Device::ALL {
+                    let reason = device.unavailable();
+                    let button = egui::Button::selectable(device == chosen, device.label());
+                    let response = ui.add_enabled(reason.is_none(), button).on_hover_text(device.long_help());
+                    if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() {
+                        window.remembered_mut().device = device;
+                        ui.close();
+                    }
+                }
+            })
+            .response
+    });
+}
+
+fn lanes_and_threads(window: &mut Window, ui: &mut Ui) {
+    let remembered = window.remembered_mut();
+    let scalar = (remembered.device == Device::Reference).then_some("The reference traces one ray at a time");
+    let not_cpu =
+        (remembered.device == Device::Gpu).then_some("The graphics adapter has lanes and threads of its own");
+    let word = |count: Option<usize>| count.map_or_else(|| "automatic".to_owned(), |count| count.to_string());
+    let about = About::new(
+        "Lanes",
+        "Rays in a packet. Switching does not restart: the samples are the same to the bit",
+    );
+    control(ui, about.useless_if(not_cpu.or(scalar)), |ui| {
+        ComboBox::from_id_salt("lanes")
+            .width(ui.available_width())
+            .selected_text(word(remembered.lanes))
+            .show_ui(ui, |ui| {
+                for lanes in [None].into_iter().chain(lane_counts().into_iter().map(Some)) {
+                    ui.selectable_value(&mut remembered.lanes, lanes, word(lanes));
+                }
+            })
+            .response
+    });
+    let about = About::new(
+        "Threads",
+        "Threads that trace. Automatic leaves a core to the window where there are more than two",
+    );
+    control(ui, about.useless_if(not_cpu), |ui| {
+        ComboBox::from_id_salt("threads")
+            .width(ui.available_width())
+            .selected_text(word(remembered.threads))
+            .show_ui(ui, |ui| {
+                for threads in [None].into_iter().chain((1..=core_count()).map(Some)) {
+                    ui.selectable_value(&mut remembered.threads, threads, word(threads));
+                }
+            })
+            .response
+    });
+}
+
+fn size(window: &mut Window, ui: &mut Ui) {
+    let settings = &mut window.document_mut().settings;
+    let about = About::new("Size", "Width and height, pixels");
+    under_name(ui, about, |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let size = [(ui.available_width() - 4.0) / 2.0, ui.spacing().interact_size.y];
+            let mut all: Option<egui::Response> = None;
+            for (name, pixels) in [("Width", &mut settings.width), ("Height", &mut settings.height)] {
+                let drag =
+                    DragValue::new(pixels).range(1..=SIZE_LIMIT).speed(2.0).update_while_editing(false);
+                let response = ui.add_sized(size, drag).accessible_name(name);
+                let response = response.on_hover_text(format!("{name}, pixels"));
+                all = Some(match all {
+                    Some(earlier) => earlier.union(response),
+                    None => response,
+                });
+            }
+            all
+        })
+        .inner
+        .unwrap_or_else(|| ui.label(""))
+    });
+}

@@ -1,0 +1,95 @@
+//! When the render ends: the first condition that is met.
+
+use super::Group;
+use crate::app::document::Stop;
+use crate::app::widgets::{About, check};
+use crate::app::window::Window;
+use crate::render::SAMPLE_LIMIT;
+use eframe::egui::{DragValue, Ui};
+
+pub(super) const GROUP: Group = Group { name: "Stop", ui, is_changed, reset };
+
+fn is_changed(window: &Window) -> bool {
+    window.document().stop != Stop::for_recipe(&window.document().origin.recipe)
+}
+
+fn reset(window: &mut Window) {
+    window.document_mut().stop = Stop::for_recipe(&window.document().origin.recipe);
+}
+
+fn ui(window: &mut Window, ui: &mut Ui) {
+    let one_half = (!window.document().settings.estimate_error)
+        .then_some("The film has one half, which tells no error: switch on Estimate error");
+    let usual = window.document().origin.recipe.samples_per_pixel;
+    let stop = &mut window.document_mut().stop;
+
+    let mut has_samples = stop.samples.is_some();
+    let mut samples = stop.samples.unwrap_or(usual);
+    row(
+        ui,
+        "Samples",
+        "Samples per pixel; without it the picture goes on without end",
+        None,
+        &mut has_samples,
+        |ui| {
+            ui.add(
+                DragValue::new(&mut samples)
+                    .range(1..=SAMPLE_LIMIT)
+                    .speed(1.0)
+                    .suffix(" spp")
+                    .update_while_editing(false),
+            )
+        },
+    );
+    stop.samples = has_samples.then_some(samples);
+
+    let mut has_seconds = stop.seconds.is_some();
+    let mut seconds = stop.seconds.unwrap_or(10.0);
+    row(ui, "Time", "Seconds of tracing", None, &mut has_seconds, |ui| {
+        ui.add(
+            DragValue::new(&mut seconds)
+                .range(0.1..=1e6)
+                .speed(0.5)
+                .max_decimals(1)
+                .suffix(" s")
+                .update_while_editing(false),
+        )
+    });
+    stop.seconds = has_seconds.then_some(seconds);
+
+    let mut has_noise = stop.noise.is_some();
+    let mut noise = stop.noise.unwrap_or(Stop::NOISE);
+    let help = "Estimated error: root of the mean square over pixels and channels, linear radiance";
+    row(ui, "Error", help, one_half, &mut has_noise, |ui| {
+        ui.add(
+            DragValue::new(&mut noise)
+                .range(1e-6..=1.0)
+                .speed(1e-4)
+                .max_decimals(6)
+                .update_while_editing(false),
+        )
+    });
+    stop.noise = has_noise.then_some(noise);
+}
+
+/// A check box with its number beside it.
+fn row(
+    ui: &mut Ui,
+    name: &str,
+    help: &str,
+    useless: Option<&str>,
+    is_on: &mut bool,
+    number: impl FnOnce(&mut Ui) -> eframe::egui::Response,
+) {
+    ui.columns(2, |columns| {
+        let about = About::new(name, help).useless_if(useless);
+        check(&mut columns[0], about, is_on);
+        let is_useful = *is_on && useless.is_none();
+        columns[1].add_enabled_ui(is_useful, |ui| {
+            number(ui)
+                .accessible_name(format!("{name} limit"))
+                .on_hover_text(help)
+                .on_disabled_hover_text(useless.unwrap_or("Tick the box beside it first"));
+        });
+    });
+}

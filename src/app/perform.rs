@@ -1,0 +1,198 @@
+//! What each command does.
+
+use super::command::Command;
+use super::compare::Mode;
+use super::device::Device;
+use super::dialogs::{Dialog, Palette, PathBox, Purpose};
+use super::document::{Document, Origin, Source};
+use super::remembered::Bookmark;
+use super::theme;
+use super::viewport::{Show, Zoom};
+use super::window::Window;
+use eframe::egui::{self, ViewportCommand};
+
+impl Window {
+    /// Why a command can do nothing now, in words; `None` if it can.
+    pub fn useless(&self, command: Command) -> Option<String> {
+        let no = |reason: &str| Some(reason.to_owned());
+        match command {
+            Command::Undo if !self.undo.has_undo(&self.document) => no("Nothing has been changed yet"),
+            Command::Redo if !self.undo.has_redo(&self.document) => no("Nothing was taken back"),
+            Command::Home if self.document.camera == self.document.origin.recipe.camera => {
+                no("This is the stage's camera")
+            }
+            Command::Device(device) => device.unavailable(),
+            Command::SwitchDevice => Device::Gpu.unavailable(),
+            Command::Show(show) => self.useless_show(show),
+            Command::Wipe | Command::WipeDifference if self.document.stage().is_none() => {
+                no("Only stages of the book have something to be compared with; choose one")
+            }
+            Command::PreviousStage if self.neighbour(false).is_none() => no("This is the first stage"),
+            Command::NextStage if self.neighbour(true).is_none() => no("This is the last stage"),
+            _ => None,
+        }
+    }
+
+    fn useless_show(&self, show: Show) -> Option<String> {
+        let no = |reason: &str| Some(reason.to_owned());
+        match show {
+            Show::Error if !self.document.settings.estimate_error => {
+                no("The film has one half; switch on Estimate error")
+            }
+            Show::Difference if self.compare.reference.is_none() => {
+                no("Load a reference film first (File > Load reference film)")
+            }
+            Show::Normals if !self.document.rules().are_finished() => {
+                no("This stage has rules of its own; the finished renderer's stages show normals")
+            }
+            Show::Albedo | Show::Bounces | Show::Occupancy => {
+                no("The tracers keep no such figure for each pixel yet")
+            }
+            _ => None,
+        }
+    }
+
+    pub(super) fn neighbour(&self, is_next: bool) -> Option<&'static crate::stages::Stage> {
+        match self.document.stage() {
+            Some(stage) if is_next => stage.next(),
+            Some(stage) => stage.previous(),
+            None => crate::stages::Stage::ALL.first().filter(|_| is_next),
+        }
+    }
+
+    /// Carries a command out; one that can do nothing says why.
+    pub fn perform(&mut self, context: &egui::Context, command: Command) {
+        self.performed = Some(command);
+        self.end_move();
+        if let Some(reason) = self.useless(command) {
+            self.toasts.good(format!("{}: {}", command.name().trim_end_matches('…'), lower_first(&reason)));
+            return;
+        }
+        match command {
+            Command::Open => self.ask_path(Purpose::Open),
+            Command::Save(format) => self.ask_path(Purpose::Save(format)),
+            Command::SaveScene => self.ask_path(Purpose::SaveScene),
+            Command::LoadReference => self.ask_path(Purpose::Reference),
+            Command::CopyCommand => self.copy_command(context),
+            Command::Quit => context.send_viewport_cmd(ViewportCommand::Close),
+            Command::Undo => {
+                if let Some(document) = self.undo.undo(&self.document) {
+                    self.document = document.clone();
+                }
+            }
+            Command::Redo => {
+                if let Some(document) = self.undo.redo(&self.document) {
+                    self.document = document.clone();
+                }
+            }
+            Command::Home => self.document.camera = self.document.origin.recipe.camera,
+            Command::ResetAll => {
+                let origin = std::sync::Arc::clone(&self.document.origin);
+                let stop = super::document::Stop::for_recipe(&origin.recipe);
+                let recipe = &origin.recipe;
+                self.document = Document { camera: recipe.camera, settings: recipe.settings, stop, origin };
+            }
+            Command::AddBookmark => {
+                let number = self.remembered.bookmarks.len() + 1;
+                let name = format!("{} {number}", self.document.origin.recipe.name);
+                self.remembered.bookmarks.push(Bookmark::new(name, &self.document.camera));
+                self.toasts.good("Bookmarked; it is in the Camera panel");
+            }
+            Command::Show(show) => {
+                self.viewport.show = show;
+                self.compare.show(&self.main, show);
+            }
+            Command::Wipe => self.compare.toggle(Mode::Wipe),
+            Command::WipeDifference => self.compare.toggle(Mode::Difference),
+            Command::Fit => self.viewport.zoom = Zoom::Fit,
+            Command::ActualSize => self.viewport.actual_size(),
+            Command::ZoomIn => self.viewport.zoom_by(1.25),
+            Command::ZoomOut => self.viewport.zoom_by(0.8),
+            Command::Panels => self.remembered.has_panels = !self.remembered.has_panels,
+            Command::Controls => toggle(&mut self.remembered.has_controls, &mut self.remembered.has_panels),
+            Command::Info => toggle(&mut self.remembered.has_info, &mut self.remembered.has_panels),
+            Command::Plot => toggle(&mut self.remembered.has_plot, &mut self.remembered.has_panels),
+            Command::FullScreen => {
+                self.is_full_screen = !self.is_full_screen;
+                context.send_viewport_cmd(ViewportCommand::Fullscreen(self.is_full_screen));
+            }
+            Command::Theme(theme) => {
+                self.remembered.theme = theme;
+                theme::choose(context, theme);
+            }
+            Command::Pause => {
+                if self.is_working() {
+                    self.is_paused = true;
+                    self.main.pause();
+                    self.compare.pause();
+                } else if self.is_paused {
+                    self.is_paused = false;
+                    self.main.resume();
+                    self.compare.resume();
+                }
+            }
+            Command::Restart => {
+                self.seconds_before = Some(0.0);
+                self.is_paused = false;
+                self.main.restart();
+            }
+            Command::SwitchDevice => {
+                let next = if self.remembered.device == Device::Gpu { Device::Cpu } else { Device::Gpu };
+                self.remembered.device = next;
+            }
+            Command::Device(device) => self.remembered.device = device,
+            Command::PreviousStage => {
+                if let Some(stage) = self.neighbour(false) {
+                    self.show_origin(Origin::of_stage(stage));
+                }
+            }
+            Command::NextStage => {
+                if let Some(stage) = self.neighbour(true) {
+                    self.show_origin(Origin::of_stage(stage));
+                }
+            }
+            Command::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
+            Command::Book => {
+                let url = self.document.stage().map_or_else(|| crate::stages::BOOK_URL.into(), |s| s.url());
+                context.open_url(egui::OpenUrl::new_tab(url));
+            }
+            Command::Palette => self.dialog = Some(Dialog::Palette(Palette::typed(context))),
+            Command::Help => self.dialog = Some(Dialog::Help),
+        }
+    }
+
+    fn ask_path(&mut self, purpose: Purpose) {
+        let name = &self.document.origin.recipe.name;
+        self.dialog = Some(Dialog::Path(PathBox::new(purpose, name, self.remembered.directory.as_deref())));
+    }
+
+    fn copy_command(&mut self, context: &egui::Context) {
+        let samples = match (self.main.shown(), self.document.stop.samples) {
+            (Some(shown), _) if shown.divisor == 1 => shown.samples,
+            (_, Some(samples)) => samples,
+            _ => self.document.origin.recipe.samples_per_pixel,
+        };
+        let device = self.remembered.device;
+        // Software adapters are used only when they are named.
+        let is_gpu = matches!(device, Device::Gpu | Device::Both);
+        let adapter = super::device::adapter().ok().filter(|adapter| is_gpu && adapter.is_software);
+        let adapter = adapter.map(|adapter| adapter.name.as_str());
+        let line = self.document.command_line(samples.max(1), device.name(), adapter);
+        context.copy_text(line);
+        self.toasts.good(match &self.document.origin.source {
+            Source::Embedded => "Copied; the scene is in no file yet: save the scene file beside it",
+            _ => "Copied: the command line that renders this picture",
+        });
+    }
+}
+
+/// Shows or hides a panel; while all are hidden, the one that is asked for comes back.
+fn toggle(panel: &mut bool, all: &mut bool) {
+    *panel = !*panel || !*all;
+    *all = true;
+}
+
+fn lower_first(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+}

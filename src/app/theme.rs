@@ -1,0 +1,183 @@
+//! Colours and spacing: quiet greys, and one accent, the blue of the book's sky.
+
+use super::remembered::Theme;
+use eframe::egui::{
+    self, Color32, Context, CornerRadius, Frame, Margin, Shadow, Stroke, Style, TextStyle, Ui, Visuals,
+};
+use std::sync::Arc;
+
+/// The colours of one theme.
+struct Palette {
+    panel: Color32,
+    surround: Color32,
+    raised: Color32,
+    hovered: Color32,
+    pressed: Color32,
+    line: Color32,
+    weak: Color32,
+    text: Color32,
+    strong: Color32,
+    accent: Color32,
+    on_accent: Color32,
+    warn: Color32,
+    bad: Color32,
+}
+
+const DARK: Palette = Palette {
+    panel: Color32::from_rgb(27, 29, 32),
+    surround: Color32::from_rgb(17, 18, 20),
+    raised: Color32::from_rgb(42, 45, 50),
+    hovered: Color32::from_rgb(54, 58, 64),
+    pressed: Color32::from_rgb(66, 71, 79),
+    line: Color32::from_rgb(48, 51, 56),
+    weak: Color32::from_rgb(148, 154, 163),
+    text: Color32::from_rgb(205, 209, 214),
+    strong: Color32::from_rgb(242, 244, 246),
+    accent: Color32::from_rgb(112, 176, 240),
+    on_accent: Color32::from_rgb(12, 24, 38),
+    warn: Color32::from_rgb(232, 186, 92),
+    bad: Color32::from_rgb(244, 122, 112),
+};
+
+const LIGHT: Palette = Palette {
+    panel: Color32::from_rgb(247, 247, 245),
+    surround: Color32::from_rgb(226, 227, 226),
+    raised: Color32::from_rgb(230, 231, 231),
+    hovered: Color32::from_rgb(218, 221, 223),
+    pressed: Color32::from_rgb(204, 209, 213),
+    line: Color32::from_rgb(214, 215, 215),
+    weak: Color32::from_rgb(96, 101, 108),
+    text: Color32::from_rgb(48, 52, 57),
+    strong: Color32::from_rgb(16, 18, 21),
+    accent: Color32::from_rgb(28, 104, 178),
+    on_accent: Color32::WHITE,
+    warn: Color32::from_rgb(150, 98, 0),
+    bad: Color32::from_rgb(184, 38, 30),
+};
+
+fn palette(is_dark: bool) -> &'static Palette {
+    if is_dark { &DARK } else { &LIGHT }
+}
+
+/// What lies around the picture.
+pub fn surround(ui: &Ui) -> Color32 {
+    palette(ui.visuals().dark_mode).surround
+}
+
+/// The one colour that stands out.
+pub fn accent(ui: &Ui) -> Color32 {
+    palette(ui.visuals().dark_mode).accent
+}
+
+/// Sets both themes' styles.
+pub fn install(context: &Context) {
+    for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        context.style_mut_of(theme, |style| dress(style, theme == egui::Theme::Dark));
+    }
+}
+
+/// Chooses a theme.
+pub fn choose(context: &Context, theme: Theme) {
+    context.set_theme(match theme {
+        Theme::System => egui::ThemePreference::System,
+        Theme::Dark => egui::ThemePreference::Dark,
+        Theme::Light => egui::ThemePreference::Light,
+    });
+}
+
+fn dress(style: &mut Style, is_dark: bool) {
+    for (text, size) in [
+        (TextStyle::Small, 11.0),
+        (TextStyle::Body, 13.0),
+        (TextStyle::Button, 13.0),
+        (TextStyle::Monospace, 12.0),
+        (TextStyle::Heading, 16.0),
+    ] {
+        if let Some(font) = style.text_styles.get_mut(&text) {
+            font.size = size;
+        }
+    }
+    style.spacing.item_spacing = egui::vec2(8.0, 6.0);
+    style.spacing.button_padding = egui::vec2(8.0, 3.0);
+    style.spacing.interact_size = egui::vec2(40.0, 22.0);
+    style.spacing.menu_margin = Margin::same(6);
+    style.spacing.slider_rail_height = 4.0;
+    style.spacing.tooltip_width = 320.0;
+    style.interaction.tooltip_delay = 0.4;
+    style.interaction.selectable_labels = false;
+    style.visuals = visuals(is_dark);
+}
+
+fn visuals(is_dark: bool) -> Visuals {
+    let colours = palette(is_dark);
+    let mut visuals = if is_dark { Visuals::dark() } else { Visuals::light() };
+    visuals.panel_fill = colours.panel;
+    visuals.window_fill = colours.panel;
+    visuals.window_stroke = Stroke::new(1.0, colours.line);
+    visuals.window_corner_radius = CornerRadius::same(8);
+    visuals.menu_corner_radius = CornerRadius::same(6);
+    visuals.extreme_bg_color = colours.surround;
+    visuals.faint_bg_color = colours.raised;
+    visuals.hyperlink_color = colours.accent;
+    visuals.warn_fg_color = colours.warn;
+    visuals.error_fg_color = colours.bad;
+    visuals.weak_text_color = Some(colours.weak);
+    visuals.selection.bg_fill = colours.accent;
+    visuals.selection.stroke = Stroke::new(1.0, colours.on_accent);
+    visuals.slider_trailing_fill = true;
+    visuals.handle_shape = egui::style::HandleShape::Circle;
+    visuals.disabled_alpha = 0.45;
+    let shadow = Shadow { offset: [0, 4], blur: 14, spread: 0, color: Color32::from_black_alpha(60) };
+    visuals.popup_shadow = shadow;
+    visuals.window_shadow = shadow;
+    let widgets = &mut visuals.widgets;
+    for (widget, fill, text) in [
+        (&mut widgets.noninteractive, colours.panel, colours.text),
+        (&mut widgets.inactive, colours.raised, colours.text),
+        (&mut widgets.hovered, colours.hovered, colours.strong),
+        (&mut widgets.active, colours.pressed, colours.strong),
+        (&mut widgets.open, colours.hovered, colours.strong),
+    ] {
+        widget.bg_fill = fill;
+        widget.weak_bg_fill = fill;
+        widget.bg_stroke = Stroke::NONE;
+        widget.fg_stroke = Stroke::new(1.0, text);
+        widget.corner_radius = CornerRadius::same(5);
+        widget.expansion = 0.0;
+    }
+    widgets.noninteractive.bg_stroke = Stroke::new(1.0, colours.line);
+    widgets.hovered.bg_stroke = Stroke::new(1.0, colours.line);
+    visuals
+}
+
+/// A frame for what floats over the picture.
+pub fn float_frame(ui: &Ui) -> Frame {
+    let fill = ui.visuals().panel_fill.gamma_multiply(0.94);
+    Frame::new()
+        .fill(fill)
+        .stroke(ui.visuals().window_stroke)
+        .corner_radius(6)
+        .inner_margin(Margin::symmetric(10, 6))
+}
+
+/// The window's icon: a ball under the sky.
+pub fn icon() -> Arc<egui::IconData> {
+    const SIDE: u32 = 64;
+    let mut rgba = Vec::with_capacity((SIDE * SIDE * 4) as usize);
+    for y in 0..SIDE {
+        for x in 0..SIDE {
+            let [dx, dy] = [x, y].map(|at| (f64::from(at) + 0.5) / f64::from(SIDE) * 2.0 - 1.0);
+            let squared = dx * dx + dy * dy;
+            let colour = if squared < 0.6 * 0.6 {
+                let z = (0.36 - squared).sqrt();
+                [dx, -dy, z].map(|n| 0.5 + 0.5 * n / 0.6)
+            } else {
+                let a = 0.5 - 0.5 * dy;
+                [1.0 - 0.5 * a, 1.0 - 0.3 * a, 1.0]
+            };
+            rgba.extend(colour.map(|c: f64| (c * 255.0) as u8));
+            rgba.push(255);
+        }
+    }
+    Arc::new(egui::IconData { rgba, width: SIDE, height: SIDE })
+}

@@ -1,0 +1,98 @@
+//! Short messages over the picture.
+
+use super::theme;
+use eframe::egui::{self, Align2, Color32, RichText};
+use std::time::{Duration, Instant};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    /// Something was done.
+    Good,
+    /// Something went wrong.
+    Bad,
+}
+
+struct Toast {
+    text: String,
+    tone: Tone,
+    since: Instant,
+}
+
+/// The messages that are shown.
+#[derive(Default)]
+pub struct Toasts(Vec<Toast>);
+
+/// How long a message is shown; a failure stays longer, since it has to be read.
+fn lifetime(tone: Tone) -> Duration {
+    match tone {
+        Tone::Good => Duration::from_secs(4),
+        Tone::Bad => Duration::from_secs(15),
+    }
+}
+
+impl Toasts {
+    /// Says that something was done.
+    pub fn good(&mut self, text: impl Into<String>) {
+        self.add(text.into(), Tone::Good);
+    }
+
+    /// Says that something went wrong: here and, for whoever started the program from a terminal, there.
+    pub fn bad(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        eprintln!("weekender: {text}");
+        self.add(text, Tone::Bad);
+    }
+
+    fn add(&mut self, text: String, tone: Tone) {
+        self.0.retain(|toast| toast.text != text);
+        self.0.push(Toast { text, tone, since: Instant::now() });
+    }
+
+    /// What is said now, the oldest first.
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|toast| toast.text.as_str())
+    }
+
+    pub(super) fn ui(&mut self, ui: &egui::Ui, over: egui::Rect) {
+        self.0.retain(|toast| toast.since.elapsed() < lifetime(toast.tone));
+        let Some(first) = self.0.iter().map(|toast| lifetime(toast.tone) - toast.since.elapsed()).min()
+        else {
+            return;
+        };
+        ui.ctx().request_repaint_after(first);
+        let mut closed = None;
+        egui::Area::new(egui::Id::unique("toasts"))
+            .order(egui::Order::Foreground)
+            .pivot(Align2::CENTER_BOTTOM)
+            .fixed_pos(over.center_bottom() - egui::vec2(0.0, 14.0))
+            .constrain_to(over)
+            .show(ui.ctx(), |ui| {
+                ui.set_max_width((over.width() - 24.0).clamp(120.0, 520.0));
+                for (index, toast) in self.0.iter().enumerate() {
+                    theme::float_frame(ui).show(ui, |ui| {
+                        ui.horizontal_top(|ui| {
+                            let colour = match toast.tone {
+                                Tone::Good => ui.visuals().text_color(),
+                                Tone::Bad => ui.visuals().error_fg_color,
+                            };
+                            let close = egui::Button::new(RichText::new("×").strong())
+                                .fill(Color32::TRANSPARENT)
+                                .small();
+                            let room = ui.available_width() - 28.0;
+                            ui.scope(|ui| {
+                                ui.set_max_width(room);
+                                ui.add(egui::Label::new(RichText::new(&toast.text).color(colour)).wrap());
+                            });
+                            if ui.add(close).on_hover_text("Close this message").clicked() {
+                                closed = Some(index);
+                            }
+                        });
+                    });
+                }
+            });
+        if let Some(index) = closed {
+            self.0.remove(index);
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! The window's side of a progressive render: what is wanted, what runs, and the newest picture as a texture.
+
+use super::document::{Document, Stop};
+use crate::backends::BackendChoice;
+use crate::film::Film;
+use crate::progressive::{Phase, Plan, Progressive, Status, View, Work};
+use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
+use std::io;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// What a pass should take while someone moves something.
+const MOVING_PASS: Duration = Duration::from_millis(10);
+
+/// What a pass should take else.
+const STILL_PASS: Duration = Duration::from_millis(40);
+
+/// What the first pass of a preview should take, seconds: together with a frame or two of the window it is the
+/// time from the hand to the eye.
+const PREVIEW_SECONDS: f64 = 0.025;
+
+/// A preview is no coarser than this.
+const DIVISOR_LIMIT: u32 = 8;
+
+/// The longest time between two pictures.
+const PICTURE_INTERVAL_LIMIT: Duration = Duration::from_millis(250);
+
+/// What should be rendered.
+pub struct Want<'a> {
+    pub document: &'a Document,
+    pub backend: &'a BackendChoice,
+    pub stop: Stop,
+    /// Something moves: a coarse picture now is better than a fine one later.
+    pub is_moving: bool,
+}
+
+struct Started {
+    document: Document,
+    divisor: u32,
+    run: u64,
+    at: Instant,
+    is_pictured: bool,
+}
+
+/// A picture on the screen.
+pub struct Shown {
+    image: Arc<ColorImage>,
+    texture: Option<(TextureHandle, TextureOptions)>,
+    /// Samples per pixel.
+    pub samples: u64,
+    /// 1, or the preview's share of the size.
+    pub divisor: u32,
+    /// What it shows.
+    pub document: Document,
+}
+
+impl Shown {
+    /// The texture, with pixels as squares or smoothed.
+    pub fn texture(&mut self, context: &egui::Context, options: TextureOptions) -> egui::TextureId {
+        match &mut self.texture {
+            Some((texture, old)) => {
+                if *old != options {
+                    texture.set(Arc::clone(&self.image), options);
+                    *old = options;
+                }
+                texture.id()
+            }
+            empty => {
+                let texture = context.load_texture("film", Arc::clone(&self.image), options);
+                let id = texture.id();
+                *empty = Some((texture, options));
+                id
+            }
+        }
+    }
+}
+
+/// A render thread and what is known of it.
+pub struct Tracer {
+    progressive: Progressive,
+    started: Option<Started>,
+    shown: Option<Shown>,
+    status: Status,
+    asked: Instant,
+    backend: Option<BackendChoice>,
+    plan: Option<Plan>,
+    /// Paths a second, as last measured.
+    speed: f64,
+    moving_divisor: Option<u32>,
+}
+
+impl Tracer {
+    pub fn new() -> io::Result<Self> {
+        Ok(Tracer {
+            progressive: Progressive::spawn()?,
+            started: None,
+            shown: None,
+            status: Status::default(),
+            asked: Instant::now(),
+            backend: None,
+            plan: None,
+            speed: 5e6,
+            moving_divisor: None,
+        })
+    }
+
+    /// Wakes the window when there is something to see.
+    pub fn wake(&self, context: &egui::Context) {
+        let context = context.clone();
+        self.progressive.set_notice(move || context.request_repaint());
+    }
+
+    /// The numbers as of this frame.
+    pub fn status(&self) -> &Status {
+        &self.status
+    }
+
+    /// The newest picture.
+    pub fn shown_mut(&mut self) -> Option<&mut Shown> {
+        self.shown.as_mut()
+    }
+
+    /// The newest picture.
+    pub fn shown(&self) -> Option<&Shown> {
+        self.shown.as_ref()
+    }
+
+    /// Whether the film that grows is that of the document at its full size.
+    pub fn is_full(&self, document: &Document) -> bool {
+        self.started.as_ref().is_some_and(|run| run.divisor == 1 && run.document.has_same_film(document))
+    }
+
+    /// What pictures show.
+    pub fn set_view(&self, view: View) {
+        self.progressive.set_view(view);
+        self.progressive.ask_for_picture();
+    }
+
+    /// Reads the film on the render thread.
+    pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
+        self.progressive.inspect(look);
+    }
+
+    pub fn pause(&self) {
+        self.progressive.pause();
+    }
+
+    pub fn resume(&self) {
+        self.progressive.resume();
+    }
+
+    /// Throws the film away; the next wish begins anew.
+    pub fn restart(&mut self) {
+        self.started = None;
+    }
+
+    /// Nothing is rendered until the next wish.
+    pub fn abandon(&mut self) {
+        if self.started.take().is_some() {
+            self.progressive.abandon();
+            self.shown = None;
+        }
+    }
+
+    /// Goes on with a film of `document`.
+    pub fn go_on_with(&mut self, film: Film, want: &Want<'_>) -> Result<(), String> {
+        self.start(want, 1, Some(film))
+    }
+
+    /// Fetches what is new. Returns whether there is a new picture.
+    pub fn poll(&mut self, context: &egui::Context) -> bool {
+        self.status = self.progressive.status();
+        if self.status.stats.paths > 0 && !self.status.trace.is_zero() {
+            self.speed = self.status.paths_per_second();
+        }
+        let Some(started) = &mut self.started else { return false };
+        let mut is_new = false;
+        if let Some(picture) = self.progressive.newest_picture()
+            && picture.run == started.run
+        {
+            let size = [picture.width as usize, picture.height as usize];
+            let image = Arc::new(ColorImage::from_rgb(size, &picture.rgb8));
+            let texture = self.shown.take().and_then(|shown| shown.texture).map(|(mut texture, options)| {
+                texture.set(Arc::clone(&image), options);
+                (texture, options)
+            });
+            self.shown = Some(Shown {
+                image,
+                texture,
+                samples: picture.samples_per_pixel,
+                divisor: started.divisor,
+                document: started.document.clone(),
+            });
+            started.is_pictured = true;
+            is_new = true;
+        }
+        // A picture that has been refined for long changes slowly.
+        let interval = match self.moving_divisor {
+            Some(_) => Duration::ZERO,
+            None => (started.at.elapsed() / 20).min(PICTURE_INTERVAL_LIMIT),
+        };
+        if self.asked.elapsed() >= interval || !started.is_pictured {
+            self.progressive.ask_for_picture();
+            self.asked = Instant::now();
+        }
+        if matches!(self.status.phase, Phase::Preparing | Phase::Tracing) {
+            context.request_repaint_after(interval.max(Duration::from_millis(16)));
+        }
+        is_new
+    }
+
+    /// Brings what runs in line with what is wanted, at once or as soon as there was a picture.
+    ///
+    /// # Errors
+    /// Why the document cannot be rendered; what ran goes on.
+    pub fn want(&mut self, want: &Want<'_>) -> Result<(), String> {
+        if !want.is_moving {
+            self.moving_divisor = None;
+        }
+        let divisor = if want.is_moving { self.divisor(want.document) } else { 1 };
+        if want.is_moving {
+            self.moving_divisor = Some(divisor);
+        }
+        let is_at_it = self.started.as_ref().is_some_and(|run| {
+            run.document.has_same_film(want.document) && (run.divisor == divisor || run.divisor == 1)
+        });
+        if is_at_it {
+            self.adjust(want);
+            return Ok(());
+        }
+        // Before a preview has been seen, another would only keep it from being so.
+        let is_unseen = self.started.as_ref().is_some_and(|run| !run.is_pictured);
+        if want.is_moving && is_unseen && matches!(self.status.phase, Phase::Preparing | Phase::Tracing) {
+            return Ok(());
+        }
+        self.start(want, divisor, None)
+    }
+
+    fn start(&mut self, want: &Want<'_>, divisor: u32, film: Option<Film>) -> Result<(), String> {
+        let job = want.document.job(divisor).map_err(|error| error.to_string())?;
+        let plan = want.stop.plan(pass_target(want.is_moving));
+        let work = Work { film, ..Work::new(job, want.backend.clone(), plan.clone()) };
+        self.progressive.start(work);
+        self.progressive.ask_for_picture();
+        self.status = self.progressive.status();
+        self.started = Some(Started {
+            document: want.document.clone(),
+            divisor,
+            run: self.status.run,
+            at: Instant::now(),
+            is_pictured: false,
+        });
+        self.backend = Some(want.backend.clone());
+        self.plan = Some(plan);
+        Ok(())
+    }
+
+    /// The film stays, whoever traces and whenever it ends.
+    fn adjust(&mut self, want: &Want<'_>) {
+        if self.backend.as_ref() != Some(want.backend) {
+            self.backend = Some(want.backend.clone());
+            self.progressive.switch_backend(want.backend.clone());
+        }
+        let plan = want.stop.plan(pass_target(want.is_moving));
+        if self.plan.as_ref() != Some(&plan) {
+            self.plan = Some(plan.clone());
+            self.progressive.set_plan(plan);
+        }
+    }
+
+    /// By how much a preview is smaller, so that its first pass is short.
+    fn divisor(&self, document: &Document) -> u32 {
+        self.moving_divisor.unwrap_or_else(|| {
+            let pixels = f64::from(document.settings.width) * f64::from(document.settings.height);
+            let affordable = (self.speed * PREVIEW_SECONDS).max(1.0);
+            ((pixels / affordable).sqrt().ceil() as u32).clamp(1, DIVISOR_LIMIT)
+        })
+    }
+}
+
+fn pass_target(is_moving: bool) -> Duration {
+    if is_moving { MOVING_PASS } else { STILL_PASS }
+}

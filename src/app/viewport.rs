@@ -1,0 +1,499 @@
+//! The picture, and the hand on it.
+
+use super::compare::Mode;
+use super::navigation;
+use super::theme;
+use super::window::Window;
+use crate::progressive::{HEAT_LIMITS, Phase, heat_colour};
+use eframe::egui::{
+    self, Align2, Color32, CornerRadius, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, Sense, Stroke,
+    TextStyle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
+use std::time::{Duration, Instant};
+
+/// What the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Show {
+    /// The picture.
+    #[default]
+    Picture,
+    /// Normals of what is seen first.
+    Normals,
+    /// The materials' own colours.
+    Albedo,
+    /// Rays per path.
+    Bounces,
+    /// Standard error of each pixel.
+    Error,
+    /// How full packets were.
+    Occupancy,
+    /// Difference from a loaded film.
+    Difference,
+}
+
+impl Show {
+    /// All of them.
+    pub const ALL: [Show; 7] = [
+        Show::Picture,
+        Show::Normals,
+        Show::Albedo,
+        Show::Bounces,
+        Show::Error,
+        Show::Occupancy,
+        Show::Difference,
+    ];
+
+    /// Its name, after "Show".
+    pub fn name(self) -> &'static str {
+        match self {
+            Show::Picture => "picture",
+            Show::Normals => "normals",
+            Show::Albedo => "albedo",
+            Show::Bounces => "bounces per path",
+            Show::Error => "standard error",
+            Show::Occupancy => "lane occupancy",
+            Show::Difference => "difference to reference",
+        }
+    }
+
+    /// What it is.
+    pub fn help(self) -> &'static str {
+        match self {
+            Show::Picture => "The film, as it will be saved",
+            Show::Normals => "Which way surfaces face: x red, y green, z blue",
+            Show::Albedo => "What surfaces reflect, without light and shadow",
+            Show::Bounces => "How many rays a path takes: where the time goes",
+            Show::Error => "Standard error of each pixel's mean, linear radiance",
+            Show::Occupancy => "How full the packets of rays were",
+            Show::Difference => "Distance from a loaded film, linear radiance",
+        }
+    }
+
+    /// The key that stands for it, with Ctrl.
+    pub fn key(self) -> Key {
+        match self {
+            Show::Picture => Key::Num1,
+            Show::Normals => Key::Num2,
+            Show::Albedo => Key::Num3,
+            Show::Bounces => Key::Num4,
+            Show::Error => Key::Num5,
+            Show::Occupancy => Key::Num6,
+            Show::Difference => Key::Num7,
+        }
+    }
+
+    fn is_heat_map(self) -> bool {
+        matches!(self, Show::Error | Show::Difference)
+    }
+}
+
+/// How large the picture is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Zoom {
+    /// As large as there is room.
+    Fit,
+    /// Pixels of the screen for one of the picture.
+    Times(f32),
+}
+
+const ZOOM_LIMITS: [f32; 2] = [0.05, 64.0];
+
+/// Radians that a point of dragging turns.
+const TURN_PER_POINT: f64 = 0.006;
+
+/// The share of the distance that a point of scrolling covers.
+const DOLLY_PER_POINT: f64 = 0.002;
+
+/// How long the mark of a click stays.
+const MARK: Duration = Duration::from_millis(1600);
+
+struct Mark {
+    place: [f64; 2],
+    text: String,
+    since: Instant,
+}
+
+/// How the picture is looked at.
+pub struct Viewport {
+    /// What it shows.
+    pub show: Show,
+    /// How large.
+    pub zoom: Zoom,
+    /// Where the picture's middle is, points from the middle of the room.
+    pan: Vec2,
+    mark: Option<Mark>,
+    is_dragging_divider: bool,
+    last_times: f32,
+    /// Where the picture was drawn last.
+    pub rect: Rect,
+}
+
+impl Default for Viewport {
+    fn default() -> Self {
+        Viewport {
+            show: Show::Picture,
+            zoom: Zoom::Fit,
+            pan: Vec2::ZERO,
+            mark: None,
+            is_dragging_divider: false,
+            last_times: 1.0,
+            rect: Rect::ZERO,
+        }
+    }
+}
+
+impl Viewport {
+    pub fn actual_size(&mut self) {
+        self.zoom = Zoom::Times(1.0);
+        self.pan = Vec2::ZERO;
+    }
+
+    pub fn zoom_by(&mut self, factor: f32) {
+        let [low, high] = ZOOM_LIMITS;
+        let times = (self.last_times * factor).clamp(low, high);
+        self.pan *= times / self.last_times;
+        self.zoom = Zoom::Times(times);
+    }
+
+    /// Where the picture goes in `room`, on whole pixels of the screen.
+    fn place(&mut self, room: Rect, size: Vec2, pixels_per_point: f32) -> Rect {
+        let fitting = (room.width() / size.x).min(room.height() / size.y) * pixels_per_point;
+        let times = match self.zoom {
+            Zoom::Fit => {
+                self.pan = Vec2::ZERO;
+                fitting
+            }
+            Zoom::Times(times) => times,
+        };
+        self.last_times = times;
+        let rect = Rect::from_center_size(room.center() + self.pan, size * times / pixels_per_point);
+        let corner = (rect.min.to_vec2() * pixels_per_point).round() / pixels_per_point;
+        Rect::from_min_size(corner.to_pos2(), rect.size())
+    }
+
+    /// The whole pixel of the picture under a point of the screen.
+    pub fn pixel_at(&self, at: Pos2, size: [u32; 2]) -> Option<[u32; 2]> {
+        if !self.rect.contains(at) || self.rect.width() <= 0.0 {
+            return None;
+        }
+        let along = (at - self.rect.min) / self.rect.size();
+        Some([
+            ((along.x * size[0] as f32) as u32).min(size[0] - 1),
+            ((along.y * size[1] as f32) as u32).min(size[1] - 1),
+        ])
+    }
+}
+
+pub fn ui(window: &mut Window, ui: &mut Ui) {
+    let room = ui.available_rect_before_wrap();
+    let response = ui.allocate_rect(room, Sense::click_and_drag());
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+    let settings = window.document.settings;
+    let size = vec2(settings.width as f32, settings.height as f32);
+    let margin = if window.remembered.has_panels { 10.0 } else { 0.0 };
+    let inner = room.shrink(margin);
+    let rect = window.viewport.place(inner, size, ui.ctx().pixels_per_point());
+    window.viewport.rect = rect;
+
+    let is_over_divider = handle_divider(window, ui, &response, rect);
+    if !is_over_divider {
+        handle_mouse(window, ui, &response, rect);
+    }
+    paint(window, ui, room, rect);
+    window.inspector.hover(
+        response.hover_pos().and_then(|at| window.viewport.pixel_at(at, [settings.width, settings.height])),
+    );
+    response.context_menu(|ui| {
+        for command in [super::Command::Home, super::Command::AddBookmark, super::Command::CopyCommand] {
+            super::menu::item(window, ui, command);
+        }
+    });
+    window.toasts.ui(ui, room);
+}
+
+fn handle_divider(window: &mut Window, ui: &Ui, response: &egui::Response, rect: Rect) -> bool {
+    if window.compare.mode != Some(Mode::Wipe) {
+        window.viewport.is_dragging_divider = false;
+        return false;
+    }
+    let x = rect.left() + rect.width() * window.compare.divider;
+    let pointer = response.interact_pointer_pos().or(response.hover_pos());
+    let is_near = pointer.is_some_and(|at| (at.x - x).abs() < 8.0);
+    if response.drag_started_by(PointerButton::Primary) {
+        let origin = ui.input(|input| input.pointer.press_origin());
+        window.viewport.is_dragging_divider = origin.is_some_and(|at| (at.x - x).abs() < 8.0);
+    }
+    if window.viewport.is_dragging_divider {
+        if let Some(at) = response.interact_pointer_pos() {
+            window.compare.divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+        }
+        if !response.dragged() {
+            window.viewport.is_dragging_divider = false;
+        }
+    }
+    let is_on_it = window.viewport.is_dragging_divider || (is_near && !response.dragged());
+    if is_on_it {
+        ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    is_on_it
+}
+
+fn handle_mouse(window: &mut Window, ui: &Ui, response: &egui::Response, rect: Rect) {
+    let camera = window.document.camera;
+    let (modifiers, scroll, zoom) =
+        ui.input(|input| (input.modifiers, input.smooth_scroll_delta().y, input.zoom_delta()));
+    let delta = response.drag_delta();
+    let turn = vec_turn(delta);
+    let mut moved = camera;
+    let is_panning = response.dragged_by(PointerButton::Middle)
+        || (response.dragged_by(PointerButton::Primary) && modifiers.shift);
+    if is_panning {
+        if window.viewport.zoom == Zoom::Fit {
+            window.viewport.zoom = Zoom::Times(window.viewport.last_times);
+        }
+        window.viewport.pan += delta;
+        ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+    } else if response.dragged_by(PointerButton::Primary) {
+        moved = navigation::orbit(&moved, turn.0, turn.1);
+    } else if response.dragged_by(PointerButton::Secondary) {
+        moved = navigation::look(&moved, turn.0, -turn.1);
+    }
+    if response.hovered() {
+        if zoom != 1.0 {
+            zoom_at(window, response.hover_pos(), rect, zoom);
+        } else if scroll != 0.0 {
+            moved = navigation::dolly(&moved, (-f64::from(scroll) * DOLLY_PER_POINT).exp());
+        }
+    }
+    if moved != camera {
+        window.document.camera = moved;
+        window.note_move();
+    }
+    if let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at)) {
+        let along = (at - rect.min) / rect.size();
+        let place = [f64::from(along.x), f64::from(along.y)];
+        if response.double_clicked() {
+            recentre(window, place);
+        } else if response.clicked() && (modifiers.alt || is_alt_release(ui)) {
+            let settings = window.document.settings;
+            if let Some(pixel) = window.viewport.pixel_at(at, [settings.width, settings.height]) {
+                window.inspector.list_path(&window.document, pixel, 0);
+            }
+        } else if response.clicked() {
+            focus(window, place);
+        }
+    }
+}
+
+/// Whether Alt was held when a button was let go: in a long frame it may have been let go since.
+fn is_alt_release(ui: &Ui) -> bool {
+    let is_it = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if modifiers.alt);
+    ui.input(|input| input.events.iter().any(is_it))
+}
+
+fn vec_turn(delta: Vec2) -> (f64, f64) {
+    (f64::from(delta.x) * TURN_PER_POINT, f64::from(delta.y) * TURN_PER_POINT)
+}
+
+/// Zooms so that what is under the pointer stays there.
+fn zoom_at(window: &mut Window, pointer: Option<Pos2>, rect: Rect, factor: f32) {
+    let viewport = &mut window.viewport;
+    let before = viewport.last_times;
+    if viewport.zoom == Zoom::Fit {
+        viewport.pan = Vec2::ZERO;
+    }
+    let [low, high] = ZOOM_LIMITS;
+    let times = (before * factor).clamp(low, high);
+    viewport.zoom = Zoom::Times(times);
+    if let Some(at) = pointer {
+        let from_middle = at - rect.center();
+        viewport.pan += from_middle * (1.0 - times / before);
+    }
+}
+
+/// Where the ray through a place of the picture meets the scene.
+fn pick(window: &Window, place: [f64; 2]) -> Option<crate::scene::Pick> {
+    let document = &window.document;
+    let direction = document.camera.direction_through(place, document.aspect());
+    document.scene().pick(document.camera.look_from, direction)
+}
+
+fn focus(window: &mut Window, place: [f64; 2]) {
+    let text = match pick(window, place) {
+        Some(pick) => {
+            let camera = navigation::focus(&window.document.camera, pick.point);
+            let is_pinhole = camera.defocus_angle_degrees == 0.0;
+            window.document.camera = camera;
+            let distance = camera.depth_of(pick.point);
+            let note = if is_pinhole { " (a pinhole is sharp everywhere)" } else { "" };
+            format!("focus {distance:.3}{note}")
+        }
+        None => "sky".to_owned(),
+    };
+    window.viewport.mark = Some(Mark { place, text, since: Instant::now() });
+}
+
+fn recentre(window: &mut Window, place: [f64; 2]) {
+    if let Some(pick) = pick(window, place) {
+        window.document.camera = navigation::recentre(&window.document.camera, pick.point);
+        let text = "centre".to_owned();
+        window.viewport.mark = Some(Mark { place: [0.5, 0.5], text, since: Instant::now() });
+    }
+}
+
+const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
+
+fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
+    let painter = ui.painter().with_clip_rect(room);
+    let options = |divisor: u32, times: f32| {
+        // At 100 % and above a pixel is a square; a preview's are no pixels of the picture.
+        if divisor == 1 && times >= 1.0 - 1e-4 { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
+    };
+    let times = window.viewport.last_times;
+    let context = ui.ctx();
+    let other = window
+        .compare
+        .tracer
+        .as_mut()
+        .and_then(|tracer| tracer.shown_mut())
+        .map(|shown| (shown.texture(context, options(shown.divisor, times)), shown.document.stage()));
+    let has_normals = window.compare.has_normals();
+    let mut divisor = 1;
+    if let Some(shown) = window.main.shown_mut() {
+        divisor = shown.divisor;
+        let texture = shown.texture(context, options(divisor, times));
+        let texture = if has_normals { other.map_or(texture, |(other, _)| other) } else { texture };
+        painter.image(texture, rect, WHOLE, Color32::WHITE);
+    }
+    let font = TextStyle::Body.resolve(ui.style());
+    if window.compare.mode == Some(Mode::Wipe)
+        && let Some((texture, stage)) = other
+    {
+        paint_wipe(window, ui, &painter, rect, texture, stage, &font);
+    }
+    let is_heat = window.compare.mode == Some(Mode::Difference) || window.viewport.show.is_heat_map();
+    if is_heat {
+        paint_scale(ui, &painter, rect.intersect(room), &font);
+    }
+    if divisor > 1 {
+        let text = format!("preview 1/{divisor}");
+        badge(ui, &painter, rect.intersect(room).left_top() + vec2(8.0, 8.0), Align2::LEFT_TOP, &text, &font);
+    }
+    if window.main.shown().is_none() {
+        let text = match (&window.invalid, &window.main.status().phase) {
+            (Some(reason), _) | (None, Phase::Failed(reason)) => reason.as_str(),
+            _ => "preparing…",
+        };
+        let colour = ui.visuals().weak_text_color();
+        painter.text(rect.center(), Align2::CENTER_CENTER, text, font.clone(), colour);
+    }
+    paint_path(window, ui, &painter, rect);
+    paint_mark(window, ui, &painter, rect, &font);
+}
+
+fn paint_wipe(
+    window: &Window,
+    ui: &Ui,
+    painter: &egui::Painter,
+    rect: Rect,
+    texture: egui::TextureId,
+    stage: Option<&'static crate::stages::Stage>,
+    font: &FontId,
+) {
+    let share = window.compare.divider;
+    let x = rect.left() + rect.width() * share;
+    let right = Rect::from_min_max(pos2(x, rect.top()), rect.max);
+    let uv = Rect::from_min_max(pos2(share, 0.0), pos2(1.0, 1.0));
+    painter.image(texture, right, uv, Color32::WHITE);
+    painter.vline(x, rect.y_range(), Stroke::new(3.0, Color32::from_black_alpha(120)));
+    painter.vline(x, rect.y_range(), Stroke::new(1.5, Color32::WHITE));
+    let knob = pos2(x, rect.center().y);
+    painter.circle(knob, 9.0, Color32::WHITE, Stroke::new(1.0, Color32::from_black_alpha(120)));
+    for side in [-1.0, 1.0] {
+        let tip = knob + vec2(6.0 * side, 0.0);
+        let back = knob + vec2(2.5 * side, 0.0);
+        let points = vec![tip, back + vec2(0.0, -3.5), back + vec2(0.0, 3.5)];
+        painter.add(egui::Shape::convex_polygon(points, Color32::from_gray(60), Stroke::NONE));
+    }
+    let name = |stage: &crate::stages::Stage| format!("{} {}", stage.section, stage.title);
+    let y = rect.top().max(painter.clip_rect().top()) + 8.0;
+    // Names that would reach beyond the picture stay within it.
+    let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
+    if let Some(mine) = window.document.stage() {
+        badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, &name(mine), font);
+    }
+    if let Some(theirs) = stage {
+        badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, &name(theirs), font);
+    }
+}
+
+/// The heat map's colours with their values.
+fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, font: &FontId) {
+    const STEPS: usize = 64;
+    let bar = Rect::from_min_size(rect.left_bottom() + vec2(16.0, -44.0), vec2(180.0, 10.0));
+    painter.rect_filled(
+        bar.expand2(vec2(26.0, 0.0))
+            .with_max_y(bar.bottom() + 26.0)
+            .with_min_y(bar.top() - 8.0)
+            .translate(vec2(14.0, 0.0)),
+        CornerRadius::same(6),
+        ui.visuals().panel_fill.gamma_multiply(0.9),
+    );
+    let bar = bar.translate(vec2(14.0, 0.0));
+    for step in 0..STEPS {
+        let [red, green, blue] = heat_colour((step as f64 + 0.5) / STEPS as f64);
+        let left = bar.left() + bar.width() * step as f32 / STEPS as f32;
+        let strip = Rect::from_min_size(pos2(left, bar.top()), vec2(bar.width() / STEPS as f32 + 0.5, 10.0));
+        painter.rect_filled(strip, 0.0, Color32::from_rgb(red, green, blue));
+    }
+    let decades = (HEAT_LIMITS[1] / HEAT_LIMITS[0]).log10().round() as usize;
+    for decade in 0..=decades {
+        let x = bar.left() + bar.width() * decade as f32 / decades as f32;
+        let value = HEAT_LIMITS[0] * 10_f64.powi(decade as i32);
+        let at = pos2(x, bar.bottom() + 3.0);
+        painter.text(at, Align2::CENTER_TOP, format!("{value}"), font.clone(), ui.visuals().text_color());
+    }
+}
+
+/// Text on a plate, so that it can be read on any picture.
+fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, font: &FontId) {
+    let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), ui.visuals().strong_text_color());
+    let rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 6.0));
+    painter.rect_filled(rect, CornerRadius::same(5), ui.visuals().panel_fill.gamma_multiply(0.9));
+    painter.galley(rect.min + vec2(7.0, 3.0), galley, ui.visuals().strong_text_color());
+}
+
+fn paint_mark(window: &mut Window, ui: &Ui, painter: &egui::Painter, rect: Rect, font: &FontId) {
+    let Some(mark) = &window.viewport.mark else { return };
+    let age = mark.since.elapsed();
+    if age > MARK {
+        window.viewport.mark = None;
+        return;
+    }
+    let at = rect.min + vec2(mark.place[0] as f32, mark.place[1] as f32) * rect.size();
+    painter.circle_stroke(at, 9.0, Stroke::new(3.0, Color32::from_black_alpha(130)));
+    painter.circle_stroke(at, 9.0, Stroke::new(1.5, Color32::WHITE));
+    painter.circle_filled(at, 1.5, Color32::WHITE);
+    badge(ui, painter, at + vec2(14.0, 0.0), Align2::LEFT_CENTER, &mark.text, font);
+    ui.ctx().request_repaint_after(MARK - age);
+}
+
+/// The listed path as lines over the picture.
+fn paint_path(window: &Window, ui: &Ui, painter: &egui::Painter, rect: Rect) {
+    let document = &window.document;
+    let place = |point| {
+        let [x, y] = document.camera.place_of(point, document.aspect())?;
+        Some(rect.min + vec2(x as f32, y as f32) * rect.size())
+    };
+    let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
+    let points: Vec<Pos2> = window.inspector.path_points().map_while(place).collect();
+    for pair in points.windows(2) {
+        painter.line_segment([pair[0], pair[1]], Stroke::new(3.0, Color32::from_black_alpha(120)));
+        painter.line_segment([pair[0], pair[1]], Stroke::new(1.5, theme::accent(ui)));
+    }
+    for (index, point) in points.iter().enumerate() {
+        painter.circle(*point, 4.0, theme::accent(ui), Stroke::new(1.0, Color32::BLACK));
+        let font = TextStyle::Small.resolve(ui.style());
+        painter.text(*point + vec2(6.0, -6.0), Align2::LEFT_BOTTOM, index + 1, font, Color32::WHITE);
+    }
+}

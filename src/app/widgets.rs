@@ -1,0 +1,160 @@
+//! The controls that panels are made of: a name, a tooltip, and a reason where there is no use in it.
+
+use eframe::egui::{self, DragValue, Response, RichText, Slider, Ui};
+use glam::DVec3;
+use std::ops::RangeInclusive;
+
+/// What a control is called, what it means with its unit, and why it is of no use, if so.
+#[derive(Clone, Copy)]
+pub struct About<'a> {
+    pub name: &'a str,
+    pub help: &'a str,
+    pub useless: Option<&'a str>,
+}
+
+impl<'a> About<'a> {
+    pub fn new(name: &'a str, help: &'a str) -> Self {
+        About { name, help, useless: None }
+    }
+
+    pub fn useless_if(self, reason: Option<&'a str>) -> Self {
+        About { useless: reason, ..self }
+    }
+}
+
+/// Gives a widget the name that assistive technology reads.
+pub fn named(response: &Response, name: &str) {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
+}
+
+/// A name above, a control of that name below.
+pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
+    under_name(ui, about, |ui| {
+        let response = add(ui);
+        named(&response, about.name);
+        response
+    })
+}
+
+/// A name above, below it controls with names of their own.
+pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
+    ui.spacing_mut().item_spacing.y = 3.0;
+    let is_useful = about.useless.is_none();
+    let response = ui
+        .add_enabled_ui(is_useful, |ui| {
+            ui.add(egui::Label::new(RichText::new(about.name).small().color(ui.visuals().weak_text_color())));
+            explained(add(ui), about)
+        })
+        .inner;
+    ui.add_space(5.0);
+    response
+}
+
+/// Adds the tooltip, and the reason of a disabled control.
+pub fn explained(response: Response, about: About<'_>) -> Response {
+    let response = response.on_hover_text(about.help);
+    match about.useless {
+        Some(reason) => response.on_disabled_hover_text(format!("{}\n\n{reason}", about.help)),
+        None => response,
+    }
+}
+
+/// A slider with its number.
+pub fn slider(
+    ui: &mut Ui,
+    about: About<'_>,
+    value: &mut f64,
+    range: RangeInclusive<f64>,
+    change: impl FnOnce(Slider<'_>) -> Slider<'_>,
+) -> Response {
+    control(ui, about, |ui| {
+        let digits = ui.text_style_height(&egui::TextStyle::Body) * 5.0;
+        ui.spacing_mut().slider_width =
+            (ui.available_width() - digits - ui.spacing().item_spacing.x).max(40.0);
+        ui.spacing_mut().interact_size.x = digits;
+        ui.add(change(Slider::new(value, range)))
+    })
+}
+
+/// Three numbers.
+pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, speed: f64) -> Response {
+    under_name(ui, about, |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let width = (ui.available_width() - 8.0) / 3.0;
+            let mut all: Option<Response> = None;
+            for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
+                let drag = DragValue::new(number)
+                    .speed(speed)
+                    .max_decimals(4)
+                    .range(-1e15..=1e15)
+                    .custom_formatter(|n, _| compact(n));
+                let response = ui.add_sized([width, ui.spacing().interact_size.y], drag);
+                named(&response, &format!("{} {axis}", about.name));
+                let response = explained(response, about);
+                all = Some(match all {
+                    Some(earlier) => earlier.union(response),
+                    None => response,
+                });
+            }
+            all
+        })
+        .inner
+        .unwrap_or_else(|| ui.label(""))
+    })
+}
+
+/// A whole number to type or drag.
+pub fn whole(
+    ui: &mut Ui,
+    about: About<'_>,
+    value: &mut u64,
+    range: RangeInclusive<u64>,
+    speed: f64,
+) -> Response {
+    control(ui, about, |ui| {
+        let size = [ui.available_width(), ui.spacing().interact_size.y];
+        ui.add_sized(size, DragValue::new(value).range(range).speed(speed))
+    })
+}
+
+/// A check box; with it off, what it opens is not shown.
+pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
+    let response = ui.add_enabled(about.useless.is_none(), egui::Checkbox::new(value, about.name));
+    explained(response, about)
+}
+
+/// A number in few characters.
+pub fn compact(n: f64) -> String {
+    let magnitude = n.abs();
+    if n == 0.0 {
+        "0".to_owned()
+    } else if !(1e-3..1e5).contains(&magnitude) {
+        format!("{n:.2e}")
+    } else {
+        let decimals = (3.0 - magnitude.log10().floor()).clamp(0.0, 4.0) as usize;
+        let text = format!("{n:.decimals$}");
+        if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stay_short() {
+        for (number, text) in [
+            (0.0, "0"),
+            (1.0, "1"),
+            (-2.0, "-2"),
+            (0.1, "0.1"),
+            (10.126, "10.13"),
+            (1000.0, "1000"),
+            (1e-9, "1.00e-9"),
+            (123456789.0, "1.23e8"),
+        ] {
+            assert_eq!(compact(number), text);
+        }
+    }
+}

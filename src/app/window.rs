@@ -1,0 +1,405 @@
+//! The window's state, and a frame of it.
+
+use super::command::Command;
+use super::compare::Compare;
+use super::device::{Device, DeviceOptions};
+use super::dialogs::Dialog;
+use super::document::{Document, Origin, Source, Stop};
+use super::files::Message;
+use super::frame_log::FrameLog;
+use super::inspector::Inspector;
+use super::remembered::Remembered;
+use super::toasts::Toasts;
+use super::tracer::{Tracer, Want};
+use super::viewport::Viewport;
+use super::{menu, panels, plot, stage_text, status_bar, theme, viewport};
+use crate::backends::BackendChoice;
+use crate::cli::WindowOptions;
+use crate::output::OutputFormat;
+use crate::progressive::{Phase, Status};
+use crate::recipe::Recipe;
+use anyhow::{Context as _, Result};
+use eframe::egui::{self, util::undoer::Undoer};
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender};
+use std::time::{Duration, Instant};
+
+/// After this long without a move the picture is rendered at its full size.
+const SETTLE: Duration = Duration::from_millis(160);
+
+/// Below this width, points, there is no room for two panels beside the picture.
+const NARROW: f32 = 900.0;
+
+const STORAGE_KEY: &str = "window";
+
+/// All state of the window. [`Window::ui_in`] draws a frame of it, [`Window::perform`] carries out a command.
+pub struct Window {
+    pub(super) document: Document,
+    pub(super) undo: Undoer<Document>,
+    pub(super) remembered: Remembered,
+    pub(super) main: Tracer,
+    pub(super) compare: Compare,
+    pub(super) viewport: Viewport,
+    pub(super) inspector: Inspector,
+    pub(super) dialog: Option<Dialog>,
+    pub(super) toasts: Toasts,
+    pub(super) messages: (Sender<Message>, Receiver<Message>),
+    pub(super) queue: Vec<Command>,
+    /// A save that waits for the full size.
+    pub(super) pending_save: Option<(OutputFormat, PathBuf)>,
+    /// A film that goes on, until the tracer has it.
+    pub(super) pending_film: Option<crate::film::Film>,
+    /// What the film's samples took before this run, if that is known.
+    pub(super) seconds_before: Option<f64>,
+    /// Why the document cannot be rendered.
+    pub(super) invalid: Option<String>,
+    pub(super) is_paused: bool,
+    pub(super) is_full_screen: bool,
+    pub(super) frame_log: Option<FrameLog>,
+    /// What was carried out last.
+    pub(super) performed: Option<Command>,
+    backend: BackendChoice,
+    device_options: DeviceOptions,
+    last_document: Document,
+    moved: Option<Instant>,
+    /// The changes of this frame belong to a move that has begun before.
+    is_in_gesture: bool,
+    told_messages: (u64, usize),
+    is_dressed: bool,
+}
+
+impl Window {
+    /// A window that has not been drawn yet.
+    ///
+    /// # Errors
+    /// If the system gives no thread, or the frame log cannot be written.
+    pub fn new(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
+        let earlier: Option<Remembered> = storage.and_then(|storage| eframe::get_value(storage, STORAGE_KEY));
+        let is_first = earlier.is_none();
+        let mut remembered = earlier.unwrap_or_default().mended();
+        if is_first || options.is_device_given {
+            remembered.device = Device::of(&options.backend);
+        }
+        let document = document_of(&options);
+        let frame_log = options
+            .frame_log
+            .as_deref()
+            .map(|path| FrameLog::create(path).with_context(|| format!("cannot write {}", path.display())))
+            .transpose()?;
+        let mut window = Window {
+            undo: Undoer::default(),
+            main: Tracer::new().context("cannot start the render thread")?,
+            compare: Compare::default(),
+            viewport: Viewport::default(),
+            inspector: Inspector::default(),
+            dialog: None,
+            toasts: Toasts::default(),
+            messages: std::sync::mpsc::channel(),
+            queue: Vec::new(),
+            pending_save: None,
+            pending_film: None,
+            seconds_before: Some(0.0),
+            invalid: None,
+            is_paused: false,
+            is_full_screen: false,
+            frame_log,
+            performed: None,
+            device_options: DeviceOptions::of(&options.backend),
+            backend: options.backend,
+            last_document: document.clone(),
+            moved: None,
+            is_in_gesture: false,
+            told_messages: (0, 0),
+            is_dressed: false,
+            remembered,
+            document,
+        };
+        if let Some(path) = options.resume {
+            window.open(path, None);
+        }
+        Ok(window)
+    }
+
+    /// What is shown.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// What is shown, to be changed as by a panel.
+    pub fn document_mut(&mut self) -> &mut Document {
+        &mut self.document
+    }
+
+    /// The numbers of the render.
+    pub fn status(&self) -> &Status {
+        self.main.status()
+    }
+
+    /// What the window remembers.
+    pub fn remembered_mut(&mut self) -> &mut Remembered {
+        &mut self.remembered
+    }
+
+    /// What is being told to the user.
+    pub fn messages(&self) -> Vec<String> {
+        self.toasts.texts().map(str::to_owned).collect()
+    }
+
+    /// Samples per pixel of the picture on the screen, and by how much it is smaller than asked for.
+    pub fn shown(&self) -> Option<(u64, u32)> {
+        self.main.shown().map(|shown| (shown.samples, shown.divisor))
+    }
+
+    /// What was carried out last.
+    pub fn performed(&self) -> Option<Command> {
+        self.performed
+    }
+
+    /// Whether a dialog is open.
+    pub fn has_dialog(&self) -> bool {
+        self.dialog.is_some()
+    }
+
+    /// Whether two stages are compared.
+    pub fn is_comparing(&self) -> bool {
+        self.compare.mode.is_some()
+    }
+
+    /// Whether there is a second picture, of what is compared now.
+    pub fn has_other_picture(&self) -> bool {
+        self.compare.has_picture(self.document.stage())
+    }
+
+    /// Asks for a command, to be carried out in the next frame.
+    pub fn send(&mut self, command: Command) {
+        self.queue.push(command);
+    }
+
+    /// Shows another picture.
+    pub(super) fn show_origin(&mut self, origin: Origin) {
+        let stop = self.document.stop;
+        let is_usual = stop == Stop::for_recipe(&self.document.origin.recipe);
+        self.document = Document::new(origin);
+        // Stop conditions that the user has chosen are his for all stages, where they make sense.
+        if !is_usual && self.document.stop.samples.is_none() {
+            self.document.stop = stop;
+        }
+        self.seconds_before = Some(0.0);
+        self.inspector.forget();
+    }
+
+    /// Goes on with a film of the document that is shown now.
+    pub(super) fn adopt(&mut self, film: crate::film::Film, seconds: Option<f64>) {
+        self.pending_film = Some(film);
+        self.seconds_before = seconds;
+        self.last_document = self.document.clone();
+    }
+
+    /// A change by hand: a preview comes first.
+    pub(super) fn note_move(&mut self) {
+        self.moved = Some(Instant::now());
+    }
+
+    /// A command: what it changes is no part of a move.
+    pub(super) fn end_move(&mut self) {
+        self.moved = None;
+        self.is_in_gesture = false;
+    }
+
+    fn is_moving(&self) -> bool {
+        self.moved.is_some_and(|at| at.elapsed() < SETTLE)
+    }
+
+    /// Draws a frame: what has arrived, what was asked for, what is seen, what is to be rendered.
+    pub fn ui_in(&mut self, ui: &mut egui::Ui) {
+        let context = ui.ctx().clone();
+        self.dress(&context);
+        self.receive();
+        let is_pictured = self.main.poll(&context);
+        if is_pictured && let Some(log) = &mut self.frame_log {
+            log.pictured();
+        }
+        self.tell_messages();
+        self.take_input(&context);
+        for command in std::mem::take(&mut self.queue) {
+            self.perform(&context, command);
+        }
+        self.layout(ui);
+        self.dialogs(ui);
+        for command in std::mem::take(&mut self.queue) {
+            self.perform(&context, command);
+        }
+        self.follow(&context);
+    }
+
+    fn dress(&mut self, context: &egui::Context) {
+        if !self.is_dressed {
+            self.is_dressed = true;
+            theme::install(context);
+            theme::choose(context, self.remembered.theme);
+            self.main.wake(context);
+        }
+    }
+
+    fn layout(&mut self, ui: &mut egui::Ui) {
+        let is_narrow = ui.available_width() < NARROW;
+        let has_panels = self.remembered.has_panels;
+        if has_panels {
+            menu::ui(self, ui, is_narrow);
+            status_bar::ui(self, ui);
+            if self.remembered.has_plot {
+                plot::ui(self, ui);
+            }
+            if self.remembered.has_controls {
+                let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::ZERO);
+                egui::Panel::left("controls")
+                    .frame(frame)
+                    .default_size(244.0)
+                    .size_range(190.0..=380.0)
+                    .show(ui, |ui| {
+                        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                            egui::Frame::new().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
+                                panels::ui(self, ui);
+                                if is_narrow && self.remembered.has_info {
+                                    stage_text::ui(self, ui);
+                                }
+                            });
+                        });
+                    });
+            }
+            if self.remembered.has_info && !is_narrow {
+                let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::ZERO);
+                egui::Panel::right("info").frame(frame).default_size(256.0).size_range(190.0..=420.0).show(
+                    ui,
+                    |ui| {
+                        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                            egui::Frame::new().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
+                                stage_text::ui(self, ui);
+                            });
+                        });
+                    },
+                );
+            }
+        }
+        let frame = egui::Frame::new().fill(theme::surround(ui));
+        egui::CentralPanel::default().frame(frame).show(ui, |ui| viewport::ui(self, ui));
+    }
+
+    /// Notes what has changed, and has it rendered.
+    fn follow(&mut self, context: &egui::Context) {
+        if self.document != self.last_document {
+            // What was before a change, or before a whole gesture, is what undo comes back to.
+            if !self.is_in_gesture {
+                self.undo.add_undo(&self.last_document);
+            }
+            let is_by_hand = context.input(|input| input.pointer.any_down());
+            if !self.document.has_same_film(&self.last_document) {
+                if is_by_hand {
+                    self.note_move();
+                }
+                self.seconds_before = Some(0.0);
+                self.is_paused = false;
+                if let Some(log) = &mut self.frame_log {
+                    log.changed();
+                }
+            }
+            self.last_document = self.document.clone();
+        }
+        self.is_in_gesture = self.is_moving() || context.input(|input| input.pointer.any_down());
+        let now = context.input(|input| input.time);
+        self.undo.feed_state(now, &self.document);
+
+        let is_moving = self.is_moving();
+        if is_moving {
+            context.request_repaint_after(Duration::from_millis(40));
+        }
+        self.backend = self.chosen_backend();
+        let want =
+            Want { document: &self.document, backend: &self.backend, stop: self.document.stop, is_moving };
+        let outcome = match self.pending_film.take() {
+            Some(film) => self.main.go_on_with(film, &want),
+            None => self.main.want(&want),
+        };
+        self.invalid = outcome.err();
+        self.compare.follow(context, &want, &self.main, &self.messages.0);
+        if self.main.is_full(&self.document)
+            && let Some((format, path)) = self.pending_save.take()
+        {
+            self.save(format, path);
+        }
+        self.inspector.follow(&self.document, &self.main, &self.messages.0, context);
+    }
+
+    /// The backend of the chosen device, with lanes and threads as chosen.
+    fn chosen_backend(&self) -> BackendChoice {
+        let Remembered { device, lanes, threads, .. } = self.remembered;
+        device.backend(&self.device_options, lanes, threads)
+    }
+
+    /// Passes on what the render thread had to say.
+    fn tell_messages(&mut self) {
+        let status = self.main.status();
+        let (run, told) = self.told_messages;
+        let told = if run == status.run { told } else { 0 };
+        let news: Vec<String> = status.messages.iter().skip(told).cloned().collect();
+        self.told_messages = (status.run, status.messages.len());
+        if !news.is_empty() {
+            // Whatever failed, the device that goes on is the chosen one now.
+            if let Some(info) = &status.backend
+                && let Some(device) = Device::ALL.into_iter().find(|device| device.name() == info.name)
+            {
+                self.remembered.device = device;
+            }
+            for message in news {
+                self.toasts.bad(message);
+            }
+        }
+    }
+
+    /// Whether samples are being added.
+    pub(super) fn is_working(&self) -> bool {
+        matches!(self.main.status().phase, Phase::Preparing | Phase::Tracing)
+    }
+}
+
+fn document_of(options: &WindowOptions) -> Document {
+    let WindowOptions { recipe, stage, file, plan, .. } = options;
+    let origin = match (stage, file, Recipe::builtin(&recipe.name)) {
+        (Some(stage), _, _) => Origin::of_stage(stage),
+        (None, Some(path), _) => {
+            // The file as it is, so that the flags are changes that can be reset.
+            let recipe = crate::recipe::file::load(path).unwrap_or_else(|_| recipe.clone());
+            Origin { recipe, source: Source::File(path.clone()) }
+        }
+        (None, None, Some(builtin)) => {
+            // A built-in scene that a stage shows is opened as that stage.
+            match crate::stages::Stage::find(&builtin.name) {
+                Ok(stage) if stage.recipe().scene == builtin.scene => Origin::of_stage(stage),
+                _ => Origin { recipe: builtin, source: Source::Builtin },
+            }
+        }
+        (None, None, None) => Origin::guess(recipe, None),
+    };
+    let mut document = Document::new(origin);
+    document.camera = recipe.camera;
+    document.settings = recipe.settings;
+    document.stop = plan.as_ref().map_or_else(|| Stop::for_recipe(recipe), Stop::of_plan);
+    document
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
+        if let Some(log) = &mut self.frame_log {
+            log.frame(frame.info().cpu_usage);
+        }
+        self.ui_in(ui);
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, STORAGE_KEY, &self.remembered);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        visuals.panel_fill.to_normalized_gamma_f32()
+    }
+}

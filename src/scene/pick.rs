@@ -1,0 +1,125 @@
+//! What is under a point of the picture: one exact ray, in `f64`, through the middle of the lens.
+
+use super::{Camera, Scene};
+use glam::DVec3;
+
+/// Where a ray first meets the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pick {
+    /// Index of the sphere.
+    pub sphere: usize,
+    /// Distance from the eye along the ray, scene units.
+    pub distance: f64,
+    /// The point, scene units.
+    pub point: DVec3,
+    /// Unit normal, against the ray.
+    pub normal: DVec3,
+}
+
+impl Camera {
+    /// Unit direction from the eye through the point `at` of the picture, `[0, 0]` its upper left and `[1, 1]`
+    /// its lower right corner. `aspect` is width by height.
+    pub fn direction_through(&self, at: [f64; 2], aspect: f64) -> DVec3 {
+        let basis = self.basis();
+        let half_height = (self.vfov_degrees.to_radians() / 2.0).tan();
+        let right = (2.0 * at[0] - 1.0) * half_height * aspect;
+        let up = (1.0 - 2.0 * at[1]) * half_height;
+        (right * basis.u + up * basis.v - basis.w).normalize()
+    }
+
+    /// Distance of `point` from the eye along the view: the focus distance that makes it sharp.
+    pub fn depth_of(&self, point: DVec3) -> f64 {
+        (self.look_from - point).dot(self.basis().w)
+    }
+
+    /// Where `point` is in the picture, as in [`Camera::direction_through`]; `None` behind the eye.
+    pub fn place_of(&self, point: DVec3, aspect: f64) -> Option<[f64; 2]> {
+        let basis = self.basis();
+        let depth = self.depth_of(point);
+        if depth <= 0.0 {
+            return None;
+        }
+        let half_height = (self.vfov_degrees.to_radians() / 2.0).tan() * depth;
+        let offset = point - self.look_from;
+        let right = offset.dot(basis.u) / (half_height * aspect);
+        let up = offset.dot(basis.v) / half_height;
+        Some([(right + 1.0) / 2.0, (1.0 - up) / 2.0])
+    }
+}
+
+impl Scene {
+    /// The first sphere that a ray meets. `direction` has length 1.
+    pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Pick> {
+        let nearest = self
+            .spheres
+            .iter()
+            .enumerate()
+            .filter_map(|(index, sphere)| {
+                let distance = root(sphere.center - origin, sphere.radius, direction)?;
+                Some((index, distance))
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let (sphere, distance) = nearest?;
+        let point = origin + distance * direction;
+        let outward = (point - self.spheres[sphere].center) / self.spheres[sphere].radius;
+        let normal = if outward.dot(direction) > 0.0 { -outward } else { outward };
+        Some(Pick { sphere, distance, point, normal })
+    }
+}
+
+/// The nearest root in front of the eye. An eye on the surface does not see that surface.
+fn root(to_center: DVec3, radius: f64, direction: DVec3) -> Option<f64> {
+    const ON_SURFACE: f64 = 1e-9;
+    let along = to_center.dot(direction);
+    // The distance from the centre to the ray, without the cancellation of the book's discriminant.
+    let beside = to_center - along * direction;
+    let squared = radius * radius - beside.length_squared();
+    if squared < 0.0 {
+        return None;
+    }
+    let half = squared.sqrt();
+    [along - half, along + half].into_iter().find(|distance| *distance > ON_SURFACE * radius)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Material;
+
+    fn two() -> Scene {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, grey);
+        scene.add_sphere(DVec3::new(0.0, 0.0, -1.0), 0.5, grey);
+        scene
+    }
+
+    #[test]
+    fn the_nearest_sphere_is_picked() {
+        let pick = two().pick(DVec3::ZERO, DVec3::NEG_Z).unwrap();
+        assert_eq!((pick.sphere, pick.distance, pick.normal), (1, 0.5, DVec3::Z));
+        assert_eq!(two().pick(DVec3::ZERO, DVec3::Y), None);
+    }
+
+    #[test]
+    fn from_inside_the_far_side_is_seen() {
+        let pick = two().pick(DVec3::NEG_Z, DVec3::NEG_Z).unwrap();
+        assert_eq!((pick.sphere, pick.distance, pick.normal), (1, 0.5, DVec3::Z));
+        let on_surface = two().pick(DVec3::new(0.0, 0.0, -0.5), DVec3::Z);
+        assert_eq!(on_surface, None);
+    }
+
+    #[test]
+    fn places_and_directions_are_each_others_inverse() {
+        let camera = Camera { look_from: DVec3::new(3.0, 2.0, 1.0), ..Camera::BOOK };
+        for at in [[0.0, 0.0], [0.5, 0.5], [1.0, 0.25]] {
+            let point = camera.look_from + 7.0 * camera.direction_through(at, 1.5);
+            let back = camera.place_of(point, 1.5).unwrap();
+            assert!((back[0] - at[0]).abs() < 1e-9 && (back[1] - at[1]).abs() < 1e-9, "{at:?} {back:?}");
+        }
+        let middle = Camera::BOOK.direction_through([0.5, 0.5], 2.0);
+        assert_eq!(middle, DVec3::NEG_Z);
+        assert_eq!(Camera::BOOK.depth_of(DVec3::new(5.0, 5.0, -2.0)), 2.0);
+        assert_eq!(Camera::BOOK.place_of(DVec3::Z, 1.0), None);
+    }
+}
