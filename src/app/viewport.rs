@@ -458,7 +458,12 @@ fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, font: &FontId) {
 /// Text on a plate, so that it can be read on any picture.
 fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, font: &FontId) {
     let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), ui.visuals().strong_text_color());
-    let rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 6.0));
+    let mut rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 6.0));
+    let missing = painter.clip_rect().left() + 4.0 - rect.left();
+    if missing > 0.0 {
+        // A row lower, so that it does not cover what stands beside it.
+        rect = rect.translate(vec2(missing, rect.height() + 4.0));
+    }
     painter.rect_filled(rect, CornerRadius::same(5), ui.visuals().panel_fill.gamma_multiply(0.9));
     painter.galley(rect.min + vec2(7.0, 3.0), galley, ui.visuals().strong_text_color());
 }
