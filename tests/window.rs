@@ -251,7 +251,7 @@ fn what_has_no_effect_is_disabled() {
 
 #[test]
 fn another_device_goes_on_with_the_same_film() {
-    let mut harness = open("--stage glass-schlick --size 64x36 --samples 100000");
+    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000");
     until(&mut harness, "samples", has_samples(8));
     let (run, before) = (harness.state().status().run, harness.state().status().samples_per_pixel);
     send(&mut harness, Command::Device(Device::Reference));
@@ -269,7 +269,7 @@ fn another_device_goes_on_with_the_same_film() {
 
 #[test]
 fn a_pause_loses_nothing() {
-    let mut harness = open("--stage glass-schlick --size 64x36 --samples 100000");
+    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000");
     until(&mut harness, "samples", has_samples(8));
     harness.key_press(Key::Space);
     until(&mut harness, "a pause", |window| window.status().phase == weekender::progressive::Phase::Paused);
@@ -556,6 +556,9 @@ fn snapshot(name: &str, theme: Theme, size: [f32; 2], scale: f32) {
         );
     send(&mut harness, Command::Theme(theme));
     until(&mut harness, "the end", has_samples(64));
+    until(&mut harness, "the stop", |window| {
+        matches!(window.status().phase, weekender::progressive::Phase::Done(_))
+    });
     harness.run_steps(10);
     let status_height = if size[0] < 900.0 { 74.0 } else { 33.0 };
     let status =

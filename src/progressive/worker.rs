@@ -301,6 +301,9 @@ impl Render {
 
     /// Lets another backend take over once it is ready; until then the present one goes on.
     fn switch(&mut self, choice: BackendChoice, factory: &Arc<Mutex<Factory>>) {
+        if self.upcoming.as_ref().is_some_and(|upcoming| upcoming.choice == choice) {
+            return;
+        }
         self.upcoming = None;
         if choice == self.choice {
             return;
