@@ -41,7 +41,9 @@ fn open(arguments: &str) -> Harness<'static, Window> {
 fn until(harness: &mut Harness<'_, Window>, what: &str, is_so: impl Fn(&Window) -> bool) {
     let begin = Instant::now();
     while !is_so(harness.state()) {
-        assert!(begin.elapsed() < PATIENCE, "never: {what}; {:?}", harness.state().messages());
+        let state = harness.state();
+        let phase = &state.status().phase;
+        assert!(begin.elapsed() < PATIENCE, "never: {what}; {phase:?}; {:?}", state.messages());
         std::thread::sleep(Duration::from_millis(2));
         harness.step();
     }

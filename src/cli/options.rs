@@ -262,6 +262,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
     }
     let mut source = sources::find(&raw.picture, raw.resume.as_deref())?;
     sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
     source.recipe.job()?;
     let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
     let is_file = raw.picture.scene.as_deref().is_some_and(sources::is_file);
