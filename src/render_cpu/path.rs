@@ -38,7 +38,8 @@ pub mod needs {
     pub const ALL: u32 = 31;
 }
 
-/// Packets that take turns. Fewer leave the processor waiting (2: -10 %, 1: -35 %), more gain nothing.
+/// Packets that take turns. In a prototype with 16 lanes, fewer left the processor waiting (2: -10 %, 1: -35 %) and
+/// more gained nothing; not measured again here.
 const PACKETS: usize = 4;
 
 struct Packet<L: Lanes> {
