@@ -9,10 +9,11 @@ use std::num::Wrapping;
 use weekender::film::FIXED_POINT_MAX;
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
-use weekender::render_cpu::lanes::{Lanes, Scalar, V3};
+use weekender::render_cpu::lanes::{Lanes, Scalar, V3, Wide};
 use weekender::render_cpu::material::{Surface, reflectance, scatter};
 use weekender::render_cpu::sphere::{
-    NONE, Rays, acne_root, anchored_root, anchored_surface_point, near_root, nearest_root, surface_point,
+    NONE, Rays, Spheres, acne_root, anchored_root, anchored_surface_point, near_root, nearest_root,
+    surface_point,
 };
 use weekender::render_gpu::shader_source::{PROBE_STRIDE, Probe};
 use weekender::render_gpu::{GpuOptions, GpuRenderer};
@@ -208,7 +209,9 @@ fn rays(words: &Words) -> Rays<L> {
 }
 
 /// Compares distances; those that are no hit need only be none on both sides.
-fn compare_keys(ulps: &mut Ulps, got: u32, expected: u32, what: &Words) {
+fn compare_keys(ulps: &mut Ulps, got: u32, expected: i32, what: &Words) {
+    // The CPU's keys are those of negated distances.
+    let expected = (-f32::from_bits(expected as u32)).to_bits();
     let hits = |key: u32| key < f32::INFINITY.to_bits();
     assert_eq!(hits(got), hits(expected), "{what:?}: {got:x} {expected:x}");
     if hits(got) {
@@ -224,9 +227,9 @@ fn intersections() {
     for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Roots, ray_words) {
         let rays = rays(&input);
         let sphere: [f32; 4] = [8, 9, 10, 11].map(|i| float(&input, i));
-        compare_keys(&mut ulps, output[0], near_root(L, &rays, &sphere, one), &input);
-        compare_keys(&mut ulps, output[1], nearest_root(L, &rays, &sphere, one), &input);
-        compare_keys(&mut ulps, output[2], acne_root(L, &rays, &sphere), &input);
+        compare_keys(&mut ulps, output[0], near_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
+        compare_keys(&mut ulps, output[1], nearest_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
+        compare_keys(&mut ulps, output[2], acne_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
     }
     ulps.within("roots", 64.0);
 
@@ -344,7 +347,7 @@ fn camera_rays() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = job(DielectricLaws::Schlick);
     let settings = job.settings();
-    let camera = CameraTable::<f32>::new(job.camera(), settings.width, settings.height);
+    let camera = CameraTable::<f32>::new(job.camera(), settings.width, settings.height).map(Wide::splat);
     let mut ulps = Ulps::default();
     for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Camera, |i| {
         let [x, y, a, b] = uniform(i, 50);

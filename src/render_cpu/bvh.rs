@@ -3,7 +3,7 @@
 //! Twin: shaders/bvh.wgsl
 
 use super::lanes::{Lanes, V3, splat3};
-use super::sphere::{Nearest, Rays, nearest_root};
+use super::sphere::{Nearest, Rays, Spheres, nearest_root};
 use crate::tables::hierarchy::{COUNT_MASK, Hierarchy, LEAST_COMPONENT, Node, ROUNDING_UNITS};
 
 /// Deepest tree that a traversal has room for. obvhs promises depths well below.
@@ -31,30 +31,32 @@ pub fn traverse<L: Lanes>(
     let forward = [rays.direction.x, rays.direction.y, rays.direction.z].map(|d| {
         2 * L::bits(L::lt(l.constant(0.0), d) & active).count_ones() >= L::bits(active).count_ones()
     });
-    stack[0] = 0;
-    let mut depth = 1;
-    while depth > 0 {
-        depth -= 1;
-        let node = &hierarchy.nodes[stack[depth] as usize];
-        if L::bits(slabs.meet(l, node, L::from_key(nearest.key)) & active) == 0 {
-            continue;
-        }
-        let count = node.count & COUNT_MASK;
-        if count > 0 {
+    let mut limit = nearest.distance();
+    let (mut index, mut depth) = (0, 0);
+    loop {
+        let node = &hierarchy.nodes[index as usize];
+        if L::bits(slabs.meet(l, node, limit) & active) != 0 {
+            let count = node.count & COUNT_MASK;
+            if count == 0 {
+                let ascending = node.count & (1 << 29) == 0;
+                let nearer = u32::from(forward[(node.count >> 30) as usize] != ascending);
+                stack[depth] = node.first + 1 - nearer;
+                index = node.first + nearer;
+                depth += 1;
+                continue;
+            }
             let first = node.first as usize;
             for (offset, sphere) in spheres[first..first + count as usize].iter().enumerate() {
-                let number = l.splat_u((first + offset) as u32);
-                nearest.take_in_any_order(nearest_root(l, rays, sphere, number), number);
+                let sphere = Spheres::splat(l, *sphere, l.splat_u((first + offset) as u32));
+                nearest.take_in_any_order(nearest_root(l, rays, &sphere), sphere.number);
             }
-        } else {
-            let ascending = node.count & (1 << 29) == 0;
-            let first_is_near = forward[(node.count >> 30) as usize] == ascending;
-            let (near, far) =
-                if first_is_near { (node.first, node.first + 1) } else { (node.first + 1, node.first) };
-            stack[depth] = far;
-            stack[depth + 1] = near;
-            depth += 2;
+            limit = nearest.distance();
         }
+        if depth == 0 {
+            return;
+        }
+        depth -= 1;
+        index = stack[depth];
     }
 }
 

@@ -5,9 +5,10 @@
 //! them render the same bits, which tests hold them to.
 
 use super::Isa;
-use super::lanes::{Lanes4, Lanes8, Lanes16, Permute, Reference, Scalar};
+use super::lanes::{Instructions, Lanes4, Lanes8, Lanes16, Reference, Scalar};
 use super::path::{needs, trace};
 use super::record::record;
+use super::wide::WideTables;
 use super::work::{TileStats, Work};
 use crate::record::PathRecord;
 use crate::render::Features;
@@ -15,7 +16,7 @@ use crate::tables::Tables;
 use fearless_simd::{Level, Simd};
 
 /// Traces a tile.
-pub type Kernel<R> = Box<dyn Fn(&Tables<R>, &mut Work) -> TileStats + Send + Sync>;
+pub type Kernel<R> = Box<dyn Fn(&WideTables<R>, &mut Work) -> TileStats + Send + Sync>;
 
 /// Opaque spheres and a pinhole.
 const OPAQUE: u32 = 0;
@@ -120,7 +121,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
 }
 
 /// Records one path.
-pub type Recorder = Box<dyn Fn(&Tables<f32>, [u32; 2], u64) -> PathRecord>;
+pub type Recorder = Box<dyn Fn(&WideTables<f32>, [u32; 2], u64) -> PathRecord>;
 
 /// A recorder that computes the same bits as the kernels of `isa`.
 pub fn recorder(isa: Isa) -> Recorder {
@@ -158,7 +159,7 @@ fn scalar<S: Simd, const FUSED: bool>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn four<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn four<S: Instructions, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
@@ -167,7 +168,7 @@ fn four<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn eight<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn eight<S: Instructions, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
@@ -176,7 +177,7 @@ fn eight<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn sixteen<S: Permute, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn sixteen<S: Instructions, const NEEDS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]

@@ -17,8 +17,9 @@ pub const MAX_LANES: usize = 16;
 
 /// Rows of numbers, and what can be done with them.
 ///
-/// Ordering by [`Lanes::key`]: distances are compared as unsigned integers, in which order positive numbers come
-/// first, then infinity, then NaN and negative numbers; so those lose a search for the nearest by themselves.
+/// Ordering by [`Lanes::key`]: of a distance `t` the bits of `-t` are compared as signed integers, in which order
+/// positive distances come first, the nearest before all, then infinity, then NaN and distances behind the ray; so
+/// those lose a search for the nearest by themselves. (SSE and AVX2 compare signed integers alone.)
 pub trait Lanes: Copy + Send + Sync + 'static {
     /// Precision.
     type Real: Real;
@@ -39,7 +40,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
         + BitOr<Output = Self::U>;
     /// Truth values.
     type M: Copy + BitAnd<Output = Self::M> + BitOr<Output = Self::M> + Not<Output = Self::M>;
-    /// A float's bits, for ordering.
+    /// The bits of a negated distance, for ordering.
     type Key: Copy;
     /// Numbers in a row.
     const WIDTH: usize;
@@ -53,17 +54,24 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn constant(self, x: f64) -> Self::F {
         self.splat(Self::Real::from_f64(x))
     }
+    /// A row of numbers from memory.
+    fn load(self, from: &Wide<Self::Real>) -> Self::F;
     /// Truth values from the lowest bits.
     fn mask(self, bits: u32) -> Self::M;
     /// The first [`Lanes::WIDTH`] numbers of a buffer.
-    fn load_u(self, from: &[u32; MAX_LANES]) -> Self::U;
+    fn load_u(self, from: &WideU) -> Self::U;
     /// To the first [`Lanes::WIDTH`] numbers of a buffer.
-    fn store_u(u: Self::U, to: &mut [u32; MAX_LANES]);
+    fn store_u(u: Self::U, to: &mut WideU);
     /// To the first [`Lanes::WIDTH`] numbers of a buffer.
-    fn store(f: Self::F, to: &mut [Self::Real; MAX_LANES]);
+    fn store(f: Self::F, to: &mut Wide<Self::Real>);
 
     /// `a b + c`, rounded once where the level can.
     fn mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
+    /// `a b - c`, rounded once where the level can.
+    #[inline(always)]
+    fn mul_sub(a: Self::F, b: Self::F, c: Self::F) -> Self::F {
+        Self::mul_add(a, b, -c)
+    }
     /// `c - a b`, rounded once where the level can.
     fn neg_mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
     /// Square root; NaN below 0.
@@ -81,8 +89,21 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// Where `m`, `a`; else `b`.
     fn select(m: Self::M, a: Self::F, b: Self::F) -> Self::F;
 
+    /// Whether the sign is a minus, also that of 0.
+    fn is_negative(x: Self::F) -> Self::M;
+
     /// Where `m`, `a`; else `b`.
     fn select_u(m: Self::M, a: Self::U, b: Self::U) -> Self::U;
+    /// Where `m`, `a`; else 0.
+    #[inline(always)]
+    fn keep(self, m: Self::M, a: Self::U) -> Self::U {
+        Self::select_u(m, a, self.splat_u(0))
+    }
+    /// Where `m`, `u32::MAX`; else `a`.
+    #[inline(always)]
+    fn fill(self, m: Self::M, a: Self::U) -> Self::U {
+        Self::select_u(m, self.splat_u(u32::MAX), a)
+    }
     /// `a == b`.
     fn eq_u(a: Self::U, b: Self::U) -> Self::M;
     /// The smaller.
@@ -95,31 +116,50 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// One bit a lane.
     fn bits(m: Self::M) -> u32;
 
-    /// To compare as unsigned.
-    fn key(f: Self::F) -> Self::Key;
-    /// The float with these bits.
+    /// Of a negated distance, to compare as signed.
+    fn key(negated: Self::F) -> Self::Key;
+    /// The negated distance.
     fn from_key(k: Self::Key) -> Self::F;
+    /// The key, or where `m` one that loses.
+    fn exclude(self, m: Self::M, k: Self::Key) -> Self::Key;
     /// The smaller.
     fn min_key(a: Self::Key, b: Self::Key) -> Self::Key;
+    /// `a < b`.
+    fn lt_key(a: Self::Key, b: Self::Key) -> Self::M;
     /// `a == b`.
     fn eq_key(a: Self::Key, b: Self::Key) -> Self::M;
 
     /// An integer below `2^31` as a float.
     fn float_of(u: Self::U) -> Self::F;
     /// A float in `0 ..= 2^31 - 128` to the nearest integer, ties to even.
-    fn fixed_point(f: Self::F) -> Self::U;
+    fn fixed_point(self, f: Self::F) -> Self::U;
     /// Rows that [`Lanes::permute`] can choose among; 0 if it is not there.
     const PERMUTED_ROWS: usize = 0;
     /// From a column of numbers, the one that each lane's index names: one instruction for a table that fits a
-    /// register. Indices must be below [`Lanes::PERMUTED_ROWS`].
+    /// register. Indices count modulo [`Lanes::PERMUTED_ROWS`].
     #[inline(always)]
-    fn permute(self, column: &[Self::Real; MAX_LANES], _indices: Self::U) -> Self::F {
-        self.splat(column[0])
+    fn permute(self, column: &Wide<Self::Real>, _indices: Self::U) -> Self::F {
+        self.splat(column.0[0])
     }
     /// Columns `4 group ..` of the rows that the first [`Lanes::WIDTH`] `indices` name.
-    fn gather(self, rows: &[Row<Self::Real>], indices: &[u32; MAX_LANES], group: usize) -> [Self::F; 4];
+    fn gather(self, rows: &[Row<Self::Real>], indices: &WideU, group: usize) -> [Self::F; 4];
     /// Sine and cosine of an angle in turns, `0 <= u < 1`.
     fn sin_cos_turns(self, u: Self::F) -> (Self::F, Self::F);
+}
+
+/// Numbers of one row in memory, of which a packet takes the first of its width.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(64))]
+pub struct Wide<R>(pub [R; MAX_LANES]);
+
+/// The same for integers.
+pub type WideU = Wide<u32>;
+
+impl<R: Copy> Wide<R> {
+    /// The same number everywhere.
+    pub fn splat(x: R) -> Self {
+        Wide([x; MAX_LANES])
+    }
 }
 
 /// A float in `[0, 1)` from the upper 24 bits.
@@ -173,6 +213,12 @@ impl<F: Copy + Mul<Output = F>> V3<F> {
 #[inline(always)]
 pub fn splat3<L: Lanes>(l: L, v: [L::Real; 3]) -> V3<L::F> {
     V3 { x: l.splat(v[0]), y: l.splat(v[1]), z: l.splat(v[2]) }
+}
+
+/// A vector a lane, from memory.
+#[inline(always)]
+pub fn load3<L: Lanes>(l: L, v: &[Wide<L::Real>; 3]) -> V3<L::F> {
+    V3 { x: l.load(&v[0]), y: l.load(&v[1]), z: l.load(&v[2]) }
 }
 
 /// Scalar product.
@@ -230,12 +276,12 @@ pub struct Scalar<const FUSED: bool>;
 pub struct Reference;
 
 macro_rules! scalar_lanes {
-    ($real:ident, $bits:ident, $fused:expr) => {
+    ($real:ident, $bits:ident, $signed:ident, $fused:expr) => {
         type Real = $real;
         type F = $real;
         type U = Wrapping<u32>;
         type M = bool;
-        type Key = $bits;
+        type Key = $signed;
         const WIDTH: usize = 1;
 
         #[inline(always)]
@@ -251,16 +297,20 @@ macro_rules! scalar_lanes {
             bits & 1 != 0
         }
         #[inline(always)]
-        fn load_u(self, from: &[u32; MAX_LANES]) -> Wrapping<u32> {
-            Wrapping(from[0])
+        fn load(self, from: &Wide<$real>) -> $real {
+            from.0[0]
         }
         #[inline(always)]
-        fn store_u(u: Wrapping<u32>, to: &mut [u32; MAX_LANES]) {
-            to[0] = u.0;
+        fn load_u(self, from: &WideU) -> Wrapping<u32> {
+            Wrapping(from.0[0])
         }
         #[inline(always)]
-        fn store(f: $real, to: &mut [$real; MAX_LANES]) {
-            to[0] = f;
+        fn store_u(u: Wrapping<u32>, to: &mut WideU) {
+            to.0[0] = u.0;
+        }
+        #[inline(always)]
+        fn store(f: $real, to: &mut Wide<$real>) {
+            to.0[0] = f;
         }
         #[inline(always)]
         fn mul_add(a: $real, b: $real, c: $real) -> $real {
@@ -299,6 +349,10 @@ macro_rules! scalar_lanes {
             if m { a } else { b }
         }
         #[inline(always)]
+        fn is_negative(x: $real) -> bool {
+            x.is_sign_negative()
+        }
+        #[inline(always)]
         fn select_u(m: bool, a: Wrapping<u32>, b: Wrapping<u32>) -> Wrapping<u32> {
             if m { a } else { b }
         }
@@ -323,19 +377,27 @@ macro_rules! scalar_lanes {
             u32::from(m)
         }
         #[inline(always)]
-        fn key(f: $real) -> $bits {
-            f.to_bits()
+        fn key(negated: $real) -> $signed {
+            negated.to_bits() as $signed
         }
         #[inline(always)]
-        fn from_key(k: $bits) -> $real {
-            <$real>::from_bits(k)
+        fn from_key(k: $signed) -> $real {
+            <$real>::from_bits(k as $bits)
         }
         #[inline(always)]
-        fn min_key(a: $bits, b: $bits) -> $bits {
+        fn exclude(self, m: bool, k: $signed) -> $signed {
+            if m { $signed::MAX } else { k }
+        }
+        #[inline(always)]
+        fn min_key(a: $signed, b: $signed) -> $signed {
             a.min(b)
         }
         #[inline(always)]
-        fn eq_key(a: $bits, b: $bits) -> bool {
+        fn lt_key(a: $signed, b: $signed) -> bool {
+            a < b
+        }
+        #[inline(always)]
+        fn eq_key(a: $signed, b: $signed) -> bool {
             a == b
         }
         #[inline(always)]
@@ -343,19 +405,19 @@ macro_rules! scalar_lanes {
             u.0 as i32 as $real
         }
         #[inline(always)]
-        fn fixed_point(f: $real) -> Wrapping<u32> {
+        fn fixed_point(self, f: $real) -> Wrapping<u32> {
             Wrapping(f.round_ties_even() as i32 as u32)
         }
         #[inline(always)]
-        fn gather(self, rows: &[Row<$real>], indices: &[u32; MAX_LANES], group: usize) -> [$real; 4] {
-            let row = &rows[indices[0] as usize].0;
+        fn gather(self, rows: &[Row<$real>], indices: &WideU, group: usize) -> [$real; 4] {
+            let row = &rows[indices.0[0] as usize].0;
             [row[4 * group], row[4 * group + 1], row[4 * group + 2], row[4 * group + 3]]
         }
     };
 }
 
 impl<const FUSED: bool> Lanes for Scalar<FUSED> {
-    scalar_lanes!(f32, u32, FUSED);
+    scalar_lanes!(f32, u32, i32, FUSED);
 
     #[inline(always)]
     fn sin_cos_turns(self, u: f32) -> (f32, f32) {
@@ -364,7 +426,7 @@ impl<const FUSED: bool> Lanes for Scalar<FUSED> {
 }
 
 impl Lanes for Reference {
-    scalar_lanes!(f64, u64, false);
+    scalar_lanes!(f64, u64, i64, false);
 
     #[inline(always)]
     fn sin_cos_turns(self, u: f64) -> (f64, f64) {
@@ -375,20 +437,20 @@ impl Lanes for Reference {
 macro_rules! simd_lanes {
     (
         $name:ident, $width:literal, $f:ident, $u:ident, $i:ident, $m:ident,
-        $gather:ident, $rows:ident, $permute:ident, $what:literal
+        $gather:ident, $rows:ident, $permute:ident, $to_nearest:ident, $ones:ident, $what:literal
     ) => {
         #[doc = $what]
         #[derive(Clone, Copy)]
         pub struct $name<S: Simd>(pub S);
 
-        impl<S: Permute> Lanes for $name<S> {
+        impl<S: Instructions> Lanes for $name<S> {
             const PERMUTED_ROWS: usize = S::$rows;
 
             type Real = f32;
             type F = $f<S>;
             type U = $u<S>;
             type M = $m<S>;
-            type Key = $u<S>;
+            type Key = $i<S>;
             const WIDTH: usize = $width;
 
             #[inline(always)]
@@ -404,16 +466,20 @@ macro_rules! simd_lanes {
                 $m::from_bitmask(self.0, u64::from(bits))
             }
             #[inline(always)]
-            fn load_u(self, from: &[u32; MAX_LANES]) -> $u<S> {
-                $u::from_slice(self.0, &from[..$width])
+            fn load(self, from: &Wide<f32>) -> $f<S> {
+                $f::from_slice(self.0, &from.0[..$width])
             }
             #[inline(always)]
-            fn store_u(u: $u<S>, to: &mut [u32; MAX_LANES]) {
-                u.store_slice(&mut to[..$width]);
+            fn load_u(self, from: &WideU) -> $u<S> {
+                $u::from_slice(self.0, &from.0[..$width])
             }
             #[inline(always)]
-            fn store(f: $f<S>, to: &mut [f32; MAX_LANES]) {
-                f.store_slice(&mut to[..$width]);
+            fn store_u(u: $u<S>, to: &mut WideU) {
+                u.store_slice(&mut to.0[..$width]);
+            }
+            #[inline(always)]
+            fn store(f: $f<S>, to: &mut Wide<f32>) {
+                f.store_slice(&mut to.0[..$width]);
             }
             #[inline(always)]
             fn mul_add(a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
@@ -452,8 +518,21 @@ macro_rules! simd_lanes {
                 m.select(a, b)
             }
             #[inline(always)]
+            fn is_negative(x: $f<S>) -> $m<S> {
+                let bits: $i<S> = x.bitcast();
+                bits.simd_lt(0)
+            }
+            #[inline(always)]
             fn select_u(m: $m<S>, a: $u<S>, b: $u<S>) -> $u<S> {
                 m.select(a, b)
+            }
+            #[inline(always)]
+            fn keep(self, m: $m<S>, a: $u<S>) -> $u<S> {
+                self.0.$ones(m) & a
+            }
+            #[inline(always)]
+            fn fill(self, m: $m<S>, a: $u<S>) -> $u<S> {
+                self.0.$ones(m) | a
             }
             #[inline(always)]
             fn eq_u(a: $u<S>, b: $u<S>) -> $m<S> {
@@ -476,19 +555,29 @@ macro_rules! simd_lanes {
                 m.to_bitmask() as u32
             }
             #[inline(always)]
-            fn key(f: $f<S>) -> $u<S> {
-                f.bitcast()
+            fn key(negated: $f<S>) -> $i<S> {
+                negated.bitcast()
             }
             #[inline(always)]
-            fn from_key(k: $u<S>) -> $f<S> {
+            fn from_key(k: $i<S>) -> $f<S> {
                 k.bitcast()
             }
             #[inline(always)]
-            fn min_key(a: $u<S>, b: $u<S>) -> $u<S> {
+            fn exclude(self, m: $m<S>, k: $i<S>) -> $i<S> {
+                // -1 is a NaN's bits.
+                let bits: $u<S> = k.bitcast();
+                self.fill(m, bits).bitcast()
+            }
+            #[inline(always)]
+            fn min_key(a: $i<S>, b: $i<S>) -> $i<S> {
                 a.min(b)
             }
             #[inline(always)]
-            fn eq_key(a: $u<S>, b: $u<S>) -> $m<S> {
+            fn lt_key(a: $i<S>, b: $i<S>) -> $m<S> {
+                a.simd_lt(b)
+            }
+            #[inline(always)]
+            fn eq_key(a: $i<S>, b: $i<S>) -> $m<S> {
                 a.simd_eq(b)
             }
             #[inline(always)]
@@ -497,16 +586,15 @@ macro_rules! simd_lanes {
                 signed.to_float()
             }
             #[inline(always)]
-            fn fixed_point(f: $f<S>) -> $u<S> {
-                let signed: $i<S> = f.round_ties_even().to_int();
-                signed.bitcast()
+            fn fixed_point(self, f: $f<S>) -> $u<S> {
+                self.0.$to_nearest(f).bitcast()
             }
             #[inline(always)]
-            fn permute(self, column: &[f32; MAX_LANES], indices: $u<S>) -> $f<S> {
-                self.0.$permute($f::from_slice(self.0, &column[..$width]), indices)
+            fn permute(self, column: &Wide<f32>, indices: $u<S>) -> $f<S> {
+                self.0.$permute(self.load(column), indices)
             }
             #[inline(always)]
-            fn gather(self, rows: &[Row<f32>], indices: &[u32; MAX_LANES], group: usize) -> [$f<S>; 4] {
+            fn gather(self, rows: &[Row<f32>], indices: &WideU, group: usize) -> [$f<S>; 4] {
                 $gather(self.0, rows, indices, 0, group)
             }
             #[inline(always)]
@@ -517,8 +605,34 @@ macro_rules! simd_lanes {
     };
 }
 
-simd_lanes!(Lanes4, 4, f32x4, u32x4, i32x4, mask32x4, gather4, ROWS_4, permute_4, "Four lanes of `f32`.");
-simd_lanes!(Lanes8, 8, f32x8, u32x8, i32x8, mask32x8, gather8, ROWS_8, permute_8, "Eight lanes of `f32`.");
+simd_lanes!(
+    Lanes4,
+    4,
+    f32x4,
+    u32x4,
+    i32x4,
+    mask32x4,
+    gather4,
+    ROWS_4,
+    permute_4,
+    to_nearest_4,
+    ones_4,
+    "Four lanes of `f32`."
+);
+simd_lanes!(
+    Lanes8,
+    8,
+    f32x8,
+    u32x8,
+    i32x8,
+    mask32x8,
+    gather8,
+    ROWS_8,
+    permute_8,
+    to_nearest_8,
+    ones_8,
+    "Eight lanes of `f32`."
+);
 simd_lanes!(
     Lanes16,
     16,
@@ -529,12 +643,14 @@ simd_lanes!(
     gather16,
     ROWS_16,
     permute_16,
+    to_nearest_16,
+    ones_16,
     "Sixteen lanes of `f32`."
 );
 
-/// A level's instructions for choosing among the numbers of a register. A level without them has 0 rows, and
-/// the choice is never asked for.
-pub trait Permute: Simd {
+/// What a level does in one instruction and the portable operations in more. A level without permutation has 0
+/// rows, and is never asked for it.
+pub trait Instructions: Simd {
     /// Rows for 4 lanes.
     const ROWS_4: usize = 0;
     /// Rows for 8 lanes.
@@ -557,64 +673,109 @@ pub trait Permute: Simd {
     fn permute_16(self, column: f32x16<Self>, _indices: u32x16<Self>) -> f32x16<Self> {
         column
     }
+
+    /// To the nearest integer, ties to even; it must fit.
+    #[inline(always)]
+    fn to_nearest_4(self, x: f32x4<Self>) -> i32x4<Self> {
+        x.round_ties_even().to_int()
+    }
+    /// To the nearest integer, ties to even; it must fit.
+    #[inline(always)]
+    fn to_nearest_8(self, x: f32x8<Self>) -> i32x8<Self> {
+        x.round_ties_even().to_int()
+    }
+    /// To the nearest integer, ties to even; it must fit.
+    #[inline(always)]
+    fn to_nearest_16(self, x: f32x16<Self>) -> i32x16<Self> {
+        x.round_ties_even().to_int()
+    }
+
+    /// `u32::MAX` where `m`, else 0.
+    #[inline(always)]
+    fn ones_4(self, m: mask32x4<Self>) -> u32x4<Self> {
+        m.select(u32x4::splat(self, u32::MAX), u32x4::splat(self, 0))
+    }
+    /// `u32::MAX` where `m`, else 0.
+    #[inline(always)]
+    fn ones_8(self, m: mask32x8<Self>) -> u32x8<Self> {
+        m.select(u32x8::splat(self, u32::MAX), u32x8::splat(self, 0))
+    }
+    /// `u32::MAX` where `m`, else 0.
+    #[inline(always)]
+    fn ones_16(self, m: mask32x16<Self>) -> u32x16<Self> {
+        m.select(u32x16::splat(self, u32::MAX), u32x16::splat(self, 0))
+    }
 }
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    use super::Permute;
+    use super::Instructions;
     use fearless_simd::prelude::*;
-    use fearless_simd::{Avx2, Avx512, Sse4_2, f32x8, f32x16, kernel, u32x8, u32x16};
+    use fearless_simd::{
+        Avx2, Avx512, Sse4_2, f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, kernel, mask32x4, mask32x8, u32x4,
+        u32x8, u32x16,
+    };
+    use std::arch::x86_64::{
+        __m128i, __m256i, _mm_cvtps_epi32, _mm256_cvtps_epi32, _mm256_permutevar8x32_ps, _mm512_cvtps_epi32,
+        _mm512_permutexvar_ps,
+    };
 
-    impl Permute for Sse4_2 {}
-
-    impl Permute for Avx2 {
-        const ROWS_8: usize = 8;
-
-        #[inline(always)]
-        fn permute_8(self, column: f32x8<Self>, indices: u32x8<Self>) -> f32x8<Self> {
-            kernel!(
-                #[inline(always)]
-                fn permute(token: Avx2, column: f32x8<Avx2>, indices: u32x8<Avx2>) -> f32x8<Avx2> {
-                    std::arch::x86_64::_mm256_permutevar8x32_ps(column.into(), indices.into())
-                        .simd_into(token)
-                }
-            );
-            permute(self, column, indices)
-        }
+    /// Implements a method by an intrinsic.
+    macro_rules! by {
+        ($level:ident, $method:ident($($x:ident: $from:ident),+) -> $to:ident, $value:expr) => {
+            #[inline(always)]
+            fn $method(self, $($x: $from<Self>),+) -> $to<Self> {
+                kernel!(
+                    #[inline(always)]
+                    fn kernel(token: $level, $($x: $from<$level>),+) -> $to<$level> {
+                        $value.simd_into(token)
+                    }
+                );
+                kernel(self, $($x),+)
+            }
+        };
     }
 
-    impl Permute for Avx512 {
+    impl Instructions for Sse4_2 {
+        by!(Sse4_2, to_nearest_4(x: f32x4) -> i32x4, _mm_cvtps_epi32(x.into()));
+        // A mask's lanes are all ones or all zeros.
+        by!(Sse4_2, ones_4(m: mask32x4) -> u32x4, __m128i::from(m));
+    }
+
+    impl Instructions for Avx2 {
+        const ROWS_8: usize = 8;
+
+        by!(Avx2, permute_8(column: f32x8, indices: u32x8) -> f32x8, _mm256_permutevar8x32_ps(column.into(), indices.into()));
+        by!(Avx2, to_nearest_4(x: f32x4) -> i32x4, _mm_cvtps_epi32(x.into()));
+        by!(Avx2, to_nearest_8(x: f32x8) -> i32x8, _mm256_cvtps_epi32(x.into()));
+        by!(Avx2, ones_4(m: mask32x4) -> u32x4, __m128i::from(m));
+        by!(Avx2, ones_8(m: mask32x8) -> u32x8, __m256i::from(m));
+    }
+
+    impl Instructions for Avx512 {
         const ROWS_16: usize = 16;
 
-        #[inline(always)]
-        fn permute_16(self, column: f32x16<Self>, indices: u32x16<Self>) -> f32x16<Self> {
-            kernel!(
-                #[inline(always)]
-                fn permute(token: Avx512, column: f32x16<Avx512>, indices: u32x16<Avx512>) -> f32x16<Avx512> {
-                    std::arch::x86_64::_mm512_permutexvar_ps(indices.into(), column.into()).simd_into(token)
-                }
-            );
-            permute(self, column, indices)
-        }
+        by!(Avx512, permute_16(column: f32x16, indices: u32x16) -> f32x16, _mm512_permutexvar_ps(indices.into(), column.into()));
+        by!(Avx512, to_nearest_16(x: f32x16) -> i32x16, _mm512_cvtps_epi32(x.into()));
     }
 }
 
 #[cfg(target_arch = "aarch64")]
-impl Permute for fearless_simd::Neon {}
+impl Instructions for fearless_simd::Neon {}
 
 /// Four columns of four rows, transposed.
 #[inline(always)]
 fn gather4<S: Simd>(
     simd: S,
     rows: &[Row<f32>],
-    indices: &[u32; MAX_LANES],
+    indices: &WideU,
     first: usize,
     group: usize,
 ) -> [f32x4<S>; 4] {
-    let a = gathered_row(simd, rows, indices[first], group);
-    let b = gathered_row(simd, rows, indices[first + 1], group);
-    let c = gathered_row(simd, rows, indices[first + 2], group);
-    let d = gathered_row(simd, rows, indices[first + 3], group);
+    let a = gathered_row(simd, rows, indices.0[first], group);
+    let b = gathered_row(simd, rows, indices.0[first + 1], group);
+    let c = gathered_row(simd, rows, indices.0[first + 2], group);
+    let d = gathered_row(simd, rows, indices.0[first + 3], group);
     let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
     let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
     [ac_low.zip_low(bd_low), ac_low.zip_high(bd_low), ac_high.zip_low(bd_high), ac_high.zip_high(bd_high)]
@@ -629,7 +790,7 @@ fn gathered_row<S: Simd>(simd: S, rows: &[Row<f32>], index: u32, group: usize) -
 fn gather8<S: Simd>(
     simd: S,
     rows: &[Row<f32>],
-    indices: &[u32; MAX_LANES],
+    indices: &WideU,
     first: usize,
     group: usize,
 ) -> [f32x8<S>; 4] {
@@ -642,7 +803,7 @@ fn gather8<S: Simd>(
 fn gather16<S: Simd>(
     simd: S,
     rows: &[Row<f32>],
-    indices: &[u32; MAX_LANES],
+    indices: &WideU,
     first: usize,
     group: usize,
 ) -> [f32x16<S>; 4] {

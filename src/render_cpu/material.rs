@@ -49,7 +49,7 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
     coin: L::F,
 ) -> Scatter<L> {
     let (zero, one) = (l.constant(0.0), l.constant(1.0));
-    let reflects = L::lt(L::copysign(one, surface.weight), zero);
+    let reflects = L::is_negative(surface.weight);
     let mut along = L::select(reflects, one, zero);
     let mut across = L::select(reflects, cosine + cosine, one);
     let mut refracts = l.mask(0);

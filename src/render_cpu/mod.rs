@@ -11,6 +11,7 @@ mod record;
 pub mod rng;
 pub mod sphere;
 mod tiles;
+pub mod wide;
 pub mod work;
 
 pub use crate::record::{PathRecord, RecordedHit, RecordedRay};
@@ -26,7 +27,8 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use tiles::{tile_side, tiles};
-use work::{DealtBlock, TileStats, Work};
+use wide::WideTables;
+use work::{DealtBlock, TileStats, Work, dealing_order};
 
 /// What a CPU backend is to use; `None` leaves the choice to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -76,8 +78,8 @@ fn list<T: std::fmt::Display>(items: &[T]) -> String {
 
 /// A job's tables and its kernel, in one of the two precisions.
 enum Prepared {
-    Single(Tables<f32>, Kernel<f32>),
-    Double(Tables<f64>, Kernel<f64>),
+    Single(Box<WideTables<f32>>, Kernel<f32>),
+    Double(Box<WideTables<f64>>, Kernel<f64>),
 }
 
 /// Renders on the CPU.
@@ -140,7 +142,7 @@ impl Renderer for CpuRenderer {
         let Some(job) = &self.job else { return String::new() };
         match (self.packets, &self.prepared) {
             (Some((isa, lanes)), Some(Prepared::Single(tables, _))) => {
-                let needed = kernels::needs_of(&job.features(), tables);
+                let needed = kernels::needs_of(&job.features(), &tables.tables);
                 kernels::contents(kernels::offered(isa, lanes, needed))
             }
             (_, Some(_)) => kernels::contents(path::needs::ALL),
@@ -150,8 +152,8 @@ impl Renderer for CpuRenderer {
 
     fn hierarchy_time(&self) -> Duration {
         match &self.prepared {
-            Some(Prepared::Single(tables, _)) => tables.hierarchy_time,
-            Some(Prepared::Double(tables, _)) => tables.hierarchy_time,
+            Some(Prepared::Single(tables, _)) => tables.tables.hierarchy_time,
+            Some(Prepared::Double(tables, _)) => tables.tables.hierarchy_time,
             None => Duration::ZERO,
         }
     }
@@ -169,9 +171,11 @@ impl Renderer for CpuRenderer {
                     backend: "cpu",
                     reason: format!("there is no kernel for {lanes} lanes of {isa}"),
                 })?;
-                Prepared::Single(tables, kernel)
+                Prepared::Single(Box::new(WideTables::new(tables)), kernel)
             }
-            None => Prepared::Double(Tables::new(job), kernels::reference_kernel()),
+            None => {
+                Prepared::Double(Box::new(WideTables::new(Tables::new(job))), kernels::reference_kernel())
+            }
         });
         self.job = Some(job.clone());
         Ok(())
@@ -212,15 +216,16 @@ impl CpuRenderer {
     /// Adds samples `range` to the film's sums.
     fn trace<R: Real>(
         &self,
-        tables: &Tables<R>,
+        tables: &WideTables<R>,
         kernel: &Kernel<R>,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> TileStats {
-        let settings = &tables.settings;
-        let blocks = DealtBlock::of_range(range.clone(), settings, tables.block_limit);
+        let settings = &tables.tables.settings;
+        let blocks = DealtBlock::of_range(range.clone(), settings, tables.tables.block_limit);
         let side = tile_side(settings.width, settings.height, self.threads.current_num_threads());
+        let order = dealing_order(side);
         let tiles = tiles(film.halves_mut(), settings.width, side);
         self.threads.install(|| {
             tiles
@@ -229,7 +234,7 @@ impl CpuRenderer {
                     if cancel.load(Ordering::Relaxed) {
                         return TileStats::default();
                     }
-                    kernel(tables, &mut Work::new(settings.sampler, &blocks, tile.corner, tile.halves))
+                    kernel(tables, &mut Work::new(&blocks, &order, tile.corner, tile.height, tile.rows))
                 })
                 .reduce(TileStats::default, TileStats::plus)
         })

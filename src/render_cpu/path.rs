@@ -9,16 +9,18 @@
 
 use super::bvh::{EMPTY_STACK, Stack, traverse};
 use super::camera::{lens_rays, pinhole_rays, screen};
-use super::lanes::{Lanes, MAX_LANES, V3, dot, mul_add3, select3, unit_float};
+use super::lanes::{Lanes, V3, Wide, WideU, dot, mul_add3, select3, unit_float};
 use super::material::{Surface, hemisphere, scatter};
-use super::rng::{lens_stream_of, pcg4d, sobol_pair, stream_of};
+use super::rng::{lens_stream_of, pcg4d, sobol_pair};
 use super::sphere::{
-    NONE, Nearest, Rays, acne_root, anchored_root, anchored_surface_point, near_root, nearest_root,
-    surface_point,
+    NONE, Nearest, Rays, Spheres, SurfacePoint, acne_root, anchored_root, anchored_surface_point, near_root,
+    nearest_root, surface_point,
 };
-use super::work::{LaneState, TileStats, Work};
+use super::wide::WideTables;
+use super::work::{LaneBlocks, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::render::SamplerKind;
+use crate::sampling::GOLDEN_RATIO;
 use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
 use crate::tables::{NEAR_ZERO, Real, Tables};
 
@@ -42,27 +44,40 @@ pub mod needs {
 /// more gained nothing; not measured again here.
 const PACKETS: usize = 4;
 
+/// The numbers for a packet's next rays.
+#[derive(Clone, Copy)]
+struct Draw<L: Lanes> {
+    /// For a direction or a point on the lens.
+    pair: [L::F; 2],
+    /// Sine of the second of the pair, in turns.
+    sine: L::F,
+    /// Its cosine.
+    cosine: L::F,
+    /// For a point in the pixel where the pair is for the lens.
+    jitter: [L::F; 2],
+}
+
 struct Packet<L: Lanes> {
     rays: Rays<L>,
     nearest: Nearest<L>,
     throughput: V3<L::F>,
-    bounce: L::U,
+    /// The sampler's counter: which sample.
     counter: L::U,
-    step: L::U,
-    remaining: L::U,
-    key: L::U,
-    pixel: L::U,
+    /// The sampler's stream: which ray of it.
+    stream: L::U,
     screen: [L::F; 2],
-    sums: [L::U; 3],
     /// Lanes that have work.
     alive: L::M,
     /// Lanes whose path was absorbed: it ends at its next shading, adds nothing and is not counted as a ray.
     absorbed: L::M,
-    slots: [u32; MAX_LANES],
+    /// Lanes whose path ends where it is; they go on from the camera.
+    ended: L::M,
+    draw: Draw<L>,
+    blocks: LaneBlocks,
 }
 
 impl<L: Lanes> Packet<L> {
-    /// All lanes at the end of a sample of nothing, so that the first shading deals them work.
+    /// All lanes at the end of a block of nothing, so that the first shading deals them work.
     #[inline(always)]
     fn idle(l: L) -> Self {
         let zero = l.constant(0.0);
@@ -73,43 +88,53 @@ impl<L: Lanes> Packet<L> {
             rays: Rays { origin: nowhere, direction: nowhere, left: none, inside: none },
             nearest: Nearest::nothing(l),
             throughput: nowhere,
-            bounce: nought,
             counter: nought,
-            step: nought,
-            remaining: l.splat_u(1),
-            key: nought,
-            pixel: nought,
+            stream: nought,
             screen: [zero; 2],
-            sums: [nought; 3],
             alive: l.mask(u32::MAX >> (32 - L::WIDTH)),
             absorbed: l.mask(0),
-            slots: [0; MAX_LANES],
+            ended: l.mask(0),
+            draw: Draw { pair: [zero; 2], sine: zero, cosine: zero, jitter: [zero; 2] },
+            blocks: LaneBlocks::default(),
         }
     }
 }
 
 /// Traces all of `work` with the code that `NEEDS` names; the job must need no other.
 #[inline(always)]
-pub fn trace<L: Lanes, const NEEDS: u32>(l: L, tables: &Tables<L::Real>, work: &mut Work) -> TileStats {
+pub fn trace<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> TileStats {
     let mut packets: [Packet<L>; PACKETS] =
         [Packet::idle(l), Packet::idle(l), Packet::idle(l), Packet::idle(l)];
     let mut stats = TileStats::default();
     let mut stack = EMPTY_STACK;
-    for packet in &mut packets {
-        shade::<L, NEEDS>(l, tables, packet, work, &mut stats);
-    }
+    shade::<L, NEEDS>(l, wide, &mut packets, work, &mut stats);
     loop {
         let mut alive = 0;
         for packet in &mut packets {
-            alive |= intersect::<L, NEEDS>(l, tables, packet, &mut stack, &mut stats);
+            alive |= intersect::<L, NEEDS>(l, wide, packet, &mut stack, &mut stats);
         }
         if alive == 0 {
             return stats;
         }
         stats.offered_lanes += (PACKETS * L::WIDTH) as u64;
-        for packet in &mut packets {
-            shade::<L, NEEDS>(l, tables, packet, work, &mut stats);
-        }
+        shade::<L, NEEDS>(l, wide, &mut packets, work, &mut stats);
+    }
+}
+
+/// Ends the paths of packets or sends them on.
+#[inline(always)]
+fn shade<L: Lanes, const NEEDS: u32>(
+    l: L,
+    wide: &WideTables<L::Real>,
+    packets: &mut [Packet<L>],
+    work: &mut Work,
+    stats: &mut TileStats,
+) {
+    for packet in &mut *packets {
+        collect::<L, NEEDS>(l, wide, packet, work, stats);
+    }
+    for packet in packets {
+        send_on::<L, NEEDS>(l, wide, packet);
     }
 }
 
@@ -122,9 +147,15 @@ pub struct SinglePath<L: Lanes> {
 impl<L: Lanes> SinglePath<L> {
     /// Takes the first sample of `work`.
     #[inline(always)]
-    pub fn start(l: L, tables: &Tables<L::Real>, work: &mut Work) -> Self {
+    pub fn start(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> Self {
         let mut packet = Packet::idle(l);
-        shade::<L, { needs::ALL }>(l, tables, &mut packet, work, &mut TileStats::default());
+        shade::<L, { needs::ALL }>(
+            l,
+            wide,
+            std::slice::from_mut(&mut packet),
+            work,
+            &mut TileStats::default(),
+        );
         SinglePath { packet, stack: EMPTY_STACK }
     }
 
@@ -155,22 +186,21 @@ impl<L: Lanes> SinglePath<L> {
 
     /// Traces the ray and sends it on. Returns the number of the sphere that it met and the distance.
     #[inline(always)]
-    pub fn advance(&mut self, l: L, tables: &Tables<L::Real>, work: &mut Work) -> (u32, f64) {
+    pub fn advance(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) -> (u32, f64) {
         let mut stats = TileStats::default();
-        intersect::<L, { needs::ALL }>(l, tables, &mut self.packet, &mut self.stack, &mut stats);
-        let mut sphere = [0; MAX_LANES];
-        let mut distance = [L::Real::default(); MAX_LANES];
+        intersect::<L, { needs::ALL }>(l, wide, &mut self.packet, &mut self.stack, &mut stats);
+        let (mut sphere, mut distance) = (WideU::default(), Wide::default());
         L::store_u(self.packet.nearest.sphere, &mut sphere);
-        L::store(L::from_key(self.packet.nearest.key), &mut distance);
-        shade::<L, { needs::ALL }>(l, tables, &mut self.packet, work, &mut stats);
-        (sphere[0], distance[0].to_f64())
+        L::store(self.packet.nearest.distance(), &mut distance);
+        shade::<L, { needs::ALL }>(l, wide, std::slice::from_mut(&mut self.packet), work, &mut stats);
+        (sphere.0[0], distance.0[0].to_f64())
     }
 
     /// Ends an absorbed path.
     #[inline(always)]
-    pub fn finish(&mut self, l: L, tables: &Tables<L::Real>, work: &mut Work) {
+    pub fn finish(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) {
         if self.is_alive() {
-            self.advance(l, tables, work);
+            self.advance(l, wide, work);
         }
     }
 }
@@ -179,7 +209,7 @@ impl<L: Lanes> SinglePath<L> {
 #[inline(always)]
 fn intersect<L: Lanes, const NEEDS: u32>(
     l: L,
-    tables: &Tables<L::Real>,
+    wide: &WideTables<L::Real>,
     packet: &mut Packet<L>,
     stack: &mut Stack,
     stats: &mut TileStats,
@@ -190,33 +220,32 @@ fn intersect<L: Lanes, const NEEDS: u32>(
     }
     let active = packet.alive & !packet.absorbed;
     stats.rays += u64::from(L::bits(active).count_ones());
-    let rays = &packet.rays;
+    let (rays, tables) = (&packet.rays, &wide.tables);
     let mut nearest = Nearest::nothing(l);
-    let one = l.splat_u(1);
-    let mut number = l.splat_u(0);
     if NEEDS & needs::RULES != 0 && tables.rules.surface == SurfaceRule::Acne {
-        for sphere in tables.opaque.iter().chain(&tables.two_root) {
-            nearest.take(acne_root(l, rays, sphere), number);
-            number = number + one;
+        for sphere in wide.opaque.iter().chain(&wide.two_root) {
+            let sphere = Spheres::load(l, sphere);
+            nearest.take(acne_root(l, rays, &sphere), sphere.number);
         }
     } else {
-        for sphere in &tables.opaque {
-            nearest.take(near_root(l, rays, sphere, number), number);
-            number = number + one;
+        for sphere in &wide.opaque {
+            let sphere = Spheres::load(l, sphere);
+            nearest.take(near_root(l, rays, &sphere), sphere.number);
         }
         match &tables.hierarchy {
             Some(hierarchy) if NEEDS & needs::HIERARCHY != 0 => {
                 traverse(l, hierarchy, &tables.two_root, rays, active, stack, &mut nearest);
             }
             _ if NEEDS & needs::GLASS != 0 => {
-                for sphere in &tables.two_root {
-                    nearest.take(nearest_root(l, rays, sphere, number), number);
-                    number = number + one;
+                for sphere in &wide.two_root {
+                    let sphere = Spheres::load(l, sphere);
+                    nearest.take(nearest_root(l, rays, &sphere), sphere.number);
                 }
             }
             _ => {}
         }
         if NEEDS & needs::ANCHORED != 0 {
+            let one = l.splat_u(1);
             let mut number = l.splat_u((tables.opaque.len() + tables.two_root.len()) as u32);
             for sphere in &tables.anchored {
                 nearest.take(anchored_root(l, rays, sphere, number), number);
@@ -233,91 +262,82 @@ enum Rows<L: Lanes> {
     /// Few enough that a column fits a register.
     Permuted(L::U),
     /// By their number in memory.
-    Gathered([u32; MAX_LANES]),
+    Gathered(WideU),
 }
 
 impl<L: Lanes> Rows<L> {
+    /// A lane without a `hit` gets some row.
     #[inline(always)]
-    fn of(_: L, tables: &Tables<L::Real>, numbers: L::U) -> Self {
+    fn of(l: L, tables: &Tables<L::Real>, hit: L::U) -> Self {
         if tables.rows.len() <= L::PERMUTED_ROWS {
-            return Rows::Permuted(numbers);
+            return Rows::Permuted(hit);
         }
-        let mut stored = [0; MAX_LANES];
-        L::store_u(numbers, &mut stored);
+        let mut stored = WideU::default();
+        L::store_u(l.keep(!L::eq_u(hit, l.splat_u(NONE)), hit), &mut stored);
         Rows::Gathered(stored)
     }
 
     /// Columns `4 group ..`.
     #[inline(always)]
-    fn columns(&self, l: L, tables: &Tables<L::Real>, group: usize) -> [L::F; 4] {
+    fn columns(&self, l: L, wide: &WideTables<L::Real>, group: usize) -> [L::F; 4] {
         match self {
             Rows::Permuted(numbers) => {
-                let column = |offset: usize| l.permute(&tables.columns[4 * group + offset], *numbers);
+                let column = |offset: usize| l.permute(&wide.columns[4 * group + offset], *numbers);
                 [column(0), column(1), column(2), column(3)]
             }
-            Rows::Gathered(stored) => l.gather(&tables.rows, stored, group),
+            Rows::Gathered(stored) => l.gather(&wide.tables.rows, stored, group),
         }
     }
 }
 
-/// Ends paths or sends them on, and starts the next sample in lanes whose path has ended.
+/// The points that were hit, where anything was.
 #[inline(always)]
-fn shade<L: Lanes, const NEEDS: u32>(
+fn hit_points<L: Lanes, const NEEDS: u32>(
     l: L,
-    tables: &Tables<L::Real>,
+    wide: &WideTables<L::Real>,
+    packet: &Packet<L>,
+    rows: &Rows<L>,
+) -> SurfacePoint<L> {
+    let [cx, cy, cz, curvature] = rows.columns(l, wide, 0);
+    let [radius, ..] = rows.columns(l, wide, 2);
+    let reference = V3 { x: cx, y: cy, z: cz };
+    let t = packet.nearest.distance();
+    let mut point = surface_point(l, &packet.rays, t, reference, curvature, radius);
+    if NEEDS & needs::ANCHORED != 0 && !wide.tables.anchored.is_empty() {
+        let [mx, my, mz, is_anchored] = rows.columns(l, wide, 3);
+        let inward = V3 { x: mx, y: my, z: mz };
+        let far = anchored_surface_point(l, &packet.rays, t, reference, inward, curvature);
+        let is_anchored = L::lt(l.constant(0.0), is_anchored);
+        point.position = select3::<L>(is_anchored, far.position, point.position);
+        point.outward = select3::<L>(is_anchored, far.outward, point.outward);
+    }
+    point
+}
+
+/// Adds the light that arrives, ends paths, starts the next sample where one has ended, and draws the numbers of
+/// the next rays.
+#[inline(always)]
+fn collect<L: Lanes, const NEEDS: u32>(
+    l: L,
+    wide: &WideTables<L::Real>,
     packet: &mut Packet<L>,
     work: &mut Work,
     stats: &mut TileStats,
 ) {
-    let (zero, one) = (l.constant(0.0), l.constant(1.0));
-    let with_rules = NEEDS & needs::RULES != 0;
-    let rules = &tables.rules;
-    let hit = packet.nearest.sphere;
-    let miss = L::eq_u(hit, l.splat_u(NONE));
-    let direction = packet.rays.direction;
-
-    // What was hit, and where.
-    let rows = Rows::of(l, tables, L::select_u(miss, l.splat_u(0), hit));
-    let [cx, cy, cz, curvature] = rows.columns(l, tables, 0);
-    let [red, green, blue, weight] = rows.columns(l, tables, 1);
-    let [radius, index, inverse_index, normal_share] = rows.columns(l, tables, 2);
-    let reference = V3 { x: cx, y: cy, z: cz };
-    let t = L::from_key(packet.nearest.key);
-    let mut point = surface_point(l, &packet.rays, t, reference, curvature, radius);
-    if NEEDS & needs::ANCHORED != 0 && !tables.anchored.is_empty() {
-        let [mx, my, mz, is_anchored] = rows.columns(l, tables, 3);
-        let inward = V3 { x: mx, y: my, z: mz };
-        let far = anchored_surface_point(l, &packet.rays, t, reference, inward, curvature);
-        let is_anchored = L::lt(zero, is_anchored);
-        point.position = select3::<L>(is_anchored, far.position, point.position);
-        point.outward = select3::<L>(is_anchored, far.outward, point.outward);
-    }
-    let outward_cosine = dot::<L>(direction, point.outward);
-    let mut front = L::lt(outward_cosine, zero);
-    if with_rules && rules.surface == SurfaceRule::Acne {
-        point.position = mul_add3::<L>(direction, t, packet.rays.origin);
-    } else {
-        front = front & !L::eq_u(packet.rays.inside, hit);
-    }
-    let outward = point.outward;
-    let side = L::select(front, one, l.constant(-1.0));
-    let normal = outward.scale(side);
-
-    // Light that arrives.
-    let is_last = L::eq_u(packet.bounce, l.splat_u(tables.settings.max_depth - 1));
+    let (zero, tables) = (l.constant(0.0), &wide.tables);
+    let miss = L::eq_u(packet.nearest.sphere, l.splat_u(NONE));
+    let (stride, last) = strides(tables);
+    let is_last = L::eq_u(packet.stream, l.load_u(&packet.blocks.key) + l.splat_u(last));
     let mut ended = miss | is_last | packet.absorbed;
     let mut lit = miss & !packet.absorbed;
-    let sky = |middle: L::Real, slope: L::Real| {
-        L::max(zero, L::mul_add(l.splat(slope), direction.y, l.splat(middle)))
+    let height = packet.rays.direction.y;
+    let sky = |channel: usize| {
+        let (middle, slope) = (l.load(&wide.sky_middle[channel]), l.load(&wide.sky_slope[channel]));
+        L::max(zero, L::mul_add(slope, height, middle))
     };
-    let mut light = V3 {
-        x: sky(tables.sky_middle[0], tables.sky_slope[0]),
-        y: sky(tables.sky_middle[1], tables.sky_slope[1]),
-        z: sky(tables.sky_middle[2], tables.sky_slope[2]),
-    };
-    if with_rules && rules.shading != Shading::Path {
-        let shown = shown_at_hit(l, tables, packet, outward, miss, light);
-        light = shown;
+    let mut light = V3 { x: sky(0), y: sky(1), z: sky(2) };
+    if NEEDS & needs::RULES != 0 && tables.rules.shading != Shading::Path {
+        light = shown_at_hit::<L, NEEDS>(l, wide, packet, miss, light);
         lit = packet.alive;
         ended = packet.alive;
     }
@@ -330,39 +350,72 @@ fn shade<L: Lanes, const NEEDS: u32>(
         stats.rejected += u64::from(invalid.count_ones());
     }
     let added = counted & is_valid;
-    let nought = l.splat_u(0);
-    let add = |sum: L::U, x: L::F| sum + L::select_u(added, L::fixed_point(x), nought);
-    packet.sums =
-        [add(packet.sums[0], radiance.x), add(packet.sums[1], radiance.y), add(packet.sums[2], radiance.z)];
+    let mut add = |channel: usize, x: L::F| {
+        let sum = &mut packet.blocks.sums[channel];
+        L::store_u(l.load_u(sum) + l.keep(added, l.fixed_point(x)), sum);
+    };
+    add(0, radiance.x);
+    add(1, radiance.y);
+    add(2, radiance.z);
 
-    // The next sample's place in the sequence, for lanes whose path has ended.
-    let counting = l.splat_u(1);
-    packet.counter = L::select_u(ended, packet.counter + packet.step, packet.counter);
-    packet.remaining = L::select_u(ended, packet.remaining - counting, packet.remaining);
-    packet.bounce = L::select_u(ended, nought, packet.bounce + counting);
-    let done = L::bits(ended & packet.alive & L::eq_u(packet.remaining, nought));
+    // Lanes whose path has ended go on to the next sample, or to the next block.
+    let next = packet.counter + l.load_u(&packet.blocks.step);
+    packet.counter = L::select_u(ended, next, packet.counter);
+    let at_end = L::eq_u(packet.counter, l.load_u(&packet.blocks.end));
+    let done = L::bits(ended & packet.alive & at_end);
     if done != 0 {
-        deal(l, tables, packet, work, done);
+        deal(l, wide, packet, work, done);
     }
+    packet.stream = L::select_u(ended, l.load_u(&packet.blocks.key), packet.stream + l.splat_u(stride));
+    packet.ended = ended;
+    packet.draw = draw::<L, NEEDS>(l, tables, packet);
+}
+
+/// Sends paths on, or the next ones from the camera where they have ended.
+#[inline(always)]
+fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet: &mut Packet<L>) {
+    let (zero, one) = (l.constant(0.0), l.constant(1.0));
+    let with_rules = NEEDS & needs::RULES != 0;
+    let (tables, rules) = (&wide.tables, &wide.tables.rules);
+    let (hit, ended) = (packet.nearest.sphere, packet.ended);
+    let direction = packet.rays.direction;
+
+    // What was hit, where, and from which side.
+    let rows = Rows::of(l, tables, hit);
+    let [red, green, blue, weight] = rows.columns(l, wide, 1);
+    let [_, index, inverse_index, normal_share] = rows.columns(l, wide, 2);
+    let mut point = hit_points::<L, NEEDS>(l, wide, packet, &rows);
+    let outward_cosine = dot::<L>(direction, point.outward);
+    let mut front = L::lt(outward_cosine, zero);
+    if with_rules && rules.surface == SurfaceRule::Acne {
+        let t = packet.nearest.distance();
+        point.position = mul_add3::<L>(direction, t, packet.rays.origin);
+    } else {
+        front = front & !L::eq_u(packet.rays.inside, hit);
+    }
+    let normal = point.outward.scale(L::select(front, one, l.constant(-1.0)));
 
     // One set of numbers serves the camera and the surface alike.
-    let with_lens = NEEDS & needs::LENS != 0 && tables.camera.tau > L::Real::default();
-    let (u0, u1, jitter) = draw::<L, NEEDS>(l, tables, packet, with_lens);
-    let (sine, cosine) = l.sin_cos_turns(u1);
-    let rho = L::sqrt(u0 * (one - u0));
-    let rho = rho + rho;
-    let unit = V3 { x: rho * cosine, y: rho * sine, z: one - (u0 + u0) };
-
-    let jitter = if tables.rules.antialiasing { jitter } else { [l.constant(0.5); 2] };
+    let [u0, u1] = packet.draw.pair;
+    let (sine, cosine) = (packet.draw.sine, packet.draw.cosine);
+    let z = one - (u0 + u0);
+    let rho = L::sqrt(L::neg_mul_add(z, z, one));
+    let unit = V3 { x: rho * cosine, y: rho * sine, z };
+    let with_lens = has_lens::<L, NEEDS>(tables);
+    let jitter = match (tables.rules.antialiasing, with_lens) {
+        (false, _) => [l.constant(0.5); 2],
+        (true, false) => [u0, u1],
+        (true, true) => packet.draw.jitter,
+    };
     let camera = if with_lens {
         let lens_radius = L::sqrt(u0);
         let on_lens = [lens_radius * cosine, lens_radius * sine];
-        lens_rays(l, &tables.camera, packet.screen, jitter, on_lens)
+        lens_rays(l, &wide.camera, packet.screen, jitter, on_lens)
     } else {
-        pinhole_rays(l, &tables.camera, packet.screen, jitter)
+        pinhole_rays(l, &wide.camera, packet.screen, jitter)
     };
 
-    let incidence = L::max(zero, L::min(one, -(outward_cosine * side)));
+    let incidence = L::min(one, L::abs(outward_cosine));
     let surface = Surface { weight, index, inverse_index, normal_share };
     let mut bounced = if NEEDS & needs::GLASS != 0 {
         scatter::<L, true>(l, &surface, rules.dielectric, direction, normal, incidence, front, unit, u0)
@@ -376,48 +429,41 @@ fn shade<L: Lanes, const NEEDS: u32>(
             bounced.direction = select3::<L>(is_lambertian, hemisphere(l, normal, unit), bounced.direction);
         }
         if rules.reflectance_strips {
-            let reflectance = strip_reflectance(l, tables, packet.pixel);
+            let reflectance = strip_reflectance(l, tables, l.load_u(&packet.blocks.pixel));
             albedo = V3 { x: reflectance, y: reflectance, z: reflectance };
         }
     }
     let next = select3::<L>(ended, camera.direction, bounced.direction);
-    let length2 = dot::<L>(next, next);
-    let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
-    let next = select3::<L>(vanishes, normal, next);
-    let next = next.scale(L::select(vanishes, one, one / L::sqrt(length2)));
+    // Where the unit vector cancels the normal, rounding is all that is left: such a ray stays shorter than 1.
+    let length2 = L::max(l.constant(NEAR_ZERO), dot::<L>(next, next));
+    let next = next.scale(one / L::sqrt(length2));
     // A fuzzy reflection into the surface is absorbed.
-    let absorbed = bounced.is_metal & !L::lt(zero, dot::<L>(next, normal)) & !ended;
+    packet.absorbed = bounced.is_metal & !L::lt(zero, dot::<L>(next, normal)) & !ended;
     let inward = (front & bounced.refracts) | !(front | bounced.refracts);
-    let none = l.splat_u(NONE);
-    let throughput = packet.throughput.times(albedo);
     packet.rays = Rays {
         origin: select3::<L>(ended, camera.origin, point.position),
         direction: next,
-        left: L::select_u(ended | inward, none, hit),
-        inside: L::select_u(inward & !ended, hit, none),
+        left: l.fill(ended | inward, hit),
+        inside: l.fill(ended | !inward, hit),
     };
-    packet.throughput = V3 {
-        x: L::select(ended, one, throughput.x),
-        y: L::select(ended, one, throughput.y),
-        z: L::select(ended, one, throughput.z),
-    };
-    packet.absorbed = absorbed;
+    let throughput = packet.throughput.times(albedo);
+    packet.throughput = select3::<L>(ended, V3 { x: one, y: one, z: one }, throughput);
 }
 
 /// What a ray brings back where the stage shows something simpler than light: `light` where it misses.
 #[inline(always)]
-fn shown_at_hit<L: Lanes>(
+fn shown_at_hit<L: Lanes, const NEEDS: u32>(
     l: L,
-    tables: &Tables<L::Real>,
+    wide: &WideTables<L::Real>,
     packet: &Packet<L>,
-    outward: V3<L::F>,
     miss: L::M,
     light: V3<L::F>,
 ) -> V3<L::F> {
+    let tables = &wide.tables;
     let (zero, full) = (l.constant(0.0), l.constant(FIXED_POINT_SCALE));
     let shown = match tables.rules.shading {
         Shading::ImageGradient => {
-            let position = pixel_position(l, packet.pixel);
+            let position = pixel_position(l, l.load_u(&packet.blocks.pixel));
             // A single column or row has no far end: it is 0 everywhere.
             let share = |position: L::F, pixels: u32| {
                 position / l.constant(f64::from(pixels.saturating_sub(1).max(1))) * full
@@ -432,6 +478,8 @@ fn shown_at_hit<L: Lanes>(
         Shading::FirstHitRed => V3 { x: full, y: zero, z: zero },
         Shading::Normals | Shading::Path => {
             let half = l.constant(0.5 * FIXED_POINT_SCALE);
+            let outward =
+                hit_points::<L, NEEDS>(l, wide, packet, &Rows::of(l, tables, packet.nearest.sphere)).outward;
             let shade = |n: L::F| L::max(zero, L::mul_add(n, half, half));
             V3 { x: shade(outward.x), y: shade(outward.y), z: shade(outward.z) }
         }
@@ -445,7 +493,7 @@ fn strip_reflectance<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: L::U) -> L
     let [x, _] = pixel_position(l, pixel);
     let strips = l.constant(5.0 / f64::from(tables.settings.width));
     let strip = (x + l.constant(0.5)) * strips - l.constant(0.5);
-    let strip = L::float_of(L::fixed_point(L::max(l.constant(0.0), strip)));
+    let strip = L::float_of(l.fixed_point(L::max(l.constant(0.0), strip)));
     L::mul_add(strip, l.constant(0.2), l.constant(0.1))
 }
 
@@ -455,24 +503,35 @@ fn pixel_position<L: Lanes>(l: L, pixel: L::U) -> [L::F; 2] {
     [L::float_of(pixel & l.splat_u(0xFFFF)), L::float_of(L::shr(pixel, 16))]
 }
 
-/// The numbers for the next ray: two for a direction or a lens point, and a point in the pixel.
+/// By how much a path's stream grows with each ray, and by how much in all up to its last.
 #[inline(always)]
-fn draw<L: Lanes, const NEEDS: u32>(
-    l: L,
-    tables: &Tables<L::Real>,
-    packet: &Packet<L>,
-    with_lens: bool,
-) -> (L::F, L::F, [L::F; 2]) {
+fn strides<R>(tables: &Tables<R>) -> (u32, u32) {
+    let stride = match tables.settings.sampler {
+        SamplerKind::Independent => 1,
+        SamplerKind::Sobol => GOLDEN_RATIO,
+    };
+    (stride, stride.wrapping_mul(tables.settings.max_depth - 1))
+}
+
+/// Whether rays start on a lens.
+#[inline(always)]
+fn has_lens<L: Lanes, const NEEDS: u32>(tables: &Tables<L::Real>) -> bool {
+    NEEDS & needs::LENS != 0 && tables.camera.tau > L::Real::default()
+}
+
+/// Draws the numbers for the next rays.
+#[inline(always)]
+fn draw<L: Lanes, const NEEDS: u32>(l: L, tables: &Tables<L::Real>, packet: &Packet<L>) -> Draw<L> {
     let (first, second) = match tables.settings.sampler {
         SamplerKind::Independent => {
-            let seed = l.splat_u(tables.settings.seed);
-            let [a, b, c, d] = pcg4d(l, [packet.pixel, packet.counter, packet.bounce, seed]);
+            let (pixel, seed) = (l.load_u(&packet.blocks.pixel), l.splat_u(tables.settings.seed));
+            let [a, b, c, d] = pcg4d(l, [pixel, packet.counter, packet.stream, seed]);
             ([a, b], [c, d])
         }
         SamplerKind::Sobol => {
-            let first = sobol_pair(l, packet.counter, stream_of(l, packet.key, packet.bounce));
-            let second = if with_lens {
-                sobol_pair(l, packet.counter, lens_stream_of(l, packet.key, packet.bounce))
+            let first = sobol_pair(l, packet.counter, packet.stream);
+            let second = if has_lens::<L, NEEDS>(tables) {
+                sobol_pair(l, packet.counter, lens_stream_of(l, packet.stream))
             } else {
                 first
             };
@@ -480,31 +539,18 @@ fn draw<L: Lanes, const NEEDS: u32>(
         }
     };
     let unit = |u: [L::U; 2]| [unit_float(l, u[0]), unit_float(l, u[1])];
-    let [u0, u1] = unit(first);
-    let jitter = if with_lens { unit(second) } else { [u0, u1] };
-    (u0, u1, jitter)
+    let pair = unit(first);
+    let (sine, cosine) = l.sin_cos_turns(pair[1]);
+    let jitter = if has_lens::<L, NEEDS>(tables) { unit(second) } else { packet.draw.jitter };
+    Draw { pair, sine, cosine, jitter }
 }
 
 /// Deals the lanes `done` their next blocks of samples.
 #[inline(always)]
-fn deal<L: Lanes>(l: L, tables: &Tables<L::Real>, packet: &mut Packet<L>, work: &mut Work, done: u32) {
-    let mut state = LaneState::default();
-    L::store_u(packet.counter, &mut state.counter);
-    L::store_u(packet.step, &mut state.step);
-    L::store_u(packet.remaining, &mut state.remaining);
-    L::store_u(packet.key, &mut state.key);
-    L::store_u(packet.pixel, &mut state.pixel);
-    for (sum, to) in packet.sums.iter().zip(&mut state.sums) {
-        L::store_u(*sum, to);
-    }
-    let retired = work.deal(done, &mut state, &mut packet.slots);
-    packet.counter = l.load_u(&state.counter);
-    packet.step = l.load_u(&state.step);
-    packet.remaining = l.load_u(&state.remaining);
-    packet.key = l.load_u(&state.key);
-    packet.pixel = l.load_u(&state.pixel);
-    packet.sums = [l.load_u(&state.sums[0]), l.load_u(&state.sums[1]), l.load_u(&state.sums[2])];
+fn deal<L: Lanes>(l: L, wide: &WideTables<L::Real>, packet: &mut Packet<L>, work: &mut Work, done: u32) {
+    let retired = work.deal(done, &mut packet.blocks);
+    packet.counter = L::select_u(l.mask(done), l.load_u(&packet.blocks.start), packet.counter);
     packet.alive = packet.alive & !l.mask(retired);
-    let [x, y] = pixel_position(l, packet.pixel);
-    packet.screen = screen(l, &tables.camera, x, y);
+    let [x, y] = pixel_position(l, l.load_u(&packet.blocks.pixel));
+    packet.screen = screen(l, &wide.camera, x, y);
 }

@@ -3,9 +3,10 @@
 
 use super::Isa;
 use super::kernels::recorder;
-use super::lanes::{Lanes, MAX_LANES, V3};
+use super::lanes::{Lanes, V3, Wide};
 use super::path::SinglePath;
 use super::sphere::NONE;
+use super::wide::WideTables;
 use super::work::{DealtBlock, Work};
 use crate::film::PixelSum;
 use crate::record::{PathRecord, RecordedHit, RecordedRay};
@@ -16,19 +17,20 @@ use crate::tables::{Real, Tables};
 /// `f64`.
 pub fn record_path(job: &RenderJob, [x, y]: [u32; 2], index: u64, isa: Option<Isa>) -> PathRecord {
     match isa {
-        Some(isa) => recorder(isa)(&Tables::new(job), [x, y], index),
-        None => record(super::lanes::Reference, &Tables::new(job), [x, y], index),
+        Some(isa) => recorder(isa)(&WideTables::new(Tables::new(job)), [x, y], index),
+        None => record(super::lanes::Reference, &WideTables::new(Tables::new(job)), [x, y], index),
     }
 }
 
 /// Records a path with one lane.
 #[inline(always)]
-pub(super) fn record<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: [u32; 2], index: u64) -> PathRecord {
+pub(super) fn record<L: Lanes>(l: L, wide: &WideTables<L::Real>, pixel: [u32; 2], index: u64) -> PathRecord {
+    let tables = &wide.tables;
     let blocks = DealtBlock::of_range(index..index + 1, &tables.settings, 1);
     let mut sums = vec![PixelSum::default(); tables.settings.half_count()];
-    let halves = sums.iter_mut().map(|sum| vec![std::slice::from_mut(sum)]).collect();
-    let mut work = Work::new(tables.settings.sampler, &blocks, pixel, halves);
-    let mut path = SinglePath::start(l, tables, &mut work);
+    let rows = sums.iter_mut().map(std::slice::from_mut).collect();
+    let mut work = Work::new(&blocks, &[0], pixel, 1, rows);
+    let mut path = SinglePath::start(l, wide, &mut work);
     let mut rays: Vec<RecordedRay> = Vec::new();
     while path.is_alive() {
         let mut ray = RecordedRay {
@@ -37,7 +39,7 @@ pub(super) fn record<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: [u32; 2], 
             throughput: first_lane::<L>(path.throughput()),
             hit: None,
         };
-        let (sphere, distance) = path.advance(l, tables, &mut work);
+        let (sphere, distance) = path.advance(l, wide, &mut work);
         let goes_on = path.is_alive() && !path.is_absorbed();
         if sphere != NONE {
             let position = goes_on.then(|| first_lane::<L>(path.origin()));
@@ -47,7 +49,7 @@ pub(super) fn record<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: [u32; 2], 
         rays.push(ray);
         if !goes_on {
             // An absorbed path's last turn adds nothing.
-            path.finish(l, tables, &mut work);
+            path.finish(l, wide, &mut work);
             break;
         }
     }
@@ -59,9 +61,9 @@ pub(super) fn record<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: [u32; 2], 
 #[inline(always)]
 fn first_lane<L: Lanes>(v: V3<L::F>) -> [f64; 3] {
     [v.x, v.y, v.z].map(|component| {
-        let mut buffer = [L::Real::default(); MAX_LANES];
+        let mut buffer = Wide::default();
         L::store(component, &mut buffer);
-        buffer[0].to_f64()
+        buffer.0[0].to_f64()
     })
 }
 

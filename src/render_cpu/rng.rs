@@ -55,21 +55,16 @@ pub fn pascal<L: Lanes>(l: L, u: L::U) -> L::U {
 }
 
 /// A pair of Sobol coordinates: that of the reversed sample index `counter` in the block of dimensions that
-/// `stream`, the pixel's key moved on by the bounce, names.
+/// `stream`, the pixel's key and the golden ratio for each bounce, names.
 #[inline(always)]
 pub fn sobol_pair<L: Lanes>(l: L, counter: L::U, stream: L::U) -> [L::U; 2] {
     let u = laine_karras(l, counter, mix32(l, stream));
     [u, pascal(l, u)]
 }
 
-/// `key` moved on to the dimensions of `bounce`.
+/// `stream` moved on to the second pair of dimensions of the same ray, for a point in the pixel beside one on the
+/// lens.
 #[inline(always)]
-pub fn stream_of<L: Lanes>(l: L, key: L::U, bounce: L::U) -> L::U {
-    key + bounce * l.splat_u(GOLDEN_RATIO)
-}
-
-/// `key` moved on to the second pair of dimensions of `bounce`, for a point in the pixel beside one on the lens.
-#[inline(always)]
-pub fn lens_stream_of<L: Lanes>(l: L, key: L::U, bounce: L::U) -> L::U {
-    stream_of(l, key, bounce + l.splat_u(LENS_BLOCK))
+pub fn lens_stream_of<L: Lanes>(l: L, stream: L::U) -> L::U {
+    stream + l.splat_u(LENS_BLOCK.wrapping_mul(GOLDEN_RATIO))
 }

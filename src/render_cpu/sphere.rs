@@ -2,7 +2,7 @@
 //!
 //! Twin: shaders/sphere.wgsl
 
-use super::lanes::{Lanes, V3, dot, mul_add3, neg_mul_add3, splat3};
+use super::lanes::{Lanes, V3, Wide, dot, load3, mul_add3, neg_mul_add3, splat3};
 use crate::tables::AnchoredSphere;
 pub use crate::tables::NONE;
 
@@ -19,6 +19,55 @@ pub struct Rays<L: Lanes> {
     pub inside: L::U,
 }
 
+/// A sphere a lane, as the tests for roots need it.
+#[derive(Clone, Copy)]
+pub struct Spheres<L: Lanes> {
+    /// Centre.
+    pub center: V3<L::F>,
+    /// Squared radius.
+    pub radius2: L::F,
+    /// Number.
+    pub number: L::U,
+}
+
+impl<L: Lanes> Spheres<L> {
+    /// One sphere for all lanes: centre and squared radius.
+    #[inline(always)]
+    pub fn splat(l: L, [x, y, z, radius2]: [L::Real; 4], number: L::U) -> Self {
+        Spheres { center: splat3(l, [x, y, z]), radius2: l.splat(radius2), number }
+    }
+
+    /// The same, spread out in memory: an instruction can take it from there, where it would have to be spread
+    /// first.
+    #[inline(always)]
+    pub fn load(l: L, sphere: &WideSphere<L::Real>) -> Self {
+        Spheres {
+            center: load3(l, &sphere.center),
+            radius2: l.load(&sphere.radius2),
+            number: l.load_u(&sphere.number),
+        }
+    }
+}
+
+/// A sphere in memory, as often as a packet has lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct WideSphere<R> {
+    center: [Wide<R>; 3],
+    radius2: Wide<R>,
+    number: Wide<u32>,
+}
+
+impl<R: Copy> WideSphere<R> {
+    /// Spreads centre and squared radius.
+    pub fn new([x, y, z, radius2]: [R; 4], number: u32) -> Self {
+        WideSphere {
+            center: [x, y, z].map(Wide::splat),
+            radius2: Wide::splat(radius2),
+            number: Wide::splat(number),
+        }
+    }
+}
+
 /// The nearest hits so far.
 #[derive(Clone, Copy)]
 pub struct Nearest<L: Lanes> {
@@ -32,42 +81,44 @@ impl<L: Lanes> Nearest<L> {
     /// Nothing hit.
     #[inline(always)]
     pub fn nothing(l: L) -> Self {
-        Nearest { key: L::key(l.constant(f64::INFINITY)), sphere: l.splat_u(NONE) }
+        Nearest { key: L::key(l.constant(f64::NEG_INFINITY)), sphere: l.splat_u(NONE) }
     }
 
     /// Takes `key` where it is nearer. Of two spheres at one distance the first taken stays.
     #[inline(always)]
     pub fn take(&mut self, key: L::Key, sphere: L::U) {
-        let nearest = L::min_key(self.key, key);
-        self.sphere = L::select_u(L::eq_key(nearest, self.key), self.sphere, sphere);
-        self.key = nearest;
+        self.sphere = L::select_u(L::lt_key(key, self.key), sphere, self.sphere);
+        self.key = L::min_key(self.key, key);
     }
 
     /// Takes `key` where it is nearer. Of two spheres at one distance that with the smaller number stays, so
     /// that the order of the search does not show.
     #[inline(always)]
     pub fn take_in_any_order(&mut self, key: L::Key, sphere: L::U) {
-        let nearest = L::min_key(self.key, key);
-        let kept = L::eq_key(nearest, self.key);
-        let tied = kept & L::eq_key(nearest, key);
-        let winner = L::select_u(kept, self.sphere, sphere);
+        let tied = L::eq_key(key, self.key);
+        let winner = L::select_u(L::lt_key(key, self.key), sphere, self.sphere);
         self.sphere = L::select_u(tied, L::min_u(self.sphere, sphere), winner);
-        self.key = nearest;
+        self.key = L::min_key(self.key, key);
+    }
+
+    /// How far the hits are; infinity where there is none.
+    #[inline(always)]
+    pub fn distance(&self) -> L::F {
+        -L::from_key(self.key)
     }
 }
 
-/// Half the chord and the distance to its middle, by the perpendicular form: `l = f - (d.f) d` is the way from
-/// the ray to the centre, and `sqrt(r^2 - l.l)` half the chord (NaN for a miss). The book's `h^2 - a c` cancels
-/// for a sphere that is small beside its distance.
+/// The negated distance to the chord's middle, and half the chord, by the perpendicular form: with `g = o - C`,
+/// `l = g - (d.g) d` is the way from the centre to the ray, and `sqrt(r^2 - l.l)` half the chord (NaN for a miss).
+/// The book's `h^2 - a c` cancels for a sphere that is small beside its distance.
 ///
 /// Source: Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019.
 #[inline(always)]
-fn chord<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4]) -> (L::F, L::F) {
-    let f = splat3(l, [sphere[0], sphere[1], sphere[2]]) - rays.origin;
-    let h = dot::<L>(rays.direction, f);
-    let across = neg_mul_add3::<L>(rays.direction, h, f);
-    let r2 = l.splat(sphere[3]);
-    let d = L::neg_mul_add(across.z, across.z, r2);
+fn chord<L: Lanes>(rays: &Rays<L>, sphere: &Spheres<L>) -> (L::F, L::F) {
+    let g = rays.origin - sphere.center;
+    let h = dot::<L>(rays.direction, g);
+    let across = neg_mul_add3::<L>(rays.direction, h, g);
+    let d = L::neg_mul_add(across.z, across.z, sphere.radius2);
     let d = L::neg_mul_add(across.y, across.y, d);
     let d = L::neg_mul_add(across.x, across.x, d);
     (h, L::sqrt(d))
@@ -75,23 +126,21 @@ fn chord<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4]) -> (L::F, L::F) 
 
 /// Distance to a sphere that no ray is inside of.
 #[inline(always)]
-pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4], number: L::U) -> L::Key {
-    let (h, s) = chord(l, rays, sphere);
-    let own = L::eq_u(rays.left, number);
-    L::key(L::select(own, l.constant(-1.0), h - s))
+pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
+    let (h, s) = chord(rays, sphere);
+    l.exclude(L::eq_u(rays.left, sphere.number), L::key(h + s))
 }
 
 /// Distance to a sphere from within or without.
 #[inline(always)]
-pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4], number: L::U) -> L::Key {
-    let (h, s) = chord(l, rays, sphere);
-    let leaves = L::eq_u(rays.left, number);
-    let enters = L::eq_u(rays.inside, number);
-    let never = l.constant(-1.0);
-    let near = L::select(leaves | enters, never, h - s);
-    // From its own surface inwards a ray runs the chord 2h.
-    let far = L::select(leaves, never, h + L::select(enters, L::abs(h), s));
-    L::min_key(L::key(near), L::key(far))
+pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
+    let (h, s) = chord(rays, sphere);
+    let leaves = L::eq_u(rays.left, sphere.number);
+    let enters = L::eq_u(rays.inside, sphere.number);
+    let near = l.exclude(enters, L::key(h + s));
+    // From its own surface inwards a ray runs the chord 2h. Negated last: a chord of length 0 is a hit, -0.
+    let far = L::key(-(L::select(enters, L::abs(h), s) - h));
+    l.exclude(leaves, L::min_key(near, far))
 }
 
 /// Distance to a huge sphere. Everything is measured from the anchor, so that no number is as large as the
@@ -117,23 +166,22 @@ pub fn anchored_root<L: Lanes>(
     let q = b + L::copysign(s, b);
     let leaves = L::eq_u(rays.left, number);
     let enters = L::eq_u(rays.inside, number);
-    let never = l.constant(-1.0);
-    let first = L::select(leaves | enters, never, c / q);
-    let second = L::select(leaves, never, L::select(enters, b + L::abs(b), q) / k);
-    L::min_key(L::key(first), L::key(second))
+    let first = l.exclude(enters, L::key(-(c / q)));
+    let second = L::key(-(L::select(enters, b + L::abs(b), q) / k));
+    l.exclude(leaves, L::min_key(first, second))
 }
 
 /// The book's own arithmetic with 0 as the smallest distance and no memory of the surface left: what the
 /// *shadow acne* stage shows.
 #[inline(always)]
-pub fn acne_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4]) -> L::Key {
-    let f = splat3(l, [sphere[0], sphere[1], sphere[2]]) - rays.origin;
+pub fn acne_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
+    let f = sphere.center - rays.origin;
     let a = dot::<L>(rays.direction, rays.direction);
     let h = dot::<L>(rays.direction, f);
-    let c = dot::<L>(f, f) - l.splat(sphere[3]);
+    let c = dot::<L>(f, f) - sphere.radius2;
     let s = L::sqrt(h * h - a * c);
-    let positive = |t: L::F| L::select(L::lt(l.constant(0.0), t), t, l.constant(-1.0));
-    L::min_key(L::key(positive((h - s) / a)), L::key(positive((h + s) / a)))
+    let positive = |t: L::F| L::key(-L::select(L::lt(l.constant(0.0), t), t, l.constant(-1.0)));
+    L::min_key(positive((h - s) / a), positive((h + s) / a))
 }
 
 /// A point on a surface.
@@ -144,7 +192,7 @@ pub struct SurfacePoint<L: Lanes> {
     pub outward: V3<L::F>,
 }
 
-/// The point at distance `t` on a sphere: `reference` is its centre, `curvature` the inverse of `radius`.
+/// The point at distance `t` on a sphere: `center` is its centre, `curvature` the inverse of `radius`.
 ///
 /// The point is moved onto the sphere along the normal, whose length one Newton step makes 1.
 #[inline(always)]

@@ -16,8 +16,10 @@ const TILES_A_THREAD: u32 = 4;
 pub struct Tile<'film> {
     /// Column and row of the upper left pixel.
     pub corner: [u32; 2],
-    /// Rows of each half.
-    pub halves: Vec<TileRows<'film>>,
+    /// Rows of a half.
+    pub height: u32,
+    /// Rows of the halves, one after the other.
+    pub rows: TileRows<'film>,
 }
 
 /// The side of the tiles for a picture and so many threads, a power of two.
@@ -34,20 +36,19 @@ pub fn tile_side(width: u32, height: u32, threads: usize) -> u32 {
 /// Cuts the halves of a film of `width` pixels across into tiles, row by row.
 pub fn tiles(halves: &mut [Vec<PixelSum>], width: u32, side: u32) -> Vec<Tile<'_>> {
     let mut tiles: Vec<Tile> = Vec::new();
-    let across = width.div_ceil(side) as usize;
+    let (across, half_count) = (width.div_ceil(side) as usize, halves.len());
     for (half_index, half) in halves.iter_mut().enumerate() {
         for (y, row) in half.chunks_mut(width as usize).enumerate() {
             let y = y as u32;
             for (column, part) in row.chunks_mut(side as usize).enumerate() {
                 let index = (y / side) as usize * across + column;
                 if index == tiles.len() {
-                    tiles.push(Tile { corner: [column as u32 * side, y], halves: Vec::new() });
+                    let rows = Vec::with_capacity(half_count * side as usize);
+                    tiles.push(Tile { corner: [column as u32 * side, y], height: 0, rows });
                 }
-                let halves = &mut tiles[index].halves;
-                if halves.len() == half_index {
-                    halves.push(Vec::with_capacity(side as usize));
-                }
-                halves[half_index].push(part);
+                let tile = &mut tiles[index];
+                tile.height += u32::from(half_index == 0);
+                tile.rows.push(part);
             }
         }
     }

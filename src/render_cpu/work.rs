@@ -1,11 +1,11 @@
 //! What a tile has to do, dealt to lanes: blocks of samples of its pixels.
 
-use super::lanes::MAX_LANES;
+use super::lanes::WideU;
 use crate::film::PixelSum;
 use crate::render::{RenderSettings, SamplerKind};
-use crate::sampling::{SampleBlock, pixel_key};
+use crate::sampling::{SampleBlock, half_key, key_in_half};
 
-/// Rows of one half of the film within a tile.
+/// Rows of the film within a tile: those of the first half, then those of the second.
 pub type TileRows<'film> = Vec<&'film mut [PixelSum]>;
 
 /// Figures of a tile.
@@ -34,155 +34,158 @@ impl TileStats {
 #[derive(Clone, Copy, Debug)]
 pub struct DealtBlock {
     half: u32,
-    seed: u32,
+    /// What the Sobol sampler's keys in this half are made from; `None` for the independent sampler.
+    half_key: Option<u32>,
     counter: u32,
     step: u32,
-    count: u32,
+    /// The counter after the last sample.
+    end: u32,
 }
 
 impl DealtBlock {
     /// The blocks that samples `range` consist of.
     pub fn of_range(range: std::ops::Range<u64>, settings: &RenderSettings, limit: u32) -> Vec<DealtBlock> {
+        let is_sobol = settings.sampler == SamplerKind::Sobol;
         SampleBlock::split(range, settings.half_count() as u32, limit)
             .into_iter()
             .map(|block| {
                 let (counter, step) = block.counter(settings);
-                DealtBlock { half: block.half, seed: settings.seed, counter, step, count: block.count }
+                DealtBlock {
+                    half: block.half,
+                    half_key: is_sobol.then(|| half_key(settings.seed, block.half)),
+                    counter,
+                    step,
+                    end: counter.wrapping_add(step.wrapping_mul(block.count)),
+                }
             })
             .collect()
     }
 }
 
-/// What the lanes of a packet are at, as numbers in memory.
-#[derive(Default)]
-pub struct LaneState {
-    /// The sampler's counter.
-    pub counter: [u32; MAX_LANES],
+/// What the lanes of a packet are at, as numbers in memory: they are dealt one by one and read together.
+#[derive(Clone, Default)]
+pub struct LaneBlocks {
+    /// The sampler's counter at the block's first sample.
+    pub start: WideU,
     /// What the counter grows by.
-    pub step: [u32; MAX_LANES],
-    /// Samples left of the block, the current one included.
-    pub remaining: [u32; MAX_LANES],
-    /// The Sobol sampler's key.
-    pub key: [u32; MAX_LANES],
+    pub step: WideU,
+    /// The counter after the block's last sample.
+    pub end: WideU,
+    /// The sampler's stream of numbers for the camera's ray.
+    pub key: WideU,
     /// `x | y << 16`.
-    pub pixel: [u32; MAX_LANES],
+    pub pixel: WideU,
     /// What the block has added up to, RGB.
-    pub sums: [[u32; MAX_LANES]; 3],
+    pub sums: [WideU; 3],
+    /// Where they go: `row << 8 | column` of the tile's rows.
+    slot: WideU,
 }
 
-/// Bits of a column or row within a tile, in a lane's slot: `half << 16 | row << 8 | column`.
-const SLOT_BITS: u32 = 8;
+/// The pixels of a square tile with `side` pixels (at most 256) in the order in which they are dealt,
+/// `y << 8 | x`: squares of four by four, so that a packet's first rays lie close together.
+pub fn dealing_order(side: u32) -> Vec<u16> {
+    const SQUARE: u32 = 4;
+    let starts = || (0..side).step_by(SQUARE as usize);
+    let within = |start: u32| start..(start + SQUARE).min(side);
+    let mut order = Vec::with_capacity((side * side) as usize);
+    for top in starts() {
+        for left in starts() {
+            for y in within(top) {
+                order.extend(within(left).map(|x| (y << 8 | x) as u16));
+            }
+        }
+    }
+    order
+}
 
 /// A tile's pixels, blocks and sums.
 pub struct Work<'film> {
-    sampler: SamplerKind,
     blocks: &'film [DealtBlock],
+    /// Pixels in [`dealing_order`]; those beyond the tile are passed over.
+    order: &'film [u16],
     /// Position in the picture of the tile's upper left pixel.
     corner: [u32; 2],
-    /// Width and height of the tile, at most 256.
-    size: [u32; 2],
-    halves: Vec<TileRows<'film>>,
+    width: u32,
+    height: u32,
+    rows: TileRows<'film>,
     next_block: usize,
-    next_pixel: PixelWalk,
+    next_place: usize,
 }
 
 impl<'film> Work<'film> {
-    /// Work for a tile whose rows of each half are `halves`.
+    /// Work for a tile of `height` rows in each half.
     pub fn new(
-        sampler: SamplerKind,
         blocks: &'film [DealtBlock],
+        order: &'film [u16],
         corner: [u32; 2],
-        halves: Vec<TileRows<'film>>,
+        height: u32,
+        rows: TileRows<'film>,
     ) -> Self {
-        let height = halves[0].len() as u32;
-        let width = halves[0].first().map_or(0, |row| row.len() as u32);
-        Work {
-            sampler,
-            blocks,
-            corner,
-            size: [width, height],
-            halves,
-            next_block: 0,
-            next_pixel: PixelWalk::default(),
+        let width = rows.first().map_or(0, |row| row.len() as u32);
+        Work { blocks, order, corner, width, height, rows, next_block: 0, next_place: 0 }
+    }
+
+    /// The next block and the place of its pixel in the tile.
+    #[inline(always)]
+    fn next(&mut self) -> Option<(&'film DealtBlock, [u32; 2])> {
+        loop {
+            let block = self.blocks.get(self.next_block)?;
+            let Some(&place) = self.order.get(self.next_place) else {
+                self.next_place = 0;
+                self.next_block += 1;
+                continue;
+            };
+            self.next_place += 1;
+            let [x, y] = [u32::from(place & 0xFF), u32::from(place >> 8)];
+            if x < self.width && y < self.height {
+                return Some((block, [x, y]));
+            }
         }
     }
 
     /// Takes the sums of the lanes `done` and gives each its next block. Returns the lanes for which there is
     /// none.
-    #[inline(never)]
-    pub fn deal(&mut self, done: u32, state: &mut LaneState, slots: &mut [u32; MAX_LANES]) -> u32 {
+    #[inline(always)]
+    pub fn deal(&mut self, done: u32, lanes: &mut LaneBlocks) -> u32 {
         let mut retired = 0;
         let mut left = done;
         while left != 0 {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
-            let slot = slots[lane];
-            let row =
-                &mut self.halves[(slot >> (2 * SLOT_BITS)) as usize][(slot >> SLOT_BITS & 0xFF) as usize];
-            let sums = [0, 1, 2].map(|channel| u64::from(state.sums[channel][lane]));
-            row[(slot & 0xFF) as usize].add(PixelSum(sums));
-            for channel in &mut state.sums {
-                channel[lane] = 0;
+            let slot = lanes.slot.0[lane];
+            let sums = [0, 1, 2].map(|channel| u64::from(lanes.sums[channel].0[lane]));
+            self.rows[(slot >> 8) as usize][(slot & 0xFF) as usize].add(PixelSum(sums));
+            for channel in &mut lanes.sums {
+                channel.0[lane] = 0;
             }
-            let Some(block) = self.blocks.get(self.next_block) else {
+            let Some((block, [x, y])) = self.next() else {
                 retired |= 1 << lane;
                 continue;
             };
-            let [x, y] = self.next_pixel.position();
-            if !self.next_pixel.advance(self.size) {
-                self.next_block += 1;
-            }
             let pixel = (self.corner[0] + x) | (self.corner[1] + y) << 16;
-            slots[lane] = block.half << (2 * SLOT_BITS) | y << SLOT_BITS | x;
-            state.counter[lane] = block.counter;
-            state.step[lane] = block.step;
-            state.remaining[lane] = block.count;
-            state.pixel[lane] = pixel;
-            if self.sampler == SamplerKind::Sobol {
-                state.key[lane] = pixel_key(block.seed, block.half, pixel);
-            }
+            lanes.slot.0[lane] = (block.half * self.height + y) << 8 | x;
+            lanes.start.0[lane] = block.counter;
+            lanes.step.0[lane] = block.step;
+            lanes.end.0[lane] = block.end;
+            lanes.pixel.0[lane] = pixel;
+            lanes.key.0[lane] = block.half_key.map_or(0, |half_key| key_in_half(half_key, pixel));
         }
         retired
     }
 }
 
-/// A walk through a tile in squares of four by four pixels, so that a packet's first rays lie close together.
-#[derive(Default)]
-struct PixelWalk {
-    square: [u32; 2],
-    within: [u32; 2],
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-impl PixelWalk {
-    const SIDE: u32 = 4;
-
-    fn position(&self) -> [u32; 2] {
-        [self.square[0] + self.within[0], self.square[1] + self.within[1]]
-    }
-
-    /// Goes on to the next pixel; at the end back to the first, and says `false`.
-    fn advance(&mut self, size: [u32; 2]) -> bool {
-        let end = |axis: usize| Self::SIDE.min(size[axis] - self.square[axis]);
-        self.within[0] += 1;
-        if self.within[0] < end(0) {
-            return true;
+    #[test]
+    fn every_pixel_is_dealt_once() {
+        for side in [1, 3, 8, 64, 256] {
+            let mut order = dealing_order(side);
+            order.sort_unstable();
+            let expected: Vec<u16> =
+                (0..side).flat_map(|y| (0..side).map(move |x| (y << 8 | x) as u16)).collect();
+            assert_eq!(order, expected, "side {side}");
         }
-        self.within[0] = 0;
-        self.within[1] += 1;
-        if self.within[1] < end(1) {
-            return true;
-        }
-        self.within[1] = 0;
-        self.square[0] += Self::SIDE;
-        if self.square[0] < size[0] {
-            return true;
-        }
-        self.square[0] = 0;
-        self.square[1] += Self::SIDE;
-        if self.square[1] < size[1] {
-            return true;
-        }
-        self.square[1] = 0;
-        false
     }
 }

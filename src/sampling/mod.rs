@@ -38,7 +38,17 @@ pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -
 
 /// What tells the Sobol scramblings of pixels, halves and seeds apart.
 pub fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
-    mix32(mix32(seed.wrapping_add(half.wrapping_mul(GOLDEN_RATIO))) ^ pixel)
+    key_in_half(half_key(seed, half), pixel)
+}
+
+/// The part of [`pixel_key`] that pixels share.
+pub fn half_key(seed: u32, half: u32) -> u32 {
+    mix32(seed.wrapping_add(half.wrapping_mul(GOLDEN_RATIO)))
+}
+
+/// [`pixel_key`] from that part.
+pub fn key_in_half(half_key: u32, pixel: u32) -> u32 {
+    mix32(half_key ^ pixel)
 }
 
 /// The float in `[0, 1)` of a 32-bit number: its upper 24 bits, so that it is exact and never 1.

@@ -72,7 +72,7 @@ impl<R: Real> Hierarchy<R> {
     /// Builds it over at least one sphere. Returns also the order in which the leaves name the spheres.
     pub fn build(spheres: &[Sphere]) -> (Self, Vec<u32>) {
         let bounds: Vec<SphereBounds> = spheres.iter().map(SphereBounds::new).collect();
-        let tree = build_bvh2(&bounds, params(spheres.len(), 4), &mut Duration::default());
+        let tree = build_bvh2(&bounds, params(spheres.len(), 8), &mut Duration::default());
         let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
         let mut extent = 0.0_f32;
         let nodes = tree

@@ -48,8 +48,6 @@ pub struct Tables<R> {
     /// sign where the direction is a reflection) | radius, refraction index (0: not glass), its inverse,
     /// Schlick's share at normal incidence | the anchor's inward unit normal, 1 if anchored.
     pub rows: Vec<Row<R>>,
-    /// The first rows of `rows` by column, for kernels that hold a column in a register.
-    pub columns: Box<[[R; 16]; 16]>,
     /// By row, the sphere's index in the scene.
     pub scene_index: Vec<u32>,
     /// The camera.
@@ -126,6 +124,22 @@ impl<R: Real> CameraTable<R> {
     }
 }
 
+impl<R: Copy> CameraTable<R> {
+    /// The same in another form of number.
+    pub fn map<T>(&self, f: impl Fn(R) -> T) -> CameraTable<T> {
+        CameraTable {
+            eye: self.eye.map(&f),
+            u: self.u.map(&f),
+            v: self.v.map(&f),
+            w: self.w.map(&f),
+            scale: self.scale.map(&f),
+            offset: self.offset.map(&f),
+            tau: f(self.tau),
+            focus_tau: f(self.focus_tau),
+        }
+    }
+}
+
 impl<R: Real> Tables<R> {
     /// Sorts, anchors and rounds the scene, and builds the hierarchy if one is worth it.
     pub fn new(job: &RenderJob) -> Self {
@@ -187,12 +201,6 @@ impl<R: Real> Tables<R> {
             // A ray that hits nothing looks up row 0 and ignores it.
             rows.push(Row::default());
         }
-        let mut columns = Box::new([[R::default(); 16]; 16]);
-        for (index, row) in rows.iter().take(16).enumerate() {
-            for (column, number) in columns.iter_mut().zip(row.0) {
-                column[index] = number;
-            }
-        }
         let (bottom, top) = (scene.sky.bottom * FIXED_POINT_SCALE, scene.sky.top * FIXED_POINT_SCALE);
         Tables {
             opaque: opaque.iter().map(packed).collect(),
@@ -201,7 +209,6 @@ impl<R: Real> Tables<R> {
             hierarchy: None,
             hierarchy_time: Duration::ZERO,
             rows,
-            columns,
             scene_index: opaque.iter().chain(two_root).chain(anchored).copied().collect(),
             camera: CameraTable::new(job.camera(), settings.width, settings.height),
             sky_middle: rounded((bottom + top) / 2.0),

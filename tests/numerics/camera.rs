@@ -6,7 +6,7 @@
 use crate::common::*;
 use glam::{DMat3, DVec3};
 use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
-use weekender::render_cpu::lanes::{Lanes, Scalar};
+use weekender::render_cpu::lanes::{Lanes, Scalar, Wide};
 use weekender::scene::builtin::{LeftSphere, three_spheres};
 use weekender::scene::{Camera, SceneError};
 use weekender::tables::CameraTable;
@@ -89,7 +89,7 @@ fn pixel_of(camera: &Camera, width: u32, height: u32, d: DVec3) -> [f64; 2] {
 
 fn pixel_error<L: Lanes>(l: L, camera: &Camera) -> f64 {
     let (width, height) = (800, 450);
-    let table = CameraTable::<L::Real>::new(camera, width, height);
+    let table = CameraTable::<L::Real>::new(camera, width, height).map(Wide::splat);
     let tau = (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
     let pixel = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan() / f64::from(height);
     let mut random = Random::new(8);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
 use weekender::render::{RenderJob, RenderSettings, Renderer, Stats};
-use weekender::render_cpu::lanes::{Lanes, MAX_LANES, V3, dot, splat3};
+use weekender::render_cpu::lanes::{Lanes, V3, Wide, dot, splat3};
 use weekender::render_cpu::sphere::{NONE, Rays};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::scene::{Camera, Material, Scene};
@@ -55,9 +55,9 @@ impl Random {
 
 /// The first lane.
 pub fn first<L: Lanes>(f: L::F) -> f64 {
-    let mut buffer = [L::Real::default(); MAX_LANES];
+    let mut buffer = Wide::default();
     L::store(f, &mut buffer);
-    buffer[0].to_f64()
+    buffer.0[0].to_f64()
 }
 
 pub fn vector<L: Lanes>(v: V3<L::F>) -> DVec3 {
@@ -91,7 +91,7 @@ pub fn packed<L: Lanes>(center: DVec3, radius: f64) -> [L::Real; 4] {
 
 /// The distance that a key stands for, or `None` where it loses against infinity.
 pub fn distance<L: Lanes>(key: L::Key) -> Option<f64> {
-    let t = first::<L>(L::from_key(key));
+    let t = -first::<L>(L::from_key(key));
     (t.is_finite() && t.is_sign_positive()).then_some(t)
 }
 

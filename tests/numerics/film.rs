@@ -6,7 +6,8 @@ use weekender::film::Film;
 use weekender::render::{RenderJob, RenderSettings};
 use weekender::render_cpu::lanes::Scalar;
 use weekender::render_cpu::path::{needs, trace};
-use weekender::render_cpu::work::{DealtBlock, TileStats, Work};
+use weekender::render_cpu::wide::WideTables;
+use weekender::render_cpu::work::{DealtBlock, TileStats, Work, dealing_order};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
 use weekender::scene::{Camera, Sky};
 use weekender::tables::Tables;
@@ -17,10 +18,11 @@ const GENERAL: u32 = needs::GLASS | needs::LENS | needs::ANCHORED | needs::HIERA
 pub fn trace_tables(tables: &Tables<f32>, film: &mut Film, samples: std::ops::Range<u64>) -> TileStats {
     let settings = tables.settings;
     let blocks = DealtBlock::of_range(samples.clone(), &settings, tables.block_limit);
+    let order = dealing_order(256);
     let rows =
-        film.halves_mut().iter_mut().map(|half| half.chunks_mut(settings.width as usize).collect()).collect();
-    let mut work = Work::new(settings.sampler, &blocks, [0, 0], rows);
-    let stats = trace::<_, GENERAL>(Scalar::<false>, tables, &mut work);
+        film.halves_mut().iter_mut().flat_map(|half| half.chunks_mut(settings.width as usize)).collect();
+    let mut work = Work::new(&blocks, &order, [0, 0], settings.height, rows);
+    let stats = trace::<_, GENERAL>(Scalar::<false>, &WideTables::new(tables.clone()), &mut work);
     film.record(samples, stats.rejected).unwrap();
     stats
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use weekender::render::RenderSettings;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar};
-use weekender::render_cpu::sphere::{NONE, Nearest, Rays, nearest_root, surface_point};
+use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, nearest_root, surface_point};
 use weekender::scene::Sphere;
 use weekender::scene::builtin::{BOOK_CAMERA, book};
 use weekender::tables::Tables;
@@ -100,7 +100,7 @@ fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 
         let mut expected = Nearest::nothing(l);
         for (number, row) in rows.iter().enumerate() {
             let number = l.splat_u(number as u32);
-            expected.take_in_any_order(nearest_root(l, &rays, row, number), number);
+            expected.take_in_any_order(nearest_root(l, &rays, &Spheres::splat(l, *row, number)), number);
         }
         let same = L::eq_key(found.key, expected.key) & L::eq_u(found.sphere, expected.sphere);
         assert_eq!(

@@ -6,7 +6,8 @@ use weekender::render::RenderJob;
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, dot};
 use weekender::render_cpu::material::{Surface, scatter};
 use weekender::render_cpu::sphere::{
-    NONE, Rays, SurfacePoint, anchored_root, anchored_surface_point, near_root, nearest_root, surface_point,
+    NONE, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, near_root, nearest_root,
+    surface_point,
 };
 use weekender::scene::Camera;
 use weekender::stages::{DielectricLaws, Rules};
@@ -46,8 +47,10 @@ fn aim<L: Lanes>(l: L, distance_away: f64, radius: f64, reach: f64, count: u32) 
         let radius = f64::from(radius as f32);
         let across = perpendicular(center, &mut random) * (reach * radius * random.unit().sqrt());
         let rays = ray(l, DVec3::ZERO, center + across);
-        let found = distance::<L>(near_root(l, &rays, &packed::<L>(center, radius), number));
-        let both = distance::<L>(nearest_root(l, &rays, &packed::<L>(center, radius), number));
+        let found =
+            distance::<L>(near_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), number)));
+        let both =
+            distance::<L>(nearest_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), number)));
         assert_eq!(found, both, "one root or two");
         let exact = exact_roots(DVec3::ZERO, vector::<L>(rays.direction), center, radius);
         match (found, exact) {
@@ -208,8 +211,11 @@ fn case_07_direction_of_any_length() {
             let key = near_root(
                 UNFUSED,
                 &rays,
-                &packed::<Scalar<false>>(center, 0.5),
-                Lanes::splat_u(UNFUSED, NUMBER),
+                &Spheres::splat(
+                    UNFUSED,
+                    packed::<Scalar<false>>(center, 0.5),
+                    Lanes::splat_u(UNFUSED, NUMBER),
+                ),
             );
             distance::<Scalar<false>>(key)
         };
@@ -227,7 +233,7 @@ fn arrival<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> O
     let origin = center + random.direction() * radius * random.log_within(1.5, 1e3);
     let across = perpendicular(center - origin, random) * (0.95 * radius * random.unit().sqrt());
     let rays = ray(l, origin, center + across - origin);
-    let key = near_root(l, &rays, &packed::<L>(center, radius), l.splat_u(NUMBER));
+    let key = near_root(l, &rays, &Spheres::splat(l, packed::<L>(center, radius), l.splat_u(NUMBER)));
     distance::<L>(key).map(|t| surface_at(l, &rays, t, center, radius))
 }
 
@@ -247,8 +253,11 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
         let mut rays = ray(l, DVec3::ZERO, direction);
         (rays.origin, rays.left) = (point.position, number);
         let sphere = packed::<Scalar<false>>(center, radius);
-        assert_eq!(distance::<Scalar<false>>(near_root(l, &rays, &sphere, number)), None);
-        assert_eq!(distance::<Scalar<false>>(nearest_root(l, &rays, &sphere, number)), None);
+        assert_eq!(distance::<Scalar<false>>(near_root(l, &rays, &Spheres::splat(l, sphere, number))), None);
+        assert_eq!(
+            distance::<Scalar<false>>(nearest_root(l, &rays, &Spheres::splat(l, sphere, number))),
+            None
+        );
         left += 1;
     }
     // A ground, seen from its anchor.
@@ -285,7 +294,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
     let origin = center + random.direction() * 3.0;
     let across = perpendicular(center - origin, random) * (0.98 * radius * random.unit().sqrt());
     let rays = ray(l, origin, center + across - origin);
-    let t = distance::<L>(near_root(l, &rays, &sphere, number))?;
+    let t = distance::<L>(near_root(l, &rays, &Spheres::splat(l, sphere, number)))?;
     let point = surface_at(l, &rays, t, center, radius);
     let cosine = -dot::<L>(rays.direction, point.outward);
     let surface = Surface::<L> {
@@ -313,7 +322,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
         left: l.splat_u(NONE),
         inside: number,
     };
-    let chord = distance::<L>(nearest_root(l, &inner, &sphere, number)).unwrap();
+    let chord = distance::<L>(nearest_root(l, &inner, &Spheres::splat(l, sphere, number))).unwrap();
     let [center, radius] = [center.as_vec3().as_dvec3(), DVec3::splat(f64::from(radius as f32))];
     let exact = exact_roots(vector::<L>(inner.origin), vector::<L>(inner.direction), center, radius.x);
     let [_, far] = exact.unwrap();
@@ -363,7 +372,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
     let rounded_center = vector::<L>(v3(l, center));
     let mut largest = [0.0_f64; 2];
     for _ in 0..1000 {
-        let t = distance::<L>(nearest_root(l, &rays, &sphere, number)).unwrap();
+        let t = distance::<L>(nearest_root(l, &rays, &Spheres::splat(l, sphere, number))).unwrap();
         let point = surface_at(l, &rays, t, center, radius);
         let away = vector::<L>(point.position) - rounded_center;
         largest[0] = largest[0].max((away.length() / radius - 1.0).abs());

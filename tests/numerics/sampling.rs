@@ -4,9 +4,9 @@ use crate::common::{Random, first};
 use proptest::prelude::*;
 use std::collections::HashSet;
 use weekender::render::{RenderSettings, SAMPLE_LIMIT, SamplerKind};
-use weekender::render_cpu::lanes::{Lanes, MAX_LANES, Reference, Scalar, unit_float};
+use weekender::render_cpu::lanes::{Lanes, MAX_LANES, Reference, Scalar, Wide, unit_float};
 use weekender::render_cpu::rng;
-use weekender::sampling::{self, LENS_BLOCK, SampleBlock};
+use weekender::sampling::{self, GOLDEN_RATIO, LENS_BLOCK, SampleBlock};
 
 fn settings(sampler: SamplerKind, estimate_error: bool, seed: u32) -> RenderSettings {
     RenderSettings { sampler, estimate_error, seed, ..RenderSettings::default() }
@@ -45,11 +45,11 @@ fn assert_twins<L: Lanes>(l: L) {
             row
         };
         let [a, b, c, d] = [words(), words(), words(), words()];
-        let [la, lb, lc, ld] = [a, b, c, d].map(|row| l.load_u(&row));
+        let [la, lb, lc, ld] = [a, b, c, d].map(|row| l.load_u(&Wide(row)));
         let same = |found: L::U, what: &str, expected: &dyn Fn(usize) -> u32| {
-            let mut row = [0; MAX_LANES];
+            let mut row = Wide::default();
             L::store_u(found, &mut row);
-            for (lane, word) in row.into_iter().enumerate().take(L::WIDTH) {
+            for (lane, word) in row.0.into_iter().enumerate().take(L::WIDTH) {
                 assert_eq!(word, expected(lane), "{what}, lane {lane} of {}", L::WIDTH);
             }
         };
@@ -69,9 +69,10 @@ fn assert_twins<L: Lanes>(l: L) {
             keys[i] = sampling::pixel_key(seed, half, pixel(i));
             counters[i] = (index(i) / 2).reverse_bits();
         }
-        let (keys, counters, at) = (l.load_u(&keys), l.load_u(&counters), l.splat_u(bounce));
-        let first_pair = rng::sobol_pair(l, counters, rng::stream_of(l, keys, at));
-        let lens_pair = rng::sobol_pair(l, counters, rng::lens_stream_of(l, keys, at));
+        let (keys, counters) = (l.load_u(&Wide(keys)), l.load_u(&Wide(counters)));
+        let stream = keys + l.splat_u(bounce.wrapping_mul(GOLDEN_RATIO));
+        let first_pair = rng::sobol_pair(l, counters, stream);
+        let lens_pair = rng::sobol_pair(l, counters, rng::lens_stream_of(l, stream));
         for (which, found) in first_pair.into_iter().chain(lens_pair).enumerate() {
             same(found, "numbers", &|i| sampling::numbers(&settings, pixel(i), index(i), bounce)[which]);
         }
