@@ -6,7 +6,7 @@ use crate::film::trace_tables;
 use glam::DVec3;
 use weekender::render::RenderSettings;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
-use weekender::render_cpu::lanes::{Lanes, Reference, Scalar};
+use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, Wide, WideU};
 use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, nearest_root, surface_point};
 use weekender::scene::Sphere;
 use weekender::scene::builtin::{BOOK_CAMERA, book};
@@ -84,7 +84,7 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
     }
 }
 
-fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 2]) -> u32 {
+fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
     let mut random = Random::new(seed);
     let listed = spheres(&mut random, count, spread, radii);
     let (hierarchy, order) = Hierarchy::<L::Real>::build(&listed);
@@ -93,7 +93,7 @@ fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 
     let rows: Vec<_> = ordered.iter().map(|s| packed::<L>(s.center, s.radius)).collect();
     let mut stack = EMPTY_STACK;
     let mut hits = 0;
-    for _ in 0..4000 {
+    for _ in 0..ray_count {
         let rays = one_ray(l, &mut random, &ordered, spread);
         let mut found = Nearest::nothing(l);
         traverse(l, &hierarchy, &rows, &rays, l.mask(1), &mut stack, &mut found);
@@ -132,12 +132,104 @@ fn hierarchy_and_list_agree() {
         (9, 100, 1e12, [1e6, 1e12]),
         (10, 300, 1e-9, [1e-12, 1e-9]),
     ] {
-        hits += same_hits(Scalar::<false>, seed, count, spread, radii);
-        hits += same_hits(Scalar::<true>, seed, count, spread, radii);
-        hits += same_hits(Reference, seed, count, spread, radii);
+        hits += same_hits(Scalar::<false>, seed, count, spread, radii, 4000);
+        hits += same_hits(Scalar::<true>, seed, count, spread, radii, 4000);
+        hits += same_hits(Reference, seed, count, spread, radii, 4000);
     }
     println!("hierarchy: {hits} hits of {} rays", 10 * 3 * 4000);
     assert!(hits > 40_000, "{hits}");
+}
+
+/// A hundred scenes of any size, at scales from `1e-12` to `1e12`.
+#[test]
+fn hierarchy_and_list_agree_on_a_hundred_scenes() {
+    let mut random = Random::new(11);
+    let (mut hits, mut rays) = (0, 0);
+    for seed in 100..200 {
+        let count = random.log_within(1.0, 400.0) as usize;
+        let spread = random.log_within(1e-9, 1e12);
+        let largest = spread * random.log_within(1e-4, 1.0);
+        let radii = [largest * random.log_within(1e-6, 1.0), largest];
+        hits += same_hits(Scalar::<true>, seed, count, spread, radii, 300);
+        hits += packets_agree(seed, count, spread, radii, 300);
+        rays += 600;
+    }
+    println!("a hundred scenes: {hits} hits of {rays} rays");
+    assert!(hits > rays / 4, "{hits}");
+}
+
+/// Packets of rays in all directions find what each ray finds by itself in the list.
+#[cfg(target_arch = "x86_64")]
+fn packets_agree(seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
+    use fearless_simd::{Level, Simd};
+    use weekender::render_cpu::lanes::Lanes8;
+    let Some(simd) = Level::new().as_avx2() else {
+        return same_hits(Scalar::<false>, seed, count, spread, radii, ray_count);
+    };
+    simd.vectorize(
+        #[inline(always)]
+        || same_packets(Lanes8(simd), seed, count, spread, radii, ray_count),
+    )
+}
+
+#[cfg(not(target_arch = "x86_64"))]
+fn packets_agree(seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
+    same_hits(Scalar::<false>, seed, count, spread, radii, ray_count)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn same_packets<L: Lanes<Real = f32>>(
+    l: L,
+    seed: u64,
+    count: usize,
+    spread: f64,
+    radii: [f64; 2],
+    ray_count: usize,
+) -> u32 {
+    let mut random = Random::new(seed);
+    let listed = spheres(&mut random, count, spread, radii);
+    let (hierarchy, order) = Hierarchy::<f32>::build(&listed);
+    let ordered: Vec<Sphere> = order.iter().map(|index| listed[*index as usize]).collect();
+    let rows: Vec<_> = ordered.iter().map(|s| packed::<L>(s.center, s.radius)).collect();
+    let mut stack = EMPTY_STACK;
+    let mut hits = 0;
+    for _ in 0..ray_count / L::WIDTH {
+        let single: Vec<_> =
+            (0..L::WIDTH).map(|_| one_ray(Scalar::<true>, &mut random, &ordered, spread)).collect();
+        let column = |f: &dyn Fn(&Rays<Scalar<true>>) -> f32| {
+            let mut wide = Wide::default();
+            wide.0.iter_mut().zip(&single).for_each(|(to, ray)| *to = f(ray));
+            l.load(&wide)
+        };
+        let numbers = |f: &dyn Fn(&Rays<Scalar<true>>) -> u32| {
+            let mut wide = WideU::default();
+            wide.0.iter_mut().zip(&single).for_each(|(to, ray)| *to = f(ray));
+            l.load_u(&wide)
+        };
+        let rays = Rays::<L> {
+            origin: V3 { x: column(&|r| r.origin.x), y: column(&|r| r.origin.y), z: column(&|r| r.origin.z) },
+            direction: V3 {
+                x: column(&|r| r.direction.x),
+                y: column(&|r| r.direction.y),
+                z: column(&|r| r.direction.z),
+            },
+            left: numbers(&|r| r.left.0),
+            inside: numbers(&|r| r.inside.0),
+        };
+        let mut found = Nearest::nothing(l);
+        let all = l.mask((1 << L::WIDTH) - 1);
+        traverse(l, &hierarchy, &rows, &rays, all, &mut stack, &mut found);
+        let mut expected = Nearest::nothing(l);
+        for (number, row) in rows.iter().enumerate() {
+            let number = l.splat_u(number as u32);
+            expected.take_in_any_order(nearest_root(l, &rays, &Spheres::splat(l, *row, number)), number);
+        }
+        let same = L::eq_key(found.key, expected.key) & L::eq_u(found.sphere, expected.sphere);
+        assert_eq!(L::bits(same), L::bits(all), "seed {seed}, {count} spheres, spread {spread}");
+        hits += L::bits(!L::eq_u(found.sphere, l.splat_u(NONE))).count_ones();
+    }
+    hits
 }
 
 /// The book's final picture with and without it.
