@@ -85,11 +85,11 @@ fn trace(arguments: &[String]) -> anyhow::Result<()> {
     let go_on = AtomicBool::new(false);
     let mut times = Vec::new();
     let mut stats = Default::default();
-    let mut report = renderer.report().clone();
+    let mut report = renderer.report();
     // The first two calls compile and find the size of the dispatches.
     for run in 0..2 + runs.parse::<usize>()? {
         let mut film = job.new_film();
-        report = renderer.report().clone();
+        report = renderer.report();
         stats = renderer.accumulate(&job, range.clone(), &mut film, &go_on)?;
         if run >= 2 {
             times.push(stats.trace);

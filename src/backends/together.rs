@@ -51,10 +51,6 @@ impl Pieces {
         }
         Some(piece)
     }
-
-    fn give_back(&mut self, piece: Range<u64>) {
-        self.left.push(piece);
-    }
 }
 
 impl Together {
@@ -113,10 +109,15 @@ impl Renderer for Together {
         self.members.iter().map(|member| member.renderer.hierarchy_time()).sum()
     }
 
-    fn prepare(&mut self, job: &RenderJob) -> Result<(), RenderError> {
-        let prepared = self.members.iter_mut().enumerate();
-        let failed =
-            prepared.filter_map(|(index, m)| m.renderer.prepare(job).err().map(|e| (index, e))).collect();
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
+        let mut failed = Vec::new();
+        for (index, member) in self.members.iter_mut().enumerate() {
+            match member.renderer.prepare(job, cancel) {
+                Ok(()) => {}
+                Err(RenderError::Cancelled) => return Err(RenderError::Cancelled),
+                Err(error) => failed.push((index, error)),
+            }
+        }
         self.leave_out(failed)
     }
 
@@ -179,7 +180,7 @@ impl Outcome {
     }
 }
 
-/// Takes pieces until none is left.
+/// Takes pieces until none is left, and collects what they brought.
 fn work_off(
     member: &mut Member,
     total_speed: f64,
@@ -192,31 +193,43 @@ fn work_off(
     let share = member.samples_per_second.map_or(0.0, |speed| {
         if total_speed > 0.0 { PIECE_SHARE * speed / total_speed } else { PIECE_SHARE / member_count }
     });
+    let begin = Instant::now();
     let mut outcome = Outcome { film: None, stats: Stats::default(), error: None };
-    loop {
+    let mut taken = Vec::new();
+    let renderer = member.renderer.as_mut();
+    while outcome.error.is_none() {
         if cancel.load(Ordering::Relaxed) {
             outcome.error = Some(RenderError::Cancelled);
             return outcome;
         }
-        let Some(piece) = pieces.lock().unwrap_or_else(PoisonError::into_inner).take(share) else {
-            return outcome;
-        };
+        let piece = pieces.lock().unwrap_or_else(PoisonError::into_inner).take(share);
+        let is_last = piece.is_none();
         let film = outcome.film.get_or_insert_with(|| job.new_film());
-        let begin = Instant::now();
-        match member.renderer.accumulate(job, piece.clone(), film, cancel) {
-            Ok(stats) => {
-                let samples = piece.end - piece.start;
-                member.samples_per_second = Some(samples as f64 / begin.elapsed().as_secs_f64().max(1e-9));
-                member.added += samples;
-                outcome.stats.add(&stats);
+        let result = match piece {
+            Some(piece) => {
+                taken.push(piece.clone());
+                renderer.advance(job, piece, film, cancel)
             }
-            Err(error) => {
-                pieces.lock().unwrap_or_else(PoisonError::into_inner).give_back(piece);
-                outcome.error = Some(error);
-                return outcome;
-            }
+            None => renderer.collect(film),
+        };
+        match result {
+            Ok(stats) => outcome.stats.add(&stats),
+            Err(error) => outcome.error = Some(error),
+        }
+        if is_last {
+            break;
         }
     }
+    let Some(film) = &outcome.film else { return outcome };
+    // What a failing member had not brought home is for the others.
+    let lost = taken.into_iter().filter(|piece| film.samples().overlap(piece).is_none());
+    pieces.lock().unwrap_or_else(PoisonError::into_inner).left.extend(lost);
+    let added = film.sample_count();
+    member.added += added;
+    if added > 0 {
+        member.samples_per_second = Some(added as f64 / begin.elapsed().as_secs_f64().max(1e-9));
+    }
+    outcome
 }
 
 #[cfg(test)]
@@ -232,7 +245,7 @@ mod tests {
             let Some(piece) = pieces.take(share) else { break };
             assert_eq!((piece.start % 2, piece.end % 2), (0, 0), "{piece:?} tears a pair of samples apart");
             if turn == 2 {
-                pieces.give_back(piece);
+                pieces.left.push(piece);
                 continue;
             }
             covered.extend(piece);
