@@ -64,11 +64,6 @@ impl Dispatches {
         if self.timers.is_empty() { "wall clock" } else { "timestamp queries" }
     }
 
-    pub(super) fn set_target(&mut self, target: Duration) {
-        self.target = target;
-        self.budgets.values_mut().for_each(|budget| budget.set_target(target));
-    }
-
     fn budget(&mut self, kernel: &Overrides) -> &mut Budget {
         self.budgets.entry(*kernel).or_insert_with(|| Budget::new(self.target))
     }

@@ -94,12 +94,6 @@ impl GpuRenderer {
         GpuReport { dispatches: count, dispatch_time: time, ..self.report.clone() }
     }
 
-    /// What a dispatch should take from now on: [`INTERACTIVE_TARGET`] or [`BATCH_TARGET`].
-    pub fn set_dispatch_target(&mut self, target: Duration) {
-        self.options.dispatch_target = target;
-        self.dispatches.set_target(target);
-    }
-
     /// Runs `work` on the job. Where it fails, what was traced is forgotten.
     fn with_prepared<T>(
         &mut self,
