@@ -11,6 +11,7 @@ use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::render_gpu::GpuOptions;
 use weekender::scene::builtin::BuiltinScene;
+use weekender::scene::{Material, Scene};
 use weekender::stages::Surface;
 
 /// Beyond this a pair of samples has taken different ways.
@@ -128,6 +129,13 @@ const SIDE: usize = 8;
 /// Independent pictures of each side, whose spread tells the deviation of their mean.
 const PICTURES: usize = 8;
 
+/// Samples of each picture.
+const SAMPLES: u64 = 32;
+
+/// What the largest of all scenes' and stages' blocks stays below in 99 of 100 cases: Student's distribution of 14
+/// degrees, 1200 independent blocks.
+const LARGEST_BLOCK: f64 = 6.8;
+
 /// Mean radiance of each block and channel.
 fn block_means(film: &Film) -> Vec<f64> {
     let means = film.means();
@@ -164,14 +172,14 @@ fn with_seed(job: &RenderJob, seed: u32) -> RenderJob {
 
 /// Each block's difference in deviations, of pictures with other numbers on the two sides. With as few pictures
 /// as these it has Student's distribution of `2 PICTURES - 2` degrees.
-fn block_test(mut renderers: [&mut dyn Renderer; 2], job: &RenderJob) -> Vec<f64> {
-    let mut seed = 0;
-    let sides = renderers.each_mut().map(|renderer| {
+fn block_differences(sides: [(&mut dyn Renderer, &RenderJob); 2]) -> Vec<f64> {
+    let mut seed = 100;
+    let sides = sides.map(|(renderer, job)| {
         let mut picture = || {
             seed += 1;
             let job = with_seed(job, seed);
             let mut film = job.new_film();
-            renderer.accumulate(&job, 0..8, &mut film, &AtomicBool::new(false)).unwrap();
+            renderer.accumulate(&job, 0..SAMPLES, &mut film, &AtomicBool::new(false)).unwrap();
             block_means(&film)
         };
         mean_and_variance(&(0..PICTURES).map(|_| picture()).collect::<Vec<_>>())
@@ -186,33 +194,49 @@ fn block_test(mut renderers: [&mut dyn Renderer; 2], job: &RenderJob) -> Vec<f64
     z
 }
 
-#[test]
-fn blocks_of_other_samples_agree() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    let mut cpu = cpu();
+/// Whether two sides show the same picture.
+fn blocks_agree(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> bool {
+    let z = block_differences(sides);
     let degrees = (2 * PICTURES - 2) as f64;
     // Mean and variance of the square of Student's number.
     let mean = degrees / (degrees - 2.0);
     let variance = 2.0 * mean * mean * (degrees - 1.0) / (degrees - 4.0);
-    let mut failures = Vec::new();
-    for (name, job) in jobs(48, 32) {
-        let z = block_test([&mut gpu, &mut cpu], &job);
-        let count = z.len() as f64;
-        let square_sum: f64 = z.iter().map(|z| z * z).sum();
-        let largest = z.iter().fold(0.0_f64, |a, z| a.max(z.abs()));
-        println!("{name:24} sum of squares {square_sum:.1} of {count} blocks, largest {largest:.2}");
-        // The channels of a block go together, so there are a third as many independent ones.
-        let bound = 4.0 * (3.0 * variance * count).sqrt();
-        if square_sum > count * mean + bound || largest > LARGEST_BLOCK {
-            failures.push(name);
-        }
-    }
-    assert!(failures.is_empty(), "{failures:?}");
+    let count = z.len() as f64;
+    let square_sum: f64 = z.iter().map(|z| z * z).sum();
+    let largest = z.iter().fold(0.0_f64, |a, z| a.max(z.abs()));
+    // The channels of a block go together, so there are a third as many independent ones.
+    let bound = count * mean + 4.0 * (3.0 * variance * count).sqrt();
+    println!("{name:24} {count} blocks: squares {square_sum:.1} of {bound:.1}, largest {largest:.2}");
+    square_sum <= bound && largest <= LARGEST_BLOCK
 }
 
-/// What the largest of all scenes' and stages' blocks stays below in 99 of 100 cases: Student's distribution of 14
-/// degrees, 1200 independent blocks.
-const LARGEST_BLOCK: f64 = 6.8;
+#[test]
+fn blocks_of_other_samples_agree() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let mut cpu = cpu();
+    let mut unfused = unfused();
+    let mut failures = jobs(48, 32);
+    // Where rounding itself is seen, as in shadow-acne, the device rounds in one of the CPU's two ways.
+    failures.retain(|(name, job)| {
+        !blocks_agree(name, [(&mut gpu, job), (&mut cpu, job)])
+            && !blocks_agree(name, [(&mut gpu, job), (&mut unfused, job)])
+    });
+    let names: Vec<_> = failures.into_iter().map(|(name, _)| name).collect();
+    assert!(names.is_empty(), "{names:?}");
+}
+
+#[test]
+fn blocks_of_other_pictures_do_not() {
+    let (mut scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = |scene: &Scene| job_of(scene, camera, [48, 32], 20, SamplerKind::Sobol, false);
+    let right = job(&scene);
+    // A ground that reflects 2 % more.
+    let Some(Material::Lambertian { albedo }) = scene.materials.first_mut().map(|m| &mut m.material) else {
+        panic!("the ground comes first");
+    };
+    *albedo *= 1.02;
+    assert!(!blocks_agree("a lighter ground", [(&mut cpu(), &right), (&mut cpu(), &job(&scene))]));
+}
 
 #[test]
 fn both_samplers_and_two_halves_are_paired() {

@@ -220,8 +220,11 @@ fn passes(arguments: &[String]) -> anyhow::Result<()> {
     let mut renderer = GpuRenderer::new(options_of(rest)?)?;
     let go_on = AtomicBool::new(false);
     let mut times = [Vec::new(), Vec::new()];
+    let mut films = [0, 0];
+    let mut film_time = Duration::ZERO;
     for run in 0..2 + 5 {
         for (stays, times) in times.iter_mut().enumerate() {
+            let before = renderer.report();
             let mut film = job.new_film();
             renderer.prepare(&job, &go_on)?;
             let begin = Instant::now();
@@ -235,6 +238,9 @@ fn passes(arguments: &[String]) -> anyhow::Result<()> {
             }
             renderer.collect(&mut film)?;
             anyhow::ensure!(film.sample_count() == count * samples, "samples are missing");
+            let report = renderer.report();
+            films[stays] = report.films - before.films;
+            film_time = (report.film_time - before.film_time) / films[stays] as u32;
             if run >= 2 {
                 times.push(begin.elapsed().as_secs_f64() * 1e3 / count as f64);
             }
@@ -242,7 +248,13 @@ fn passes(arguments: &[String]) -> anyhow::Result<()> {
     }
     let [at_once, stays] = &mut times;
     let (at_once, stays) = (median(at_once), median(stays));
-    println!("| {} | {at_once:.2} | {stays:.2} | {:.2} |", arguments.join(" "), stays / at_once);
+    println!(
+        "| {} | {at_once:.2} | {stays:.2} | {} | {} | {:.2} |",
+        arguments.join(" "),
+        films[0],
+        films[1],
+        film_time.as_secs_f64() * 1e3
+    );
     Ok(())
 }
 

@@ -59,6 +59,10 @@ pub struct FilmBuffers {
     leaving: Option<Leaving>,
     arrived_at: Instant,
     arrival_took: Duration,
+    /// How often sums were added to a film.
+    pub arrivals: u64,
+    /// What that took the host, all together.
+    pub arrivals_took: Duration,
 }
 
 fn failed(reason: String) -> RenderError {
@@ -121,6 +125,8 @@ impl FilmBuffers {
             leaving: None,
             arrived_at: Instant::now(),
             arrival_took: Duration::ZERO,
+            arrivals: 0,
+            arrivals_took: Duration::ZERO,
         })
     }
 
@@ -243,6 +249,8 @@ impl FilmBuffers {
         }
         self.arrived_at = Instant::now();
         self.arrival_took = begin.elapsed();
+        self.arrivals += 1;
+        self.arrivals_took += self.arrival_took;
         let pixels = u64::from(film.width()) * u64::from(film.height());
         Ok(Stats {
             paths: pixels * leaving.samples.count(),

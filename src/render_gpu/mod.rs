@@ -91,7 +91,14 @@ impl GpuRenderer {
     /// What was compiled and measured so far.
     pub fn report(&self) -> GpuReport {
         let Dispatches { count, time, .. } = self.dispatches;
-        GpuReport { dispatches: count, dispatch_time: time, ..self.report.clone() }
+        let film = self.prepared.as_ref().map(|prepared| &prepared.film);
+        GpuReport {
+            dispatches: count,
+            dispatch_time: time,
+            films: film.map_or(0, |film| film.arrivals),
+            film_time: film.map_or(Duration::ZERO, |film| film.arrivals_took),
+            ..self.report.clone()
+        }
     }
 
     /// Runs `work` on the job. Where it fails, what was traced is forgotten.

@@ -128,4 +128,8 @@ pub struct GpuReport {
     pub dispatch_time: Duration,
     /// By what that was measured: "timestamp queries" or "wall clock".
     pub timer: &'static str,
+    /// How often the film at hand was brought home.
+    pub films: u64,
+    /// What adding its sums took the host, all together.
+    pub film_time: Duration,
 }
