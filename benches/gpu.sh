@@ -67,3 +67,16 @@ echo "|---|---|---|---|---|"
 
 printf '\nOperations of the kernel\n\n| scene | general | specialised | what is in it |\n|---|---|---|---|\n'
 "$bench" size touching-spheres metals three-spheres close-up book
+
+printf '\nPasses: films read at once, and films that stay on the device\n\n'
+echo "| scene, width, height, samples, depth, passes | ms a pass, at once | ms a pass, stays | reads | reads | ms to add one, host |"
+echo "|---|---|---|---|---|---|"
+# shellcheck disable=SC2086
+"$bench" passes three-spheres $three 2 24 32 "${adapter[@]}" 2> /dev/null
+
+printf '\nFrom a change to its first picture\n\n| scene, width, height, depth | ms | ms of it to prepare |\n|---|---|---|\n'
+# shellcheck disable=SC2086
+for scene in three-spheres book; do "$bench" first $scene $three 24 "${adapter[@]}" 2> /dev/null; done
+
+printf '\nWork of a turn of the path loop\n\n| scene | float | integer | special | together |\n|---|---|---|---|---|\n'
+"$bench" work touching-spheres metals three-spheres close-up

@@ -173,29 +173,46 @@ fn add_radiance(path: ptr<function, Path>, miss: bool, outward: vec3f) {
     }
 }
 
-// Sends the path on from a surface, or a new one from the camera where it has ended.
+// Sends the path on from a surface, or a new one from the camera where it has ended. Lanes go both ways side by
+// side, so what both need stands outside the branch: one set of numbers, one sine and cosine, one length.
 fn send(path: ptr<function, Path>, ended: bool, hit: u32, row: Row, point: SurfacePoint) {
-    // One set of numbers serves the camera and the surface alike.
     let drawn = draw(*path);
     let sine_cosine = sin_cos_turns(drawn.pair.y);
+    var sent: Ray;
     if ended {
-        var jitter = drawn.jitter;
-        if !ANTIALIASING {
-            jitter = vec2f(0.5);
-        }
-        var from_camera: CameraRay;
-        if has_lens() {
-            let on_lens = sqrt(drawn.pair.x) * sine_cosine.yx;
-            from_camera = lens_ray(job.camera, (*path).corner, jitter, on_lens);
-        } else {
-            from_camera = pinhole_ray(job.camera, (*path).corner, jitter);
-        }
-        (*path).ray = Ray(from_camera.origin, normalized(from_camera.direction), NONE, NONE);
-        (*path).throughput = vec3f(1.0);
-        (*path).absorbed = false;
-        return;
+        sent = start_path(path, drawn, sine_cosine);
+    } else {
+        sent = scatter_path(path, drawn, sine_cosine, hit, row, point);
     }
+    sent.direction = normalized(sent.direction);
+    (*path).ray = sent;
+}
 
+fn start_path(path: ptr<function, Path>, drawn: Drawn, sine_cosine: vec2f) -> Ray {
+    var jitter = drawn.jitter;
+    if !ANTIALIASING {
+        jitter = vec2f(0.5);
+    }
+    var from_camera: CameraRay;
+    if has_lens() {
+        let on_lens = sqrt(drawn.pair.x) * sine_cosine.yx;
+        from_camera = lens_ray(job.camera, (*path).corner, jitter, on_lens);
+    } else {
+        from_camera = pinhole_ray(job.camera, (*path).corner, jitter);
+    }
+    (*path).throughput = vec3f(1.0);
+    (*path).absorbed = false;
+    return Ray(from_camera.origin, from_camera.direction, NONE, NONE);
+}
+
+fn scatter_path(
+    path: ptr<function, Path>,
+    drawn: Drawn,
+    sine_cosine: vec2f,
+    hit: u32,
+    row: Row,
+    point: SurfacePoint,
+) -> Ray {
     let direction = (*path).ray.direction;
     let outward_cosine = dot3(direction, point.outward);
     var front = outward_cosine < 0.0;
@@ -219,12 +236,11 @@ fn send(path: ptr<function, Path>, ended: bool, hit: u32, row: Row, point: Surfa
     if dot3(sent, sent) < NEAR_ZERO {
         sent = normal;
     }
-    sent = normalized(sent);
     // A fuzzy reflection into the surface is absorbed.
     (*path).absorbed = METAL && scattered.is_metal && !(dot3(sent, normal) > 0.0);
-    let inward = front == scattered.refracts;
-    (*path).ray = Ray(point.position, sent, select(hit, NONE, inward), select(NONE, hit, inward));
     (*path).throughput *= albedo;
+    let inward = front == scattered.refracts;
+    return Ray(point.position, sent, select(hit, NONE, inward), select(NONE, hit, inward));
 }
 
 fn has_lens() -> bool {
@@ -232,7 +248,7 @@ fn has_lens() -> bool {
 }
 
 fn normalized(v: vec3f) -> vec3f {
-    return v * (1.0 / sqrt(dot3(v, v)));
+    return v * inverseSqrt(dot3(v, v));
 }
 
 // The reflectance of the picture's strip that a pixel lies in: 10, 30, 50, 70, 90 %.

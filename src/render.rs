@@ -287,11 +287,14 @@ pub trait Renderer: Send {
         String::new()
     }
 
-    /// Builds what tracing `job` needs (tables, hierarchy, kernels). Later calls for an equal job do nothing.
+    /// Begins a film of `job`: builds what tracing it needs (tables, hierarchy, kernels), unless that is there, and
+    /// forgets what was traced and not collected.
+    ///
+    /// `cancel` is looked at while kernels are compiled.
     ///
     /// # Errors
-    /// [`RenderError::Backend`] if the backend cannot render this job.
-    fn prepare(&mut self, job: &RenderJob) -> Result<(), RenderError>;
+    /// [`RenderError::Backend`] if the backend cannot render this job, [`RenderError::Cancelled`].
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError>;
 
     /// Adds samples `range` of every pixel to `film` and records them there. Prepares if need be.
     ///
@@ -307,4 +310,36 @@ pub trait Renderer: Send {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError>;
+
+    /// As [`Renderer::accumulate`], but need not wait for the results: samples may stay with the renderer and be
+    /// added to the same film by a later call. The film records those that it has, and the figures are of those
+    /// that this call added to it.
+    ///
+    /// # Errors
+    /// As [`Renderer::accumulate`]; samples that are not in the film are then lost.
+    fn advance(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.accumulate(job, range, film, cancel)
+    }
+
+    /// Sends for what was traced so far: the next [`Renderer::advance`] adds it to the film while it traces.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`].
+    fn fetch(&mut self) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    /// Adds to the film all that was traced and is not in it; waits for it.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`]; samples that are not in the film are then lost.
+    fn collect(&mut self, _film: &mut Film) -> Result<Stats, RenderError> {
+        Ok(Stats::default())
+    }
 }

@@ -81,7 +81,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("egui_plot", &["app"]),
     ("rfd", &["app"]),
     ("wgpu", &["render_gpu"]),
-    ("rayon", &["render_cpu"]),
+    ("rayon", &["render_cpu", "render_gpu"]),
     ("fearless_simd", &["render_cpu"]),
     ("obvhs", &["tables"]),
     ("indicatif", &["batch"]),

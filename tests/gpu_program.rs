@@ -6,13 +6,24 @@ mod gpu_common;
 use std::process::{Command, Output};
 use tempfile::TempDir;
 use weekender::film::checkpoint;
+use weekender::render_gpu::GpuOptions;
 
 /// Runs the program on the adapter of these tests; `None` where there is none.
 fn run(directory: &TempDir, arguments: &[&str]) -> Option<Output> {
-    let adapter = gpu_common::gpu(weekender::render_gpu::GpuOptions::default())?.adapter().name.clone();
-    let output = Command::new(env!("CARGO_BIN_EXE_weekender"))
+    let gpu = gpu_common::gpu(GpuOptions::default())?;
+    let adapter = gpu.adapter();
+    let program = env!("CARGO_BIN_EXE_weekender");
+    let mut command = if cfg!(unix) && adapter.is_software && arguments.contains(&OUT_OF_MEMORY) {
+        // A software adapter promises memory without end; let the system give no more than 8 GiB of it.
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "ulimit -v 8388608 && exec \"$0\" \"$@\"", program]);
+        shell
+    } else {
+        Command::new(program)
+    };
+    let output = command
         .current_dir(directory.path())
-        .args(["--batch", "--size", "64x36", "--progress", "off", "--adapter", &adapter])
+        .args(["--batch", "--size", "64x36", "--progress", "off", "--adapter", &adapter.name])
         .args(arguments)
         .output()
         .unwrap();
@@ -20,18 +31,77 @@ fn run(directory: &TempDir, arguments: &[&str]) -> Option<Output> {
     Some(output)
 }
 
+const OUT_OF_MEMORY: &str = "--simulate-out-of-memory";
+
 #[test]
-fn a_lost_device_leaves_a_whole_picture_and_a_warning() {
+fn a_fault_leaves_a_whole_picture_and_a_warning() {
     let directory = tempfile::tempdir().unwrap();
-    for device in ["gpu", "cpu,gpu"] {
-        let arguments =
-            ["--device", device, "--samples", "64", "--simulate-device-lost", "2", "--out", "lost.exr"];
-        let Some(output) = run(&directory, &arguments) else { return };
-        let message = String::from_utf8_lossy(&output.stderr);
-        assert!(message.contains("lost") && message.contains("goes on"), "{device}: {message}");
-        let film = checkpoint::load(&directory.path().join("lost.exr")).unwrap().film;
-        assert_eq!((film.sample_count(), film.rejected()), (64, 0), "{device}");
+    let faults = [
+        ("--simulate-device-lost", "lost"),
+        (OUT_OF_MEMORY, "Memory"),
+        ("--simulate-invalid-call", "alidation"),
+    ];
+    // Beside the CPU a slow device may get no more than its first piece.
+    for (device, after) in [("gpu", "3"), ("cpu,gpu", "0")] {
+        for (flag, word) in faults {
+            let arguments =
+                ["--device", device, "--samples", "64", flag, after, "--out", "broken.exr", "--json"];
+            let Some(output) = run(&directory, &[&arguments[..], &["broken.json"]].concat()) else { return };
+            let message = String::from_utf8_lossy(&output.stderr);
+            assert!(message.contains(word) && message.contains("goes on"), "{device} {flag}: {message}");
+            let film = checkpoint::load(&directory.path().join("broken.exr")).unwrap().film;
+            assert_eq!((film.sample_count(), film.rejected()), (64, 0), "{device} {flag}");
+            let parts = parts(&directory, "broken.json");
+            assert_eq!(
+                parts.iter().map(|(_, samples)| samples).sum::<u64>(),
+                64,
+                "{device} {flag}: {parts:?}"
+            );
+            assert!(
+                parts.iter().any(|(name, samples)| name == "cpu" && *samples > 0),
+                "{device} {flag}: {parts:?}"
+            );
+        }
     }
+}
+
+/// Who added how many samples, as the JSON tells.
+fn parts(directory: &TempDir, name: &str) -> Vec<(String, u64)> {
+    let json = std::fs::read_to_string(directory.path().join(name)).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let part = |share: &serde_json::Value| {
+        (share["name"].as_str().unwrap().to_owned(), share["samples_per_pixel"].as_u64().unwrap())
+    };
+    report["backends"].as_array().unwrap().iter().map(part).collect()
+}
+
+/// The samples that the film has from the device are in it to the bit, the others are the CPU's.
+#[test]
+fn a_film_after_a_fault_holds_what_the_counts_say() {
+    let directory = tempfile::tempdir().unwrap();
+    let lost =
+        ["--samples", "256", "--simulate-invalid-call", "5", "--out", "both.exr", "--json", "both.json"];
+    if run(&directory, &[&["--device", "gpu"][..], &lost].concat()).is_none() {
+        return;
+    }
+    let parts = parts(&directory, "both.json");
+    println!("{parts:?}");
+    let by_gpu = parts.iter().find(|(name, _)| name == "gpu").map_or(0, |(_, samples)| *samples);
+    let split = by_gpu.to_string();
+    let range = format!("{split}..256");
+    if by_gpu > 0 {
+        run(&directory, &["--device", "gpu", "--samples", &split, "--out", "first.exr"]).unwrap();
+        let cpu =
+            ["--batch", "--size", "64x36", "--progress", "off", "--device", "cpu", "--sample-range", &range];
+        let program = || Command::new(env!("CARGO_BIN_EXE_weekender"));
+        let second =
+            program().current_dir(directory.path()).args(cpu).args(["--out", "second.exr"]).output().unwrap();
+        assert!(second.status.success());
+    }
+    let load = |name: &str| checkpoint::load(&directory.path().join(name)).unwrap().film;
+    let mut expected = load("first.exr");
+    expected.merge(&load("second.exr")).unwrap();
+    assert!(load("both.exr") == expected);
 }
 
 #[test]
@@ -43,11 +113,8 @@ fn cpu_and_gpu_share_a_film_and_say_who_did_what() {
     }
     let film = checkpoint::load(&directory.path().join("both.exr")).unwrap().film;
     assert_eq!(film.samples().to_string(), "0..256");
-    let json = std::fs::read_to_string(directory.path().join("both.json")).unwrap();
-    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
-    let shares = report["backends"].as_array().unwrap();
-    let samples = |share: &serde_json::Value| share["samples_per_pixel"].as_u64().unwrap();
-    assert_eq!(shares.len(), 2, "{json}");
-    assert!(shares.iter().all(|share| samples(share) > 0), "{json}");
-    assert_eq!(shares.iter().map(samples).sum::<u64>(), 256);
+    let parts = parts(&directory, "both.json");
+    assert_eq!(parts.len(), 2, "{parts:?}");
+    assert!(parts.iter().all(|(_, samples)| *samples > 0), "{parts:?}");
+    assert_eq!(parts.iter().map(|(_, samples)| samples).sum::<u64>(), 256);
 }

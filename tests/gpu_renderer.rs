@@ -7,8 +7,8 @@ use glam::DVec3;
 use gpu_common::{cpu, gpu, job_of};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
-use weekender::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind};
-use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer, HierarchyKind, adapters};
+use weekender::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
+use weekender::render_gpu::{Drill, Fault, GpuError, GpuOptions, GpuRenderer, HierarchyKind, adapters};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book, field};
 use weekender::scene::{Camera, Material, Scene, Sky, Sphere};
 use weekender::stages::{Rules, Transfer};
@@ -108,7 +108,7 @@ fn dispatches_and_slabs_do_not_show() {
         assert!(rendered(&mut renderer, &job, 37) == expected, "{options:?}");
     }
     let mut renderer = gpu(GpuOptions { film_limit: Some(row), ..GpuOptions::default() }).unwrap();
-    let error = renderer.prepare(&job).unwrap_err().to_string();
+    let error = renderer.prepare(&job, &go_on()).unwrap_err().to_string();
     assert!(error.contains("the adapter binds at most"), "{error}");
 }
 
@@ -193,33 +193,95 @@ fn cancelled_between_dispatches() {
 }
 
 #[test]
-fn lost_device_leaves_the_film_and_the_cpu_goes_on() {
-    let options = GpuOptions {
-        samples_per_dispatch: Some(1),
-        simulate_device_lost_after: Some(20),
-        ..GpuOptions::default()
+fn samples_stay_on_the_device_until_they_are_fetched() {
+    let Some(mut gpu) = gpu(GpuOptions { film_limit: Some(50 * 2 * 24 * 16), ..GpuOptions::default() })
+    else {
+        return;
     };
-    let Some(mut gpu) = gpu(options) else { return };
-    let job = three_spheres([64, 36], 8, false);
+    let job = three_spheres([50, 43], 12, true);
+    let expected = rendered(&mut gpu, &job, 32);
     let mut film = job.new_film();
-    let mut next = 0;
-    let error = loop {
-        let before = film.clone();
-        match gpu.accumulate(&job, next..next + 4, &mut film, &go_on()) {
-            Ok(_) => next += 4,
-            Err(error) => {
-                assert!(film == before);
-                break error;
+    gpu.prepare(&job, &go_on()).unwrap();
+    // The first pass sends for the film by itself, since nothing is known of what that costs.
+    let mut rays = gpu.advance(&job, 0..4, &mut film, &go_on()).unwrap().rays;
+    assert_eq!((film.sample_count(), rays), (0, 0));
+    let second = gpu.advance(&job, 4..8, &mut film, &go_on()).unwrap();
+    assert_eq!((film.samples().to_string().as_str(), second.paths), ("0..4", 50 * 43 * 4));
+    rays += second.rays;
+    // What is on the device is there only once.
+    assert!(matches!(gpu.advance(&job, 6..10, &mut film, &go_on()), Err(RenderError::Film(_))));
+    gpu.fetch().unwrap();
+    rays += gpu.advance(&job, 8..20, &mut film, &go_on()).unwrap().rays;
+    assert_eq!(film.samples().to_string(), "0..8");
+    rays += gpu.advance(&job, 20..32, &mut film, &go_on()).unwrap().rays;
+    rays += gpu.collect(&mut film).unwrap().rays;
+    assert!(film == expected);
+    let again = gpu.accumulate(&job, 32..33, &mut film, &go_on()).unwrap();
+    assert_eq!(again.paths, 50 * 43);
+    assert!(rays > 50 * 43 * 32 && rays < 50 * 43 * 32 * 12, "{rays}");
+    assert_eq!(gpu.collect(&mut film).unwrap(), Stats::default());
+}
+
+#[test]
+fn a_new_film_does_not_get_the_old_ones_samples() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let job = three_spheres([64, 36], 8, false);
+    let expected = rendered(&mut gpu, &job, 4);
+    let mut dropped = job.new_film();
+    gpu.prepare(&job, &go_on()).unwrap();
+    gpu.advance(&job, 0..4, &mut dropped, &go_on()).unwrap();
+    gpu.advance(&job, 4..8, &mut dropped, &go_on()).unwrap();
+    gpu.prepare(&job, &go_on()).unwrap();
+    assert!(rendered(&mut gpu, &job, 4) == expected);
+    // Nor does another job of the same size.
+    gpu.advance(&job, 0..4, &mut job.new_film(), &go_on()).unwrap();
+    let other = three_spheres([64, 36], 3, false);
+    let film = rendered(&mut gpu, &other, 4);
+    assert!(film != expected);
+    let mut fresh = gpu_common::gpu(GpuOptions::default()).unwrap();
+    assert!(film == rendered(&mut fresh, &other, 4));
+}
+
+#[test]
+fn a_kernel_that_is_no_longer_wanted_is_not_waited_for() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let job = three_spheres([64, 36], 8, false);
+    let outcome = gpu.prepare(&job, &AtomicBool::new(true));
+    assert!(matches!(outcome, Ok(()) | Err(RenderError::Cancelled)), "{outcome:?}");
+    assert_eq!(rendered(&mut gpu, &job, 4).sample_count(), 4);
+}
+
+#[test]
+fn a_fault_leaves_the_film_and_the_cpu_goes_on() {
+    // A software adapter's memory ends only where the program's does: see tests/gpu_program.rs.
+    for fault in [Fault::Lost, Fault::Invalid] {
+        let options = GpuOptions {
+            samples_per_dispatch: Some(1),
+            drill: Some(Drill { fault, after: 20 }),
+            ..GpuOptions::default()
+        };
+        let Some(mut gpu) = gpu(options) else { return };
+        let job = three_spheres([64, 36], 8, false);
+        let mut film = job.new_film();
+        let mut next = 0;
+        let error = loop {
+            let before = film.clone();
+            match gpu.accumulate(&job, next..next + 4, &mut film, &go_on()) {
+                Ok(_) => next += 4,
+                Err(error) => {
+                    assert!(film == before);
+                    break error;
+                }
             }
-        }
-        assert!(next < 100);
-    };
-    println!("{error}");
-    assert!(matches!(error, RenderError::Backend { backend: "gpu", .. }));
-    // It stays lost.
-    assert!(gpu.accumulate(&job, next..next + 4, &mut film, &go_on()).is_err());
-    cpu().accumulate(&job, next..next + 4, &mut film, &go_on()).unwrap();
-    assert_eq!(film.sample_count(), next + 4);
+            assert!(next < 100, "{fault:?} went unnoticed");
+        };
+        println!("{fault:?}: {error}");
+        assert!(matches!(error, RenderError::Backend { backend: "gpu", .. }));
+        // It stays broken.
+        assert!(gpu.accumulate(&job, next..next + 4, &mut film, &go_on()).is_err());
+        cpu().accumulate(&job, next..next + 4, &mut film, &go_on()).unwrap();
+        assert_eq!(film.sample_count(), next + 4);
+    }
 }
 
 #[test]

@@ -60,7 +60,7 @@ fn run(
     input: impl Fn(u32) -> Words,
 ) -> Vec<(Words, Words)> {
     let inputs: Vec<Words> = (0..COUNT as u32).map(input).collect();
-    let output = gpu.probe(&job(laws), probe, inputs.concat()).unwrap();
+    let output = gpu.probe(&job(laws), probe, &inputs.concat()).unwrap();
     inputs.into_iter().zip(output.chunks_exact(PROBE_STRIDE).map(|w| w.try_into().unwrap())).collect()
 }
 

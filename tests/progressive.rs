@@ -31,7 +31,7 @@ impl Renderer for Fake {
         BackendInfo { name: self.name, device: "fake".into(), lanes: 1, threads: 1 }
     }
 
-    fn prepare(&mut self, _: &RenderJob) -> Result<(), RenderError> {
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
         Ok(())
     }
 

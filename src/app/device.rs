@@ -125,7 +125,7 @@ impl Device {
         let lanes = lanes.or(options.cpu.lanes);
         let cpu = CpuOptions { isa: options.cpu.isa, lanes, threads };
         // Whoever presses the button means it: software will do.
-        let dispatch_target = options.gpu.dispatch_target.min(2 * INTERACTIVE_TARGET);
+        let dispatch_target = options.gpu.dispatch_target.min(INTERACTIVE_TARGET);
         let gpu = || GpuOptions { allow_software: true, dispatch_target, ..options.gpu.clone() };
         match self {
             Device::Cpu => BackendChoice::Cpu(cpu),

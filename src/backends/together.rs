@@ -37,12 +37,38 @@ struct Pieces {
     grain: u64,
 }
 
+/// How a member takes pieces.
+#[derive(Clone, Copy)]
+struct Pace {
+    /// Of what is left.
+    share: f64,
+    /// How many times as fast the fastest of the others is; 0 while nobody has been measured.
+    fastest_other: f64,
+}
+
+impl Pace {
+    fn of(index: usize, speeds: &[Option<f64>]) -> Pace {
+        let total: f64 = speeds.iter().flatten().sum();
+        let others = speeds.iter().enumerate().filter(|(other, _)| *other != index);
+        let fastest = others.filter_map(|(_, speed)| *speed).fold(0.0, f64::max);
+        match speeds[index] {
+            Some(speed) => Pace { share: PIECE_SHARE * speed / total, fastest_other: fastest / speed },
+            // Whoever has not been measured yet takes the smallest piece.
+            None => Pace { share: 0.0, fastest_other: 0.0 },
+        }
+    }
+}
+
 impl Pieces {
-    /// At most `share` of what is left, whole grains, at least one.
-    fn take(&mut self, share: f64) -> Option<Range<u64>> {
+    /// The pace's share of what is left, whole grains, at least one. Nothing where another has done all that is
+    /// left before this one had done a grain.
+    fn take(&mut self, pace: Pace) -> Option<Range<u64>> {
         let total: u64 = self.left.iter().map(|range| range.end - range.start).sum();
+        if self.grain as f64 * pace.fastest_other > total as f64 {
+            return None;
+        }
         let range = self.left.last_mut()?;
-        let wanted = (total as f64 * share) as u64 / self.grain * self.grain;
+        let wanted = (total as f64 * pace.share) as u64 / self.grain * self.grain;
         let end = range.end.min(range.start + wanted.max(self.grain));
         let piece = range.start..end;
         range.start = end;
@@ -50,10 +76,6 @@ impl Pieces {
             self.left.pop();
         }
         Some(piece)
-    }
-
-    fn give_back(&mut self, piece: Range<u64>) {
-        self.left.push(piece);
     }
 }
 
@@ -113,10 +135,15 @@ impl Renderer for Together {
         self.members.iter().map(|member| member.renderer.hierarchy_time()).sum()
     }
 
-    fn prepare(&mut self, job: &RenderJob) -> Result<(), RenderError> {
-        let prepared = self.members.iter_mut().enumerate();
-        let failed =
-            prepared.filter_map(|(index, m)| m.renderer.prepare(job).err().map(|e| (index, e))).collect();
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
+        let mut failed = Vec::new();
+        for (index, member) in self.members.iter_mut().enumerate() {
+            match member.renderer.prepare(job, cancel) {
+                Ok(()) => {}
+                Err(RenderError::Cancelled) => return Err(RenderError::Cancelled),
+                Err(error) => failed.push((index, error)),
+            }
+        }
         self.leave_out(failed)
     }
 
@@ -136,12 +163,14 @@ impl Renderer for Together {
         let mut films: Vec<Film> = Vec::new();
         self.members.iter_mut().for_each(|member| member.added = 0);
         loop {
-            let total: f64 = self.members.iter().filter_map(|member| member.samples_per_second).sum();
-            let count = self.members.len() as f64;
+            let speeds: Vec<Option<f64>> = self.members.iter().map(|m| m.samples_per_second).collect();
             let outcomes: Vec<Outcome> = std::thread::scope(|scope| {
                 let pieces = &pieces;
-                let run = |member| move || work_off(member, total, count, job, pieces, cancel);
-                let threads: Vec<_> = self.members.iter_mut().map(|m| scope.spawn(run(m))).collect();
+                let run = |(index, member)| {
+                    let pace = Pace::of(index, &speeds);
+                    scope.spawn(move || work_off(member, pace, job, pieces, cancel))
+                };
+                let threads: Vec<_> = self.members.iter_mut().enumerate().map(run).collect();
                 threads
                     .into_iter()
                     .map(|thread| thread.join().unwrap_or_else(|_| Outcome::panicked()))
@@ -179,44 +208,54 @@ impl Outcome {
     }
 }
 
-/// Takes pieces until none is left.
+/// Takes pieces until none is left, and collects what they brought.
 fn work_off(
     member: &mut Member,
-    total_speed: f64,
-    member_count: f64,
+    pace: Pace,
     job: &RenderJob,
     pieces: &Mutex<Pieces>,
     cancel: &AtomicBool,
 ) -> Outcome {
-    // Whoever has not been measured yet takes the smallest piece.
-    let share = member.samples_per_second.map_or(0.0, |speed| {
-        if total_speed > 0.0 { PIECE_SHARE * speed / total_speed } else { PIECE_SHARE / member_count }
-    });
+    let begin = Instant::now();
     let mut outcome = Outcome { film: None, stats: Stats::default(), error: None };
-    loop {
+    let mut taken = Vec::new();
+    let renderer = member.renderer.as_mut();
+    while outcome.error.is_none() {
         if cancel.load(Ordering::Relaxed) {
             outcome.error = Some(RenderError::Cancelled);
             return outcome;
         }
-        let Some(piece) = pieces.lock().unwrap_or_else(PoisonError::into_inner).take(share) else {
+        let piece = pieces.lock().unwrap_or_else(PoisonError::into_inner).take(pace);
+        let is_last = piece.is_none();
+        if is_last && taken.is_empty() {
             return outcome;
-        };
+        }
         let film = outcome.film.get_or_insert_with(|| job.new_film());
-        let begin = Instant::now();
-        match member.renderer.accumulate(job, piece.clone(), film, cancel) {
-            Ok(stats) => {
-                let samples = piece.end - piece.start;
-                member.samples_per_second = Some(samples as f64 / begin.elapsed().as_secs_f64().max(1e-9));
-                member.added += samples;
-                outcome.stats.add(&stats);
+        let result = match piece {
+            Some(piece) => {
+                taken.push(piece.clone());
+                renderer.advance(job, piece, film, cancel)
             }
-            Err(error) => {
-                pieces.lock().unwrap_or_else(PoisonError::into_inner).give_back(piece);
-                outcome.error = Some(error);
-                return outcome;
-            }
+            None => renderer.collect(film),
+        };
+        match result {
+            Ok(stats) => outcome.stats.add(&stats),
+            Err(error) => outcome.error = Some(error),
+        }
+        if is_last {
+            break;
         }
     }
+    let Some(film) = &outcome.film else { return outcome };
+    // What a failing member had not brought home is for the others.
+    let lost = taken.into_iter().filter(|piece| film.samples().overlap(piece).is_none());
+    pieces.lock().unwrap_or_else(PoisonError::into_inner).left.extend(lost);
+    let added = film.sample_count();
+    member.added += added;
+    if added > 0 {
+        member.samples_per_second = Some(added as f64 / begin.elapsed().as_secs_f64().max(1e-9));
+    }
+    outcome
 }
 
 #[cfg(test)]
@@ -229,15 +268,31 @@ mod tests {
         let mut covered = Vec::new();
         for turn in 0.. {
             let share = [0.0, 0.25, 0.5, 0.1][turn % 4];
-            let Some(piece) = pieces.take(share) else { break };
+            let Some(piece) = pieces.take(Pace { share, fastest_other: 1.0 }) else { break };
             assert_eq!((piece.start % 2, piece.end % 2), (0, 0), "{piece:?} tears a pair of samples apart");
             if turn == 2 {
-                pieces.give_back(piece);
+                pieces.left.push(piece);
                 continue;
             }
             covered.extend(piece);
         }
         covered.sort_unstable();
         assert_eq!(covered, (6..120).collect::<Vec<u64>>());
+    }
+
+    #[test]
+    fn a_slow_member_takes_nothing_that_the_others_would_have_to_wait_for() {
+        let mut pieces = Pieces { left: vec![0..16], grain: 2 };
+        let [fast, slow] = [0, 1].map(|index| Pace::of(index, &[Some(100.0), Some(10.0)]));
+        assert_eq!(pieces.take(slow), None);
+        assert_eq!(pieces.take(fast), Some(0..6));
+        pieces.left = vec![0..64];
+        assert_eq!(pieces.take(slow), Some(0..2));
+        // Who is fastest takes whatever is left, and so does who stands alone or is new.
+        pieces.left = vec![0..2];
+        for pace in [fast, Pace::of(0, &[Some(1.0)]), Pace::of(1, &[Some(100.0), None])] {
+            pieces.left = vec![0..2];
+            assert_eq!(pieces.take(pace), Some(0..2));
+        }
     }
 }

@@ -10,7 +10,7 @@ use crate::progressive::Plan;
 use crate::recipe::Recipe;
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::{CpuOptions, Isa};
-use crate::render_gpu::GpuOptions;
+use crate::render_gpu::{Drill, Fault, GpuOptions};
 use crate::stages::Stage;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -353,18 +353,21 @@ fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
     let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
     let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
     let cpu = CpuOptions { isa, lanes, threads };
+    let drills = [
+        (raw.simulate_device_lost, Fault::Lost, "--simulate-device-lost"),
+        (raw.simulate_out_of_memory, Fault::OutOfMemory, "--simulate-out-of-memory"),
+        (raw.simulate_invalid_call, Fault::Invalid, "--simulate-invalid-call"),
+    ];
+    let drill =
+        drills.into_iter().find_map(|(after, fault, flag)| after.map(|after| (Drill { fault, after }, flag)));
     let gpu = GpuOptions {
         adapter: raw.adapter.clone(),
         // Whoever names a software adapter wants it.
         allow_software: raw.adapter.is_some(),
-        simulate_device_lost_after: raw.simulate_device_lost,
+        drill: drill.map(|(drill, _)| drill),
         ..GpuOptions::default()
     };
-    let gpu_flag = match (&raw.adapter, raw.simulate_device_lost) {
-        (Some(_), _) => Some("--adapter"),
-        (None, Some(_)) => Some("--simulate-device-lost"),
-        (None, None) => None,
-    };
+    let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { drill.map(|(_, flag)| flag) };
     if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, raw.device) {
         let other = if raw.device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
         return Err(CliError::Together { flag, other, reason: "it is for the GPU; leave one of them out" });

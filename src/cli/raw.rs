@@ -79,6 +79,19 @@ pub(super) struct RawRender {
     /// Lose the GPU after so many dispatches, to see that the CPU goes on: a drill
     #[arg(long, value_name = "DISPATCHES", help_heading = "Device")]
     pub simulate_device_lost: Option<u64>,
+    /// Use up the GPU's memory after so many dispatches: another drill
+    #[arg(
+        long,
+        value_name = "DISPATCHES",
+        hide = true,
+        conflicts_with = "simulate_device_lost",
+        help_heading = "Device"
+    )]
+    pub simulate_out_of_memory: Option<u64>,
+    /// Make a mistake after so many dispatches: another drill
+    #[arg(long, value_name = "DISPATCHES", hide = true,
+          conflicts_with_all = ["simulate_device_lost", "simulate_out_of_memory"], help_heading = "Device")]
+    pub simulate_invalid_call: Option<u64>,
     /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16
     #[arg(long, value_name = "LANES", value_parser = parse_simd, default_value = "auto",
           help_heading = "Device")]

@@ -3,9 +3,9 @@
 use super::shared::{Picture, Shared};
 use super::{Factory, PassSizer, Phase, Plan, Status, View, Work};
 use crate::backends::BackendChoice;
-use crate::film::Film;
+use crate::film::{Film, SampleRanges};
 use crate::progressive::{EndReason, HistoryPoint};
-use crate::render::{RenderError, RenderJob, Renderer};
+use crate::render::{RenderError, RenderJob, Renderer, Stats};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender, TryRecvError};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -43,6 +43,8 @@ struct Render {
     job: RenderJob,
     plan: Plan,
     film: Film,
+    /// The samples of the film, and those that the renderer has not added to it yet.
+    dealt: SampleRanges,
     cancel: Arc<AtomicBool>,
     choice: BackendChoice,
     is_prepared: bool,
@@ -70,14 +72,20 @@ struct Ready {
 
 impl Upcoming {
     /// Starts to prepare `job`; `None` if the system gives no thread.
-    fn start(choice: BackendChoice, job: &RenderJob, factory: &Arc<Mutex<Factory>>) -> Option<Self> {
+    fn start(
+        choice: BackendChoice,
+        job: &RenderJob,
+        factory: &Arc<Mutex<Factory>>,
+        cancel: &Arc<AtomicBool>,
+    ) -> Option<Self> {
         let (sender, outcome) = mpsc::channel();
         let (wanted, job, factory) = (choice.clone(), job.clone(), Arc::clone(factory));
+        let cancel = Arc::clone(cancel);
         let prepare = move || {
             let begin = Instant::now();
             let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(&wanted);
             let ready = made.map_err(|error| error.to_string()).and_then(|mut renderer| {
-                renderer.prepare(&job).map_err(|error| error.to_string())?;
+                renderer.prepare(&job, &cancel).map_err(|error| error.to_string())?;
                 Ok(Ready { renderer, took: begin.elapsed() })
             });
             // Nobody waits any more if another backend was chosen meanwhile.
@@ -152,6 +160,9 @@ impl Worker {
             }
             return;
         }
+        if !matches!(command, Command::Abandon | Command::Look | Command::SetPlan(_)) {
+            self.collect();
+        }
         let Some(render) = &mut self.render else { return };
         let is_stopped = render.status.phase == Phase::Done(EndReason::Stopped);
         match command {
@@ -198,7 +209,28 @@ impl Worker {
         }
     }
 
+    /// Brings the film up to date: it is about to be looked at, or someone else goes on with it.
+    fn collect(&mut self) {
+        let (Some(render), Some((_, renderer))) = (&mut self.render, &mut self.backend) else { return };
+        let begin = Instant::now();
+        let outcome = render.collect(renderer.as_mut());
+        render.status.elapsed += begin.elapsed();
+        if let Err(error) = outcome {
+            self.give_up_backend(&error);
+        }
+    }
+
+    /// A renderer that failed is not asked again, not even for another job.
+    fn give_up_backend(&mut self, error: &RenderError) {
+        self.backend = None;
+        if let Some(render) = &mut self.render {
+            render.fail(&error.to_string());
+            self.shared.publish(&render.status);
+        }
+    }
+
     fn take_film(&mut self) -> Option<Film> {
+        self.collect();
         let Render { film, status, .. } = self.render.take()?;
         if !status.phase.is_over() {
             self.shared.publish(&Status { phase: Phase::Idle, ..status });
@@ -219,7 +251,7 @@ impl Worker {
         let begin = Instant::now();
         let outcome = if render.is_prepared {
             match &mut self.backend {
-                Some((_, renderer)) => render.pass(renderer.as_mut(), begin),
+                Some((_, renderer)) => render.pass(renderer.as_mut(), self.shared.is_picture_wanted(), begin),
                 None => Ok(()),
             }
         } else {
@@ -229,12 +261,7 @@ impl Worker {
         match outcome {
             Ok(()) => self.shared.publish(&render.status),
             Err(RenderError::Cancelled) => self.abandon(),
-            Err(error) => {
-                // A renderer that failed is not asked again, not even for another job.
-                self.backend = None;
-                render.fail(&error.to_string());
-                self.shared.publish(&render.status);
-            }
+            Err(error) => self.give_up_backend(&error),
         }
     }
 }
@@ -260,6 +287,7 @@ impl Render {
             status: Status { run, phase: Phase::Preparing, ..Status::default() },
             job,
             plan,
+            dealt: film.samples().clone(),
             film,
             cancel,
             choice,
@@ -295,7 +323,7 @@ impl Render {
 
     /// Ends because no pass is left: all samples are there, or the time is over.
     fn end_of_plan(&mut self) {
-        let is_whole = self.film.samples().first_gap(self.plan.samples.clone(), 1).is_none();
+        let is_whole = self.dealt.first_gap(self.plan.samples.clone(), 1).is_none();
         self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
     }
 
@@ -309,7 +337,7 @@ impl Render {
             return;
         }
         if self.is_prepared {
-            self.upcoming = Upcoming::start(choice.clone(), &self.job, factory);
+            self.upcoming = Upcoming::start(choice.clone(), &self.job, factory, &self.cancel);
         }
         if self.upcoming.is_none() {
             self.change_backend(choice);
@@ -318,20 +346,29 @@ impl Render {
 
     /// Hands over to a backend that has become ready.
     fn welcome_upcoming(&mut self, backend: &mut Option<(BackendChoice, Box<dyn Renderer>)>) {
-        let Some(upcoming) = &self.upcoming else { return };
+        let Some(upcoming) = self.upcoming.take() else { return };
         let outcome = match upcoming.outcome.try_recv() {
             Ok(outcome) => outcome,
-            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Empty) => {
+                self.upcoming = Some(upcoming);
+                return;
+            }
             Err(TryRecvError::Disconnected) => Err("its preparation ended by a panic".to_owned()),
         };
         match outcome {
             Ok(mut ready) => {
+                if let Some((_, old)) = backend
+                    && let Err(error) = self.collect(old.as_mut())
+                {
+                    self.status.say(vec![error.to_string()]);
+                    self.dealt = self.film.samples().clone();
+                }
                 self.status.backend = Some(ready.renderer.info());
                 self.status.say(ready.renderer.take_messages());
                 self.status.kernel = ready.renderer.kernel();
                 self.status.hierarchy += ready.renderer.hierarchy_time();
                 self.status.prepare += ready.took;
-                self.choice = upcoming.choice.clone();
+                self.choice = upcoming.choice;
                 *backend = Some((self.choice.clone(), ready.renderer));
                 self.sizer.restart();
             }
@@ -339,7 +376,6 @@ impl Render {
                 self.status.say(vec![format!("{reason}; the {} goes on", self.choice.name())]);
             }
         }
-        self.upcoming = None;
     }
 
     fn change_backend(&mut self, choice: BackendChoice) {
@@ -356,6 +392,8 @@ impl Render {
 
     /// Lets the fallback go on with the film, or gives up if that was the one that failed.
     fn fail(&mut self, reason: &str) {
+        // What was not in the film is lost, and is rendered again.
+        self.dealt = self.film.samples().clone();
         let fallback = BackendChoice::fallback();
         if self.choice == fallback {
             self.status.phase = Phase::Failed(reason.to_owned());
@@ -391,7 +429,7 @@ impl Render {
             }
         }
         if let Some((_, renderer)) = backend {
-            renderer.prepare(&self.job)?;
+            renderer.prepare(&self.job, &self.cancel)?;
             self.status.backend = Some(renderer.info());
             self.status.say(renderer.take_messages());
             self.status.kernel = renderer.kernel();
@@ -407,36 +445,74 @@ impl Render {
     fn next_pass(&self) -> Option<std::ops::Range<u64>> {
         let time_left = match self.plan.time_limit {
             // A picture without a sample is of no use to anyone.
-            Some(limit) if self.film.sample_count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
+            Some(limit) if self.dealt.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
             _ => None,
         };
-        self.sizer.next(self.film.samples(), self.plan.samples.clone(), time_left)
+        self.sizer.next(&self.dealt, self.plan.samples.clone(), time_left)
     }
 
-    fn pass(&mut self, renderer: &mut dyn Renderer, begin: Instant) -> Result<(), RenderError> {
+    fn pass(
+        &mut self,
+        renderer: &mut dyn Renderer,
+        is_picture_wanted: bool,
+        begin: Instant,
+    ) -> Result<(), RenderError> {
         if self.plan.noise_reached(self.film.sample_count(), self.status.error) {
+            self.collect(renderer)?;
             self.end(EndReason::NoiseTarget);
             return Ok(());
         }
         let Some(range) = self.next_pass() else {
+            self.collect(renderer)?;
             self.end_of_plan();
             return Ok(());
         };
         let added = range.end - range.start;
-        let stats = renderer.accumulate(&self.job, range, &mut self.film, &self.cancel)?;
+        let held = self.film.sample_count();
+        let outcome = renderer.advance(&self.job, range.clone(), &mut self.film, &self.cancel);
+        self.note_added(renderer, held, &outcome);
+        outcome?;
+        self.dealt.insert(range)?;
         let took = begin.elapsed();
-
         self.sizer.measured(added, took, self.plan.pass_target);
-        self.status.stats.add(&stats);
         self.status.trace += took;
-        for (info, samples) in renderer.credits(added) {
-            self.status.credit(&info, samples);
-        }
         // A renderer that changes with use (an adapter lost, threads given up) says so.
         self.status.backend = Some(renderer.info());
         self.status.say(renderer.take_messages());
-        self.note_film();
+        if is_picture_wanted && self.film.sample_count() == 0 {
+            // The first picture is what someone waits for most.
+            self.collect(renderer)?;
+        } else if is_picture_wanted {
+            renderer.fetch()?;
+        }
         Ok(())
+    }
+
+    /// Adds to the film what the renderer still has.
+    fn collect(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
+        if self.dealt != *self.film.samples() {
+            let begin = Instant::now();
+            let held = self.film.sample_count();
+            let outcome = renderer.collect(&mut self.film);
+            self.status.trace += begin.elapsed();
+            self.note_added(renderer, held, &outcome);
+            outcome?;
+        }
+        Ok(())
+    }
+
+    /// Notes who added to a film that held `held` samples, and what. Some can have come before a failure.
+    fn note_added(&mut self, renderer: &dyn Renderer, held: u64, outcome: &Result<Stats, RenderError>) {
+        let added = self.film.sample_count() - held;
+        if added > 0 {
+            if let Ok(stats) = outcome {
+                self.status.stats.add(stats);
+            }
+            for (info, samples) in renderer.credits(added) {
+                self.status.credit(&info, samples);
+            }
+            self.note_film();
+        }
     }
 
     /// Brings the status up to date with the film.

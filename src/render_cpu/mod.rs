@@ -158,7 +158,7 @@ impl Renderer for CpuRenderer {
         }
     }
 
-    fn prepare(&mut self, job: &RenderJob) -> Result<(), RenderError> {
+    fn prepare(&mut self, job: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
         if self.prepared.is_some() && self.job.as_ref() == Some(job) {
             return Ok(());
         }
@@ -188,7 +188,7 @@ impl Renderer for CpuRenderer {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        self.prepare(job)?;
+        self.prepare(job, cancel)?;
         let start = Instant::now();
         let tiles = match &self.prepared {
             Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, &range, film, cancel),

@@ -1,6 +1,6 @@
 //! Adapters, the device, and what can go wrong with it.
 
-use super::GpuError;
+use super::{Fault, GpuError};
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -142,7 +142,7 @@ impl Faults {
 }
 
 /// How the bindings of the shaders are grouped.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Layouts {
     /// Group 0: the job.
     pub job: wgpu::BindGroupLayout,
@@ -189,8 +189,8 @@ impl Layouts {
     }
 }
 
-/// An open device.
-#[derive(Debug)]
+/// An open device; clones are the same one.
+#[derive(Clone, Debug)]
 pub struct Gpu {
     /// The adapter it is of.
     pub adapter: AdapterInfo,
@@ -206,6 +206,9 @@ pub struct Gpu {
 
 /// Longer than any dispatch takes: a device that has not finished by then hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Buffers of the largest size that a drill asks for: no device has so much memory.
+const DRILL_BUFFERS: usize = 4096;
 
 impl Gpu {
     /// Opens the first adapter whose name, backend or driver contains `wanted` (in any case), or the first of
@@ -312,6 +315,38 @@ impl Gpu {
             .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
             .collect();
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+    }
+
+    /// Breaks the device, as a drill.
+    pub fn break_by(&self, fault: Fault) {
+        match fault {
+            Fault::Lost => self.device.destroy(),
+            Fault::OutOfMemory => self.use_up_memory(),
+            // More than the buffer has room for.
+            Fault::Invalid => {
+                let small = self.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("drill"),
+                    size: 16,
+                    usage: wgpu::BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                self.queue.write_buffer(&small, 16, &[0; 16]);
+            }
+        }
+    }
+
+    /// Asks for buffers until one is refused.
+    fn use_up_memory(&self) {
+        let size = self.adapter.buffer_limit / 16 * 16;
+        let mut taken = Vec::new();
+        while self.faults.check().is_ok() && taken.len() < DRILL_BUFFERS {
+            taken.push(self.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("drill"),
+                size,
+                usage: wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            }));
+        }
     }
 
     /// Waits until a submission is done.

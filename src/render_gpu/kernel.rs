@@ -1,218 +1,18 @@
-//! Kernels: a shader specialised by override constants, compiled once for each set of them.
+//! Kernels: a shader specialised by override constants, compiled once for each set of them, on a thread of its
+//! own.
 
+use super::Overrides;
 use super::device::Gpu;
-use super::layout::{UNIFORM_ANCHORED, UNIFORM_SPHERES};
-use super::shader_source::{EntryPoint, laws_tag, shading_tag, source};
-use crate::render::{RenderJob, SamplerKind};
-use crate::stages::{DielectricLaws, Diffuse, Shading, Surface};
-use crate::tables::Tables;
+use super::shader_source::{EntryPoint, source};
+use crate::render::RenderError;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// What a kernel is specialised by. Code that a flag switches off is not in the kernel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Overrides {
-    /// Lambertian surfaces.
-    pub lambertian: bool,
-    /// Metals.
-    pub metal: bool,
-    /// Metals with fuzz.
-    pub fuzz: bool,
-    /// Glass.
-    pub glass: bool,
-    /// A lens.
-    pub lens: bool,
-    /// Spheres that a ray can be inside of.
-    pub two_root: bool,
-    /// Huge spheres.
-    pub anchored: bool,
-    /// A hierarchy.
-    pub hierarchy: bool,
-    /// It is the compressed one.
-    pub cwbvh: bool,
-    /// The spheres fit the uniform buffer, and the next two counts are those of the scene.
-    pub few_spheres: bool,
-    /// Spheres of one root.
-    pub opaque_count: u32,
-    /// Spheres of two.
-    pub two_root_count: u32,
-    /// The huge spheres fit the uniform buffer, and the next count is that of the scene.
-    pub few_anchored: bool,
-    /// Huge spheres.
-    pub anchored_count: u32,
-    /// The Sobol sampler, else independent numbers.
-    pub sobol: bool,
-    /// Samples are spread over the pixel.
-    pub antialiasing: bool,
-    /// Rays are traced at all.
-    pub rays: bool,
-    /// The book's lower bound of 0.
-    pub acne: bool,
-    /// Lambertian surfaces send light evenly over the hemisphere.
-    pub hemisphere: bool,
-    /// The reflectance is that of the picture's strip.
-    pub reflectance_strips: bool,
-    /// What a ray brings back.
-    pub shading: Shading,
-    /// The laws of glass.
-    pub dielectric_laws: DielectricLaws,
-}
-
-/// The value of an override constant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Constant {
-    /// A `bool`.
-    Flag(bool),
-    /// A `u32`.
-    Number(u32),
-}
-
-impl Constant {
-    fn value(self) -> f64 {
-        match self {
-            Constant::Flag(flag) => f64::from(u8::from(flag)),
-            Constant::Number(number) => f64::from(number),
-        }
-    }
-}
-
-impl Default for Overrides {
-    /// The kernel that leaves nothing out but the hierarchy and the stages' rules.
-    fn default() -> Self {
-        Overrides {
-            lambertian: true,
-            metal: true,
-            fuzz: true,
-            glass: true,
-            lens: true,
-            two_root: true,
-            anchored: true,
-            hierarchy: false,
-            cwbvh: false,
-            few_spheres: false,
-            opaque_count: 0,
-            two_root_count: 0,
-            few_anchored: false,
-            anchored_count: 0,
-            sobol: true,
-            antialiasing: true,
-            rays: true,
-            acne: false,
-            hemisphere: false,
-            reflectance_strips: false,
-            shading: Shading::Path,
-            dielectric_laws: DielectricLaws::Schlick,
-        }
-    }
-}
-
-impl Overrides {
-    /// The kernel that carries no more than a job needs.
-    pub fn specialised(job: &RenderJob, tables: &Tables<f32>) -> Self {
-        let features = job.features();
-        let rules = job.rules();
-        let listed = tables.opaque.len() + tables.two_root.len();
-        let few_spheres = tables.hierarchy.is_none() && listed <= UNIFORM_SPHERES;
-        let few_anchored = tables.anchored.len() <= UNIFORM_ANCHORED;
-        Overrides {
-            lambertian: features.lambertian,
-            metal: features.metal,
-            fuzz: features.fuzz,
-            glass: features.dielectric,
-            lens: features.lens,
-            two_root: !tables.two_root.is_empty(),
-            anchored: !tables.anchored.is_empty(),
-            few_spheres,
-            opaque_count: if few_spheres { tables.opaque.len() as u32 } else { 0 },
-            two_root_count: if few_spheres { tables.two_root.len() as u32 } else { 0 },
-            few_anchored,
-            anchored_count: if few_anchored { tables.anchored.len() as u32 } else { 0 },
-            hierarchy: tables.hierarchy.is_some(),
-            cwbvh: false,
-            rays: features.rays,
-            sobol: job.settings().sampler == SamplerKind::Sobol,
-            antialiasing: rules.antialiasing,
-            acne: rules.surface == Surface::Acne,
-            hemisphere: rules.diffuse == Diffuse::Hemisphere,
-            reflectance_strips: rules.reflectance_strips,
-            shading: rules.shading,
-            dielectric_laws: rules.dielectric,
-        }
-    }
-
-    /// The kernel that leaves out nothing that leaves the job's samples as they are: to measure what
-    /// specialising gains.
-    pub fn general(job: &RenderJob, tables: &Tables<f32>) -> Self {
-        let needed = Overrides::specialised(job, tables);
-        Overrides {
-            hierarchy: needed.hierarchy,
-            rays: needed.rays,
-            sobol: needed.sobol,
-            antialiasing: needed.antialiasing,
-            acne: needed.acne,
-            hemisphere: needed.hemisphere,
-            reflectance_strips: needed.reflectance_strips,
-            shading: needed.shading,
-            dielectric_laws: needed.dielectric_laws,
-            ..Overrides::default()
-        }
-    }
-
-    /// Names in the shader and values.
-    pub fn constants(&self) -> Vec<(&'static str, Constant)> {
-        use Constant::{Flag, Number};
-        vec![
-            ("LAMBERTIAN", Flag(self.lambertian)),
-            ("METAL", Flag(self.metal)),
-            ("FUZZ", Flag(self.fuzz)),
-            ("GLASS", Flag(self.glass)),
-            ("LENS", Flag(self.lens)),
-            ("TWO_ROOT", Flag(self.two_root)),
-            ("ANCHORED", Flag(self.anchored)),
-            ("HIERARCHY", Flag(self.hierarchy)),
-            ("CWBVH", Flag(self.cwbvh)),
-            ("FEW_SPHERES", Flag(self.few_spheres)),
-            ("OPAQUE_COUNT", Number(self.opaque_count)),
-            ("TWO_ROOT_COUNT", Number(self.two_root_count)),
-            ("FEW_ANCHORED", Flag(self.few_anchored)),
-            ("ANCHORED_COUNT", Number(self.anchored_count)),
-            ("SOBOL", Flag(self.sobol)),
-            ("ANTIALIASING", Flag(self.antialiasing)),
-            ("RAYS", Flag(self.rays)),
-            ("ACNE", Flag(self.acne)),
-            ("HEMISPHERE", Flag(self.hemisphere)),
-            ("REFLECTANCE_STRIPS", Flag(self.reflectance_strips)),
-            ("SHADING", Number(shading_tag(self.shading))),
-            ("DIELECTRIC_LAWS", Number(laws_tag(self.dielectric_laws))),
-        ]
-    }
-
-    /// What the kernel contains, for reports: `lambertian, metal, glass, 5 spheres in constants`.
-    pub fn summary(&self) -> String {
-        let mut words: Vec<String> = [
-            (self.lambertian, "lambertian"),
-            (self.metal, "metal"),
-            (self.fuzz, "fuzz"),
-            (self.glass, "glass"),
-            (self.lens, "lens"),
-            (self.two_root, "two roots"),
-            (self.anchored, "anchored"),
-            (self.hierarchy && !self.cwbvh, "hierarchy"),
-            (self.hierarchy && self.cwbvh, "compressed hierarchy"),
-            (self.acne, "acne"),
-            (self.hemisphere, "hemisphere"),
-            (self.reflectance_strips, "strips"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, word)| word.to_owned())
-        .collect();
-        if self.few_spheres {
-            words.push(format!("{} spheres in constants", self.opaque_count + self.two_root_count));
-        }
-        words.join(", ")
-    }
-}
+/// How often whoever waits for a kernel looks whether it is still wanted.
+const LOOK: Duration = Duration::from_millis(2);
 
 /// A compiled kernel.
 #[derive(Clone, Debug)]
@@ -223,55 +23,115 @@ pub struct Kernel {
     pub compile_time: Duration,
 }
 
+/// Entry point, overrides, probe.
+type Key = (EntryPoint, Overrides, u32);
+
+type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
+
+enum Slot {
+    Compiling(Receiver<Result<Kernel, String>>),
+    Done(Result<Kernel, String>),
+}
+
 /// All kernels of a device.
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub struct Kernels {
-    modules: HashMap<EntryPoint, wgpu::ShaderModule>,
-    compiled: HashMap<(EntryPoint, Overrides, u32), Kernel>,
+    modules: Modules,
+    slots: HashMap<Key, Slot>,
 }
 
 impl Kernels {
+    /// Has a kernel compiled, if it is not, and does not wait for it.
+    pub fn begin(&mut self, gpu: &Gpu, entry_point: EntryPoint, overrides: &Overrides, probe: u32) {
+        self.slot(gpu, (entry_point, *overrides, probe));
+    }
+
+    fn slot(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
+        let modules = &self.modules;
+        self.slots.entry(key).or_insert_with(|| start(gpu.clone(), key, Arc::clone(modules)))
+    }
+
     /// A kernel, compiled when it is asked for first. `probe` matters to [`EntryPoint::Probe`] alone.
     ///
     /// # Errors
-    /// What the device said.
+    /// [`RenderError::Backend`] with what the device said. [`RenderError::Cancelled`] if it is no longer wanted:
+    /// its compilation goes on for whoever asks next.
     pub fn get(
         &mut self,
         gpu: &Gpu,
         entry_point: EntryPoint,
         overrides: &Overrides,
         probe: u32,
-    ) -> Result<Kernel, String> {
-        let key = (entry_point, *overrides, probe);
-        if let Some(kernel) = self.compiled.get(&key) {
-            return Ok(kernel.clone());
-        }
-        let start = Instant::now();
-        let label = Some(entry_point.name());
-        let modules = &mut self.modules;
-        let pipeline = gpu.guarded(|| {
-            let module = modules.entry(entry_point).or_insert_with(|| {
-                let source = wgpu::ShaderSource::Wgsl(source(entry_point).into());
-                gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label, source })
-            });
-            let mut constants: Vec<(&str, f64)> =
-                overrides.constants().into_iter().map(|(name, value)| (name, value.value())).collect();
-            constants.push(("PROBE", f64::from(probe)));
-            constants.push(("RECORD", f64::from(u8::from(entry_point == EntryPoint::PathRecord))));
-            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label,
-                layout: Some(&gpu.layouts.pipeline),
-                module,
-                entry_point: label,
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &constants,
-                    ..Default::default()
+        cancel: &AtomicBool,
+    ) -> Result<Kernel, RenderError> {
+        let slot = self.slot(gpu, (entry_point, *overrides, probe));
+        loop {
+            match slot {
+                Slot::Done(kernel) => {
+                    let failed = |reason| RenderError::Backend { backend: "gpu", reason };
+                    return kernel.clone().map_err(failed);
+                }
+                Slot::Compiling(kernel) => match kernel.recv_timeout(LOOK) {
+                    Ok(kernel) => *slot = Slot::Done(kernel),
+                    Err(RecvTimeoutError::Disconnected) => {
+                        *slot = Slot::Done(Err("its compiler broke off".to_owned()));
+                    }
+                    Err(RecvTimeoutError::Timeout) if cancel.load(Ordering::Relaxed) => {
+                        return Err(RenderError::Cancelled);
+                    }
+                    Err(RecvTimeoutError::Timeout) => {}
                 },
-                cache: None,
-            })
-        })?;
-        let kernel = Kernel { pipeline, compile_time: start.elapsed() };
-        self.compiled.insert(key, kernel.clone());
-        Ok(kernel)
+            }
+        }
     }
+}
+
+/// Compiles beside whoever asked, or at once if the system gives no thread.
+fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
+    let (sender, kernel) = mpsc::channel();
+    let compile = {
+        let (gpu, modules) = (gpu.clone(), Arc::clone(&modules));
+        // A renderer that is gone needs no kernel.
+        move || drop(sender.send(compiled(&gpu, key, &modules)))
+    };
+    match std::thread::Builder::new().name("compile".to_owned()).spawn(compile) {
+        Ok(_) => Slot::Compiling(kernel),
+        Err(_) => Slot::Done(compiled(&gpu, key, &modules)),
+    }
+}
+
+fn compiled(gpu: &Gpu, (entry_point, overrides, probe): Key, modules: &Modules) -> Result<Kernel, String> {
+    let start = Instant::now();
+    let label = Some(entry_point.name());
+    let module = {
+        let mut modules = modules.lock().unwrap_or_else(PoisonError::into_inner);
+        match modules.get(&entry_point) {
+            Some(module) => module.clone(),
+            None => {
+                let source = wgpu::ShaderSource::Wgsl(source(entry_point).into());
+                let described = wgpu::ShaderModuleDescriptor { label, source };
+                let module = gpu.guarded(|| gpu.device.create_shader_module(described))?;
+                modules.insert(entry_point, module.clone());
+                module
+            }
+        }
+    };
+    let mut constants: Vec<(&str, f64)> =
+        overrides.constants().into_iter().map(|(name, value)| (name, value.value())).collect();
+    constants.push(("PROBE", f64::from(probe)));
+    constants.push(("RECORD", f64::from(u8::from(entry_point == EntryPoint::PathRecord))));
+    let pipeline = gpu.guarded(|| {
+        gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label,
+            layout: Some(&gpu.layouts.pipeline),
+            module: &module,
+            entry_point: label,
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..Default::default()
+            },
+            cache: None,
+        })
+    })?;
+    Ok(Kernel { pipeline, compile_time: start.elapsed() })
 }

@@ -4,30 +4,20 @@ use super::device::Gpu;
 use std::sync::mpsc;
 use std::time::Duration;
 
-/// Copies the first `size` bytes of `from` to memory, a part at a time through `staging`, and hands each part
-/// to `take` with its offset. Parts are multiples of `unit` bytes.
+/// The first `count` words of `from`, once all that was submitted is done.
 ///
 /// # Errors
 /// What the device said.
-pub fn read(
-    gpu: &Gpu,
-    from: &wgpu::Buffer,
-    size: u64,
-    staging: &wgpu::Buffer,
-    unit: u64,
-    mut take: impl FnMut(u64, &[u8]),
-) -> Result<(), String> {
-    let part = (staging.size() / unit * unit).max(unit);
-    let mut offset = 0;
-    while offset < size {
-        let length = part.min(size - offset);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(from, offset, staging, 0, length);
-        let submission = gpu.queue.submit([encoder.finish()]);
-        mapped(gpu, staging, length, submission, |bytes| take(offset, bytes))?;
-        offset += length;
-    }
-    Ok(())
+pub fn words(gpu: &Gpu, from: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, String> {
+    let size = count as u64 * 4;
+    let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+    let staging = gpu.buffer("words, read", size, usage)?;
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(from, 0, &staging, 0, size);
+    let submission = gpu.queue.submit([encoder.finish()]);
+    let mut words = Vec::new();
+    mapped(gpu, &staging, size, submission, |bytes| words = bytemuck::pod_collect_to_vec(bytes))?;
+    Ok(words)
 }
 
 /// Waits for `submission`, then shows the first `length` bytes of a staging buffer.

@@ -34,13 +34,6 @@ impl Budget {
         self.paths as u64
     }
 
-    /// What a dispatch should take from now on.
-    pub fn set_target(&mut self, target: Duration) {
-        let change = target.as_secs_f64() / self.target.as_secs_f64().max(1e-6);
-        self.paths = (self.paths * change).max(1.0);
-        self.target = target;
-    }
-
     /// Learns from a dispatch: halves when it took twice what it should, else moves towards the target, a
     /// little at a time.
     pub fn learn(&mut self, paths: u64, took: Duration) {

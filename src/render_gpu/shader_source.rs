@@ -1,7 +1,7 @@
 //! The shaders' text: constants that live in Rust, then the files in the order in which they use each other.
 
-use super::kernel::{Constant, Overrides};
 use super::layout::{UNIFORM_ANCHORED, UNIFORM_SPHERES, WORKGROUP_SIZE};
+use super::overrides::{Constant, Overrides};
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
 use crate::stages::{DielectricLaws, Shading, Transfer};

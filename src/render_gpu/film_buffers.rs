@@ -1,0 +1,298 @@
+//! The film on the device. It stays there from pass to pass; when someone wants it, it is copied to staging
+//! buffers and cleared, and goes home while the device traces on.
+
+use super::device::Gpu;
+use super::layout::{GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, tile_size};
+use super::schedule::BLOCK_LIMIT;
+use crate::film::{Film, SampleRanges};
+use crate::render::{RenderError, RenderSettings, Stats};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::mpsc::{self, Receiver};
+use std::time::{Duration, Instant};
+
+/// Bytes of a pixel's sums.
+const PIXEL_SIZE: u64 = size_of::<GpuPixelSum>() as u64;
+
+/// Words of 64 bits that a pixel has, one a channel.
+const PIXEL_WORDS: usize = 3;
+
+/// Pixels that a thread adds at a time.
+const PIXELS_AT_ONCE: usize = 4096;
+
+/// Bringing the film home when nobody asks may take at most one part in this of the time.
+const ARRIVAL_SHARE: u32 = 20;
+
+/// Rows of the film that fit one buffer.
+pub struct Slab {
+    /// First of its rows.
+    pub first_row: u32,
+    /// Rows.
+    pub row_count: u32,
+    /// Group 1: what a dispatch binds to trace these rows.
+    pub group: wgpu::BindGroup,
+    sums: wgpu::Buffer,
+    staging: wgpu::Buffer,
+}
+
+/// Samples that are on their way from the device.
+struct Leaving {
+    samples: SampleRanges,
+    trace: Duration,
+    submission: wgpu::SubmissionIndex,
+    mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+/// A film's buffers, and which samples are in them.
+pub struct FilmBuffers {
+    shape: (u32, u32, usize, u64),
+    /// From the top.
+    pub slabs: Vec<Slab>,
+    /// What a dispatch is to do: a [`GpuDispatch`].
+    pub order: wgpu::Buffer,
+    /// Blocks of samples of a dispatch.
+    pub blocks: wgpu::Buffer,
+    counters: wgpu::Buffer,
+    counters_staging: wgpu::Buffer,
+    traced: SampleRanges,
+    trace: Duration,
+    leaving: Option<Leaving>,
+    arrived_at: Instant,
+    arrival_took: Duration,
+    /// How often sums were added to a film.
+    pub arrivals: u64,
+    /// What that took the host, all together.
+    pub arrivals_took: Duration,
+}
+
+fn failed(reason: String) -> RenderError {
+    RenderError::Backend { backend: "gpu", reason }
+}
+
+fn shape(settings: &RenderSettings, limit: u64) -> (u32, u32, usize, u64) {
+    (settings.width, settings.height, settings.half_count(), limit)
+}
+
+impl FilmBuffers {
+    /// Empty buffers for films of these settings, none larger than `limit` bytes.
+    ///
+    /// # Errors
+    /// If not even a row of tiles fits, or the device has no memory.
+    pub fn new(gpu: &Gpu, settings: &RenderSettings, limit: u64) -> Result<Self, String> {
+        let RenderSettings { width, height, .. } = *settings;
+        let row_size = u64::from(width) * settings.half_count() as u64 * PIXEL_SIZE;
+        let tile_height = tile_size(width, height)[1];
+        let fitting = (limit / row_size).min(u64::from(height)) as u32;
+        // Whole tiles, but for the last.
+        let slab_rows = if fitting == height { fitting } else { fitting / tile_height * tile_height };
+        if slab_rows == 0 {
+            return Err(format!(
+                "{tile_height} rows of {width} pixels take {} bytes, but the adapter binds at most {limit}; choose a narrower picture or render on the CPU",
+                row_size * u64::from(tile_height),
+            ));
+        }
+
+        use wgpu::BufferUsages as Usages;
+        let copied = Usages::STORAGE | Usages::COPY_SRC | Usages::COPY_DST;
+        let read = Usages::MAP_READ | Usages::COPY_DST;
+        let order_size = size_of::<GpuDispatch>() as u64;
+        let order = gpu.buffer("dispatch", order_size, Usages::UNIFORM | Usages::COPY_DST)?;
+        let blocks_size = (BLOCK_LIMIT * size_of::<GpuBlock>()) as u64;
+        let blocks = gpu.buffer("blocks", blocks_size, Usages::STORAGE | Usages::COPY_DST)?;
+        let counters_size = size_of::<GpuCounters>() as u64;
+        let counters = gpu.buffer("counters", counters_size, copied)?;
+        let counters_staging = gpu.buffer("counters, read", counters_size, read)?;
+        let mut slabs = Vec::new();
+        let mut first_row = 0;
+        while first_row < height {
+            let row_count = slab_rows.min(height - first_row);
+            let size = row_size * u64::from(row_count);
+            let sums = gpu.buffer("film", size, copied)?;
+            let staging = gpu.buffer("film, read", size, read)?;
+            let group = gpu.bind(&gpu.layouts.dispatch, &[&order, &blocks, &sums, &counters]);
+            slabs.push(Slab { first_row, row_count, group, sums, staging });
+            first_row += row_count;
+        }
+        Ok(FilmBuffers {
+            shape: shape(settings, limit),
+            slabs,
+            order,
+            blocks,
+            counters,
+            counters_staging,
+            traced: SampleRanges::default(),
+            trace: Duration::ZERO,
+            leaving: None,
+            arrived_at: Instant::now(),
+            arrival_took: Duration::ZERO,
+            arrivals: 0,
+            arrivals_took: Duration::ZERO,
+        })
+    }
+
+    /// Whether these buffers are those of such a film.
+    pub fn fit(&self, settings: &RenderSettings, limit: u64) -> bool {
+        self.shape == shape(settings, limit)
+    }
+
+    /// The sums of the only slab, for [`super::GpuRenderer::resolve`].
+    pub fn sums_of_whole(&self) -> Option<&wgpu::Buffer> {
+        match self.slabs.as_slice() {
+            [only] => Some(&only.sums),
+            _ => None,
+        }
+    }
+
+    /// Refuses samples that are in `film` or on the device.
+    pub fn check_new(&self, range: &Range<u64>, film: &Film) -> Result<(), RenderError> {
+        let leaving = self.leaving.as_ref().map(|leaving| &leaving.samples);
+        for held in [film.samples(), &self.traced].into_iter().chain(leaving) {
+            if let Some(range) = held.overlap(range) {
+                return Err(crate::film::FilmError::Overlap { range }.into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Notes that the sums will hold `range` once what was submitted is done.
+    ///
+    /// # Errors
+    /// If they have some of it.
+    pub fn note(&mut self, range: Range<u64>, trace: Duration) -> Result<(), RenderError> {
+        self.traced.insert(range)?;
+        self.trace += trace;
+        Ok(())
+    }
+
+    /// Whether samples are on the device, on their way or not.
+    pub fn holds_samples(&self) -> bool {
+        self.leaving.is_some() || self.traced.count() > 0
+    }
+
+    /// Whether samples are on their way.
+    pub fn is_leaving(&self) -> bool {
+        self.leaving.is_some()
+    }
+
+    /// Whether the film has been away for so long that fetching it costs little.
+    pub fn is_due(&self) -> bool {
+        self.arrived_at.elapsed() >= self.arrival_took * ARRIVAL_SHARE
+    }
+
+    /// Throws away what was traced. What is under way is cleared behind it.
+    pub fn forget(&mut self, gpu: &Gpu) {
+        if self.leaving.take().is_some() {
+            self.stagings().for_each(wgpu::Buffer::unmap);
+        }
+        self.traced = SampleRanges::default();
+        self.trace = Duration::ZERO;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.clear(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// Sends the sums off as they will be once what was submitted is done, and begins with empty ones.
+    pub fn leave(&mut self, gpu: &Gpu) {
+        if self.leaving.is_some() || self.traced.count() == 0 {
+            return;
+        }
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for slab in &self.slabs {
+            encoder.copy_buffer_to_buffer(&slab.sums, 0, &slab.staging, 0, slab.sums.size());
+        }
+        encoder.copy_buffer_to_buffer(&self.counters, 0, &self.counters_staging, 0, self.counters.size());
+        self.clear(&mut encoder);
+        let submission = gpu.queue.submit([encoder.finish()]);
+        let (sender, mapped) = mpsc::channel();
+        for staging in self.stagings() {
+            let sender = sender.clone();
+            // Whoever has forgotten the samples does not listen.
+            staging.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
+        }
+        let samples = std::mem::take(&mut self.traced);
+        self.leaving = Some(Leaving { samples, trace: std::mem::take(&mut self.trace), submission, mapped });
+    }
+
+    /// Waits for what is on its way and adds it to the film.
+    ///
+    /// # Errors
+    /// What the device said; the film is as it was.
+    pub fn arrive(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
+        let Some(leaving) = self.leaving.take() else { return Ok(Stats::default()) };
+        gpu.wait(leaving.submission).map_err(failed)?;
+        for _ in self.stagings() {
+            let mapped = leaving.mapped.try_recv().map_err(|_| failed("results stayed away".to_owned()))?;
+            mapped.map_err(|error| failed(format!("reading results: {error}")))?;
+        }
+        if let Some(range) = leaving.samples.iter().find_map(|range| film.samples().overlap(&range)) {
+            self.stagings().for_each(wgpu::Buffer::unmap);
+            return Err(crate::film::FilmError::Overlap { range }.into());
+        }
+        let begin = Instant::now();
+        let counters: GpuCounters = bytemuck::pod_read_unaligned(&view(&self.counters_staging)?);
+        let views: Vec<_> = self.slabs.iter().map(|slab| view(&slab.staging)).collect::<Result<_, _>>()?;
+        let sums =
+            views.iter().map(|view| bytemuck::try_cast_slice(view)).collect::<Result<Vec<&[u64]>, _>>();
+        let sums = sums.map_err(|error| failed(format!("reading results: {error}")))?;
+
+        // All is here: from now on nothing can fail.
+        for (slab, sums) in self.slabs.iter().zip(sums) {
+            add_rows(film, slab.first_row, sums);
+        }
+        drop(views);
+        self.stagings().for_each(wgpu::Buffer::unmap);
+        let wide = |low: u32, high: u32| u64::from(low) | u64::from(high) << 32;
+        let mut rejected = wide(counters.rejected, counters.rejected_high);
+        let (rays, all_rejected) = (wide(counters.rays, counters.rays_high), rejected);
+        for range in leaving.samples.iter() {
+            film.record(range, std::mem::take(&mut rejected))?;
+        }
+        self.arrived_at = Instant::now();
+        self.arrival_took = begin.elapsed();
+        self.arrivals += 1;
+        self.arrivals_took += self.arrival_took;
+        let pixels = u64::from(film.width()) * u64::from(film.height());
+        Ok(Stats {
+            paths: pixels * leaving.samples.count(),
+            rays,
+            rejected: all_rejected,
+            busy_lanes: rays,
+            offered_lanes: rays,
+            trace: leaving.trace,
+        })
+    }
+
+    fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
+        for slab in &self.slabs {
+            encoder.clear_buffer(&slab.sums, 0, None);
+        }
+        encoder.clear_buffer(&self.counters, 0, None);
+    }
+
+    fn stagings(&self) -> impl Iterator<Item = &wgpu::Buffer> {
+        self.slabs.iter().map(|slab| &slab.staging).chain([&self.counters_staging])
+    }
+}
+
+fn view(staging: &wgpu::Buffer) -> Result<wgpu::BufferView, RenderError> {
+    staging.get_mapped_range(..).map_err(|error| failed(format!("reading results: {error}")))
+}
+
+/// Adds a slab's sums, half by half, to the film's rows `first_row ..`.
+fn add_rows(film: &mut Film, first_row: u32, sums: &[u64]) {
+    let start = first_row as usize * film.width() as usize;
+    let halves = film.halves_mut();
+    // Buffers are rounded up to 16 bytes.
+    let words = sums.len() / halves.len() / PIXEL_WORDS * PIXEL_WORDS;
+    for (half, sums) in halves.iter_mut().zip(sums.chunks_exact(words)) {
+        let pixels = &mut half[start..start + words / PIXEL_WORDS];
+        let parts = pixels.par_chunks_mut(PIXELS_AT_ONCE);
+        parts.zip(sums.par_chunks(PIXELS_AT_ONCE * PIXEL_WORDS)).for_each(|(pixels, sums)| {
+            for (pixel, sum) in pixels.iter_mut().zip(sums.as_chunks::<PIXEL_WORDS>().0) {
+                for (mine, theirs) in pixel.0.iter_mut().zip(sum) {
+                    *mine += theirs;
+                }
+            }
+        });
+    }
+}

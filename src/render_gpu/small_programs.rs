@@ -1,0 +1,141 @@
+//! What the device runs besides tracing: the film as a picture, small functions for tests, one recorded path.
+
+use super::dispatches::groups;
+use super::film_buffers::FilmBuffers;
+use super::kernel::Kernel;
+use super::layout::{GpuDispatch, WORKGROUP_SIZE};
+use super::prepared::Prepared;
+use super::schedule::Blocks;
+use super::shader_source::{EntryPoint, PROBE_STRIDE, Probe, transfer_tag};
+use super::{GpuRenderer, Overrides, failed, readback, record};
+use crate::film::Film;
+use crate::record::PathRecord;
+use crate::render::{RenderError, RenderJob};
+use crate::stages::Transfer;
+use std::sync::atomic::AtomicBool;
+
+impl GpuRenderer {
+    /// A film of this job as a picture, made on the device: one word a pixel, red in the lowest byte.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`], also where the film does not fit one buffer.
+    pub fn resolve(
+        &mut self,
+        job: &RenderJob,
+        film: &Film,
+        transfer: Transfer,
+    ) -> Result<Vec<u32>, RenderError> {
+        self.with_prepared(job, &go_on(), |this, prepared| {
+            let kernel = this.small_kernel(EntryPoint::Resolve, &Overrides::default(), 0)?;
+            let buffers = this.own_film(prepared)?;
+            let (width, height) = (film.width(), film.height());
+            let Some(sums_on_device) = buffers.sums_of_whole() else {
+                return Err(failed(format!("a film of {width}x{height} does not fit one buffer")));
+            };
+            let pixels = width as usize * height as usize;
+            let sums: Vec<u64> = (0..pixels).flat_map(|i| film.pixel_sum(i).0).collect();
+            this.gpu.queue.write_buffer(sums_on_device, 0, bytemuck::cast_slice(&sums));
+            let order = GpuDispatch {
+                row_count: height,
+                sample_count: film.sample_count().min(u64::from(u32::MAX)) as u32,
+                transfer: transfer_tag(transfer),
+                ..GpuDispatch::default()
+            };
+            this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
+            let groups = (pixels as u32).div_ceil(WORKGROUP_SIZE);
+            this.run(prepared, &buffers, &kernel, &vec![0; pixels], groups)
+        })
+    }
+
+    /// Runs a small function of the shaders on many inputs of [`PROBE_STRIDE`] words each, and returns as many
+    /// words of output: for tests. The functions and their words are listed in shaders/probe.wgsl.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`].
+    pub fn probe(&mut self, job: &RenderJob, probe: Probe, words: &[u32]) -> Result<Vec<u32>, RenderError> {
+        self.with_prepared(job, &go_on(), |this, prepared| {
+            let overrides = Overrides { dielectric_laws: job.rules().dielectric, ..Overrides::default() };
+            let kernel = this.small_kernel(EntryPoint::Probe, &overrides, probe as u32)?;
+            let groups = (words.len() / PROBE_STRIDE).div_ceil(WORKGROUP_SIZE as usize) as u32;
+            this.run(prepared, &prepared.film, &kernel, words, groups)
+        })
+    }
+
+    /// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as the kernel of `job` traces
+    /// it.
+    ///
+    /// # Errors
+    /// [`RenderError::Backend`].
+    pub fn record_path(
+        &mut self,
+        job: &RenderJob,
+        pixel: [u32; 2],
+        index: u64,
+    ) -> Result<PathRecord, RenderError> {
+        self.with_prepared(job, &go_on(), |this, prepared| {
+            let kernel = this.small_kernel(EntryPoint::PathRecord, &prepared.overrides, 0)?;
+            let buffers = this.own_film(prepared)?;
+            let settings = job.settings();
+            let (blocks, _) = Blocks::of_range(index..index + 1, settings, prepared.block_limit).take(1);
+            let order = GpuDispatch {
+                block_count: blocks.len() as u32,
+                // One turn besides to start the path.
+                ray_limit: settings.max_depth + 1,
+                row_count: buffers.slabs.first().map_or(0, |slab| slab.row_count),
+                ..GpuDispatch::default()
+            };
+            this.gpu.queue.write_buffer(&buffers.blocks, 0, bytemuck::cast_slice(&blocks));
+            this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
+            let words = record::words_for(pixel, settings.max_depth);
+            let words = this.run(prepared, &buffers, &kernel, &words, 1)?;
+            Ok(record::from_words(&words, &prepared.scene_index))
+        })
+    }
+
+    /// A film besides that which is being traced.
+    fn own_film(&self, prepared: &Prepared) -> Result<FilmBuffers, RenderError> {
+        FilmBuffers::new(&self.gpu, prepared.job.settings(), self.film_limit()).map_err(failed)
+    }
+
+    fn small_kernel(
+        &mut self,
+        entry_point: EntryPoint,
+        overrides: &Overrides,
+        probe: u32,
+    ) -> Result<Kernel, RenderError> {
+        self.kernels.get(&self.gpu, entry_point, overrides, probe, &go_on())
+    }
+
+    /// Runs a kernel on `words` and returns what it made of them.
+    fn run(
+        &self,
+        prepared: &Prepared,
+        film: &FilmBuffers,
+        kernel: &Kernel,
+        words: &[u32],
+        group_count: u32,
+    ) -> Result<Vec<u32>, RenderError> {
+        let Some(slab) = film.slabs.first() else { return Ok(Vec::new()) };
+        let gpu = &self.gpu;
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+        let buffer = gpu.filled("words", bytemuck::cast_slice(words), usage).map_err(failed)?;
+        let group = gpu.bind(&gpu.layouts.words, &[&buffer]);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&kernel.pipeline);
+            pass.set_bind_group(0, &prepared.job_group, &[]);
+            pass.set_bind_group(1, &slab.group, &[]);
+            pass.set_bind_group(2, &group, &[]);
+            let [x, y] = groups(group_count);
+            pass.dispatch_workgroups(x, y, 1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+        readback::words(gpu, &buffer, words.len()).map_err(failed)
+    }
+}
+
+/// These programs are short, and waited for.
+fn go_on() -> AtomicBool {
+    AtomicBool::new(false)
+}
