@@ -674,6 +674,15 @@ pub trait Instructions: Simd {
         column
     }
 
+    /// Transposes four rows of four numbers in the lower half, and four in the upper.
+    #[inline(always)]
+    fn transpose_8(self, rows: [f32x8<Self>; 4]) -> [f32x8<Self>; 4] {
+        let [a, b, c, d] = rows.map(|row| row.split());
+        let low = transpose4([a.0, b.0, c.0, d.0]);
+        let high = transpose4([a.1, b.1, c.1, d.1]);
+        [0, 1, 2, 3].map(|i| low[i].combine(high[i]))
+    }
+
     /// To the nearest integer, ties to even; it must fit.
     #[inline(always)]
     fn to_nearest_4(self, x: f32x4<Self>) -> i32x4<Self> {
@@ -716,8 +725,9 @@ mod x86 {
         u32x8, u32x16,
     };
     use std::arch::x86_64::{
-        __m128i, __m256i, _mm_cvtps_epi32, _mm256_cvtps_epi32, _mm256_permutevar8x32_ps, _mm512_cvtps_epi32,
-        _mm512_permutexvar_ps,
+        __m128i, __m256i, _mm_cvtps_epi32, _mm256_castpd_ps, _mm256_castps_pd, _mm256_cvtps_epi32,
+        _mm256_permutevar8x32_ps, _mm256_unpackhi_pd, _mm256_unpackhi_ps, _mm256_unpacklo_pd,
+        _mm256_unpacklo_ps, _mm512_cvtps_epi32, _mm512_permutexvar_ps,
     };
 
     /// Implements a method by an intrinsic.
@@ -746,10 +756,38 @@ mod x86 {
         const ROWS_8: usize = 8;
 
         by!(Avx2, permute_8(column: f32x8, indices: u32x8) -> f32x8, _mm256_permutevar8x32_ps(column.into(), indices.into()));
+        #[inline(always)]
+        fn transpose_8(self, [a, b, c, d]: [f32x8<Self>; 4]) -> [f32x8<Self>; 4] {
+            let (ab_low, ab_high) = (self.unpack_low(a, b), self.unpack_high(a, b));
+            let (cd_low, cd_high) = (self.unpack_low(c, d), self.unpack_high(c, d));
+            [
+                self.pairs_low(ab_low, cd_low),
+                self.pairs_high(ab_low, cd_low),
+                self.pairs_low(ab_high, cd_high),
+                self.pairs_high(ab_high, cd_high),
+            ]
+        }
         by!(Avx2, to_nearest_4(x: f32x4) -> i32x4, _mm_cvtps_epi32(x.into()));
         by!(Avx2, to_nearest_8(x: f32x8) -> i32x8, _mm256_cvtps_epi32(x.into()));
         by!(Avx2, ones_4(m: mask32x4) -> u32x4, __m128i::from(m));
         by!(Avx2, ones_8(m: mask32x8) -> u32x8, __m256i::from(m));
+    }
+
+    /// Within the halves of a register.
+    trait Unpack: Sized {
+        fn unpack_low(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
+        fn unpack_high(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
+        fn pairs_low(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
+        fn pairs_high(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
+    }
+
+    impl Unpack for Avx2 {
+        by!(Avx2, unpack_low(a: f32x8, b: f32x8) -> f32x8, _mm256_unpacklo_ps(a.into(), b.into()));
+        by!(Avx2, unpack_high(a: f32x8, b: f32x8) -> f32x8, _mm256_unpackhi_ps(a.into(), b.into()));
+        by!(Avx2, pairs_low(a: f32x8, b: f32x8) -> f32x8, _mm256_castpd_ps(_mm256_unpacklo_pd(
+            _mm256_castps_pd(a.into()), _mm256_castps_pd(b.into()))));
+        by!(Avx2, pairs_high(a: f32x8, b: f32x8) -> f32x8, _mm256_castpd_ps(_mm256_unpackhi_pd(
+            _mm256_castps_pd(a.into()), _mm256_castps_pd(b.into()))));
     }
 
     impl Instructions for Avx512 {
@@ -763,7 +801,20 @@ mod x86 {
 #[cfg(target_arch = "aarch64")]
 impl Instructions for fearless_simd::Neon {}
 
-/// Four columns of four rows, transposed.
+/// Four rows of four numbers, transposed.
+#[inline(always)]
+fn transpose4<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 4] {
+    let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
+    let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
+    [ac_low.zip_low(bd_low), ac_low.zip_high(bd_low), ac_high.zip_low(bd_high), ac_high.zip_high(bd_high)]
+}
+
+#[inline(always)]
+fn gathered_row<S: Simd>(simd: S, rows: &[Row<f32>], index: u32, group: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &rows[index as usize].0[4 * group..4 * group + 4])
+}
+
+/// Four columns of the rows that four indices name.
 #[inline(always)]
 fn gather4<S: Simd>(
     simd: S,
@@ -776,31 +827,30 @@ fn gather4<S: Simd>(
     let b = gathered_row(simd, rows, indices.0[first + 1], group);
     let c = gathered_row(simd, rows, indices.0[first + 2], group);
     let d = gathered_row(simd, rows, indices.0[first + 3], group);
-    let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
-    let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
-    [ac_low.zip_low(bd_low), ac_low.zip_high(bd_low), ac_high.zip_low(bd_high), ac_high.zip_high(bd_high)]
+    transpose4([a, b, c, d])
 }
 
 #[inline(always)]
-fn gathered_row<S: Simd>(simd: S, rows: &[Row<f32>], index: u32, group: usize) -> f32x4<S> {
-    f32x4::from_slice(simd, &rows[index as usize].0[4 * group..4 * group + 4])
-}
-
-#[inline(always)]
-fn gather8<S: Simd>(
+fn gather8<S: Instructions>(
     simd: S,
     rows: &[Row<f32>],
     indices: &WideU,
     first: usize,
     group: usize,
 ) -> [f32x8<S>; 4] {
-    let [a0, a1, a2, a3] = gather4(simd, rows, indices, first, group);
-    let [b0, b1, b2, b3] = gather4(simd, rows, indices, first + 4, group);
-    [a0.combine(b0), a1.combine(b1), a2.combine(b2), a3.combine(b3)]
+    let a = gathered_row(simd, rows, indices.0[first], group);
+    let b = gathered_row(simd, rows, indices.0[first + 1], group);
+    let c = gathered_row(simd, rows, indices.0[first + 2], group);
+    let d = gathered_row(simd, rows, indices.0[first + 3], group);
+    let e = gathered_row(simd, rows, indices.0[first + 4], group);
+    let f = gathered_row(simd, rows, indices.0[first + 5], group);
+    let g = gathered_row(simd, rows, indices.0[first + 6], group);
+    let h = gathered_row(simd, rows, indices.0[first + 7], group);
+    simd.transpose_8([a.combine(e), b.combine(f), c.combine(g), d.combine(h)])
 }
 
 #[inline(always)]
-fn gather16<S: Simd>(
+fn gather16<S: Instructions>(
     simd: S,
     rows: &[Row<f32>],
     indices: &WideU,

@@ -398,9 +398,9 @@ fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet:
     // One set of numbers serves the camera and the surface alike.
     let [u0, u1] = packet.draw.pair;
     let (sine, cosine) = (packet.draw.sine, packet.draw.cosine);
-    let z = one - (u0 + u0);
-    let rho = L::sqrt(L::neg_mul_add(z, z, one));
-    let unit = V3 { x: rho * cosine, y: rho * sine, z };
+    let rho = L::sqrt(u0 * (one - u0));
+    let rho = rho + rho;
+    let unit = V3 { x: rho * cosine, y: rho * sine, z: one - (u0 + u0) };
     let with_lens = has_lens::<L, NEEDS>(tables);
     let jitter = match (tables.rules.antialiasing, with_lens) {
         (false, _) => [l.constant(0.5); 2],
