@@ -282,16 +282,16 @@ mod tests {
 
     #[test]
     fn a_slow_member_takes_nothing_that_the_others_would_have_to_wait_for() {
-        let mut pieces = Pieces { left: Vec::from([0..16]), grain: 2 };
+        let mut pieces = Pieces { left: std::iter::once(0..16).collect(), grain: 2 };
         let [fast, slow] = [0, 1].map(|index| Pace::of(index, &[Some(100.0), Some(10.0)]));
         assert_eq!(pieces.take(slow), None);
         assert_eq!(pieces.take(fast), Some(0..6));
-        pieces.left = Vec::from([0..64]);
+        pieces.left = std::iter::once(0..64).collect();
         assert_eq!(pieces.take(slow), Some(0..2));
         // Who is fastest takes whatever is left, and so does who stands alone or is new.
-        pieces.left = Vec::from([0..2]);
+        pieces.left = std::iter::once(0..2).collect();
         for pace in [fast, Pace::of(0, &[Some(1.0)]), Pace::of(1, &[Some(100.0), None])] {
-            pieces.left = Vec::from([0..2]);
+            pieces.left = std::iter::once(0..2).collect();
             assert_eq!(pieces.take(pace), Some(0..2));
         }
     }
