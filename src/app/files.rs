@@ -174,7 +174,7 @@ impl Window {
     fn show_opened(&mut self, opened: Opened) {
         let Opened { path, recipe, source, stage, film, samples } = opened;
         let origin = match source {
-            Some(source) => Origin { recipe: recipe.clone(), source },
+            Some(source) => Origin::new(recipe.clone(), source),
             None => Origin::guess(&recipe, stage),
         };
         let mut document = Document::new(origin);

@@ -8,10 +8,11 @@ use super::document::{Document, Origin, Source, Stop};
 use super::files::Message;
 use super::frame_log::FrameLog;
 use super::inspector::Inspector;
+use super::layers::Layers;
 use super::remembered::Remembered;
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
-use super::viewport::Viewport;
+use super::viewport::{Show, Viewport};
 use super::{menu, panels, plot, stage_text, status_bar, theme, viewport};
 use crate::backends::BackendChoice;
 use crate::cli::WindowOptions;
@@ -39,6 +40,7 @@ pub struct Window {
     pub(super) remembered: Remembered,
     pub(super) main: Tracer,
     pub(super) compare: Compare,
+    pub(super) layers: Layers,
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
     pub(super) dialog: Option<Dialog>,
@@ -90,6 +92,7 @@ impl Window {
             undo: Undoer::default(),
             main: Tracer::new().context("cannot start the render thread")?,
             compare: Compare::default(),
+            layers: Layers::default(),
             viewport: Viewport::default(),
             inspector: Inspector::default(),
             dialog: None,
@@ -168,6 +171,21 @@ impl Window {
     /// Whether there is a second picture, of what is compared now.
     pub fn has_other_picture(&self) -> bool {
         self.compare.has_picture(self.document.stage())
+    }
+
+    /// What the picture's place shows.
+    pub fn show(&self) -> Show {
+        self.viewport.show
+    }
+
+    /// Samples per pixel of the layer that is shown, at the picture's own size.
+    pub fn layer_samples(&self) -> u64 {
+        self.viewport.show.layer().map_or(0, |layer| self.layers.samples(layer))
+    }
+
+    /// Whether tracing waits.
+    pub fn is_paused(&self) -> bool {
+        self.is_paused
     }
 
     /// Asks for a command, to be carried out in the next frame.
@@ -298,7 +316,6 @@ impl Window {
                     self.note_move();
                 }
                 self.seconds_before = Some(0.0);
-                self.is_paused = false;
                 if let Some(log) = &mut self.frame_log {
                     log.changed();
                 }
@@ -314,14 +331,21 @@ impl Window {
             context.request_repaint_after(Duration::from_millis(40));
         }
         self.backend = self.chosen_backend();
-        let want =
-            Want { document: &self.document, backend: &self.backend, stop: self.document.stop, is_moving };
+        self.leave_useless_show();
+        let want = Want {
+            document: &self.document,
+            backend: &self.backend,
+            stop: self.document.stop,
+            is_moving,
+            is_paused: self.is_paused,
+        };
         let outcome = match self.pending_film.take() {
             Some(film) => self.main.go_on_with(film, &want),
             None => self.main.want(&want),
         };
         self.invalid = outcome.err();
         self.compare.follow(context, &want, &self.main, &self.messages.0);
+        self.layers.follow(context, self.viewport.show.layer(), &self.document, is_moving);
         if self.main.is_full(&self.document)
             && let Some((format, path)) = self.pending_save.take()
         {
@@ -369,13 +393,13 @@ fn document_of(options: &WindowOptions) -> Document {
         (None, Some(path), _) => {
             // The file as it is, so that the flags are changes that can be reset.
             let recipe = crate::recipe::file::load(path).unwrap_or_else(|_| recipe.clone());
-            Origin { recipe, source: Source::File(path.clone()) }
+            Origin::new(recipe, Source::File(path.clone()))
         }
         (None, None, Some(builtin)) => {
             // A built-in scene that a stage shows is opened as that stage.
             match crate::stages::Stage::find(&builtin.name) {
                 Ok(stage) if stage.recipe().scene == builtin.scene => Origin::of_stage(stage),
-                _ => Origin { recipe: builtin, source: Source::Builtin },
+                _ => Origin::new(builtin, Source::Builtin),
             }
         }
         (None, None, None) => Origin::guess(recipe, None),

@@ -16,10 +16,10 @@ pub mod work;
 
 pub use crate::record::{PathRecord, RecordedHit, RecordedRay};
 pub use isa::Isa;
-pub use record::record_path;
+pub use record::{PathRecorder, record_path};
 
 use crate::film::Film;
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use crate::tables::{Real, Tables};
 use kernels::Kernel;
 use rayon::prelude::*;
@@ -89,6 +89,7 @@ pub struct CpuRenderer {
     threads: rayon::ThreadPool,
     job: Option<RenderJob>,
     prepared: Option<Prepared>,
+    occupancy: TileOccupancy,
 }
 
 impl CpuRenderer {
@@ -124,7 +125,13 @@ impl CpuRenderer {
             .num_threads(threads)
             .thread_name(|index| format!("trace-{index}"))
             .build()
-            .map(|threads| CpuRenderer { packets, threads, job: None, prepared: None })
+            .map(|threads| CpuRenderer {
+                packets,
+                threads,
+                job: None,
+                prepared: None,
+                occupancy: TileOccupancy::default(),
+            })
             .map_err(|error| CpuError::Threads { threads, reason: error.to_string() })
     }
 }
@@ -162,10 +169,12 @@ impl Renderer for CpuRenderer {
         if self.prepared.is_some() && self.job.as_ref() == Some(job) {
             return Ok(());
         }
-        self.prepared = None;
-        self.prepared = Some(match self.packets {
-            Some((isa, lanes)) => {
-                let tables = Tables::new(job);
+        self.occupancy = TileOccupancy::default();
+        let before = self.job.take();
+        self.prepared = Some(match (self.packets, self.prepared.take()) {
+            (Some((isa, lanes)), old) => {
+                let old = if let Some(Prepared::Single(wide, _)) = old { Some(wide.tables) } else { None };
+                let tables = Tables::renewed(old.zip(before), job);
                 let needed = kernels::needs_of(&job.features(), &tables);
                 let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
@@ -173,12 +182,18 @@ impl Renderer for CpuRenderer {
                 })?;
                 Prepared::Single(Box::new(WideTables::new(tables)), kernel)
             }
-            None => {
-                Prepared::Double(Box::new(WideTables::new(Tables::new(job))), kernels::reference_kernel())
+            (None, old) => {
+                let old = if let Some(Prepared::Double(wide, _)) = old { Some(wide.tables) } else { None };
+                let tables = Tables::renewed(old.zip(before), job);
+                Prepared::Double(Box::new(WideTables::new(tables)), kernels::reference_kernel())
             }
         });
         self.job = Some(job.clone());
         Ok(())
+    }
+
+    fn tile_occupancy(&self) -> Option<TileOccupancy> {
+        self.packets.map(|_| self.occupancy.clone())
     }
 
     fn accumulate(
@@ -190,17 +205,20 @@ impl Renderer for CpuRenderer {
     ) -> Result<Stats, RenderError> {
         self.prepare(job, cancel)?;
         let start = Instant::now();
-        let tiles = match &self.prepared {
-            Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, &range, film, cancel),
-            Some(Prepared::Double(tables, kernel)) => self.trace(tables, kernel, &range, film, cancel),
-            None => TileStats::default(),
+        let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
+        let traced = match &self.prepared {
+            Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, side, &range, film, cancel),
+            Some(Prepared::Double(tables, kernel)) => self.trace(tables, kernel, side, &range, film, cancel),
+            None => Vec::new(),
         };
         if cancel.load(Ordering::Relaxed) {
             return Err(RenderError::Cancelled);
         }
         let pixels = u64::from(film.width()) * u64::from(film.height());
         let paths = pixels * range.end.saturating_sub(range.start);
+        let tiles = traced.iter().copied().fold(TileStats::default(), TileStats::plus);
         film.record(range, tiles.rejected)?;
+        self.note_occupancy(side, film.width().div_ceil(side), &traced);
         Ok(Stats {
             paths,
             rays: tiles.rays,
@@ -213,18 +231,18 @@ impl Renderer for CpuRenderer {
 }
 
 impl CpuRenderer {
-    /// Adds samples `range` to the film's sums.
+    /// Adds samples `range` to the film's sums. Returns the figures of each tile, row by row.
     fn trace<R: Real>(
         &self,
         tables: &WideTables<R>,
         kernel: &Kernel<R>,
+        side: u32,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> TileStats {
+    ) -> Vec<TileStats> {
         let settings = &tables.tables.settings;
         let blocks = DealtBlock::of_range(range.clone(), settings, tables.tables.block_limit);
-        let side = tile_side(settings.width, settings.height, self.threads.current_num_threads());
         let order = dealing_order(side);
         let tiles = tiles(film.halves_mut(), settings.width, side);
         self.threads.install(|| {
@@ -236,7 +254,17 @@ impl CpuRenderer {
                     }
                     kernel(tables, &mut Work::new(&blocks, &order, tile.corner, tile.height, tile.rows))
                 })
-                .reduce(TileStats::default, TileStats::plus)
+                .collect()
         })
+    }
+
+    fn note_occupancy(&mut self, side: u32, columns: u32, traced: &[TileStats]) {
+        let tiles = &mut self.occupancy.tiles;
+        tiles.resize(traced.len(), [0; 2]);
+        for (tile, stats) in tiles.iter_mut().zip(traced) {
+            tile[0] += stats.rays;
+            tile[1] += stats.offered_lanes;
+        }
+        (self.occupancy.side, self.occupancy.columns) = (side, columns);
     }
 }
