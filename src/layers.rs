@@ -45,7 +45,8 @@ impl Layer {
             return DVec3::splat(record.rays.len() as f64);
         }
         let direction = DVec3::from(first.direction);
-        let Some((hit, sphere)) = first.hit.and_then(|hit| Some((hit, scene.spheres.get(hit.sphere)?))) else {
+        let Some((hit, sphere)) = first.hit.and_then(|hit| Some((hit, scene.spheres.get(hit.sphere)?)))
+        else {
             let height = (direction.y + 1.0) / 2.0;
             return (1.0 - height) * scene.sky.bottom + height * scene.sky.top;
         };
@@ -81,7 +82,13 @@ impl LayerImage {
     /// An empty one in the size of `job`.
     pub fn new(layer: Layer, job: &RenderJob) -> Self {
         let RenderSettings { width, height, .. } = *job.settings();
-        LayerImage { layer, width, height, samples: 0, sums: vec![[0.0; 3]; width as usize * height as usize] }
+        LayerImage {
+            layer,
+            width,
+            height,
+            samples: 0,
+            sums: vec![[0.0; 3]; width as usize * height as usize],
+        }
     }
 
     /// Adds the next sample of each pixel. `paths` records [`Layer::job`] in this size. Returns false, with sums

@@ -48,7 +48,8 @@ impl Window {
         if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Y)) {
             self.send(Command::Redo);
         }
-        if also(Key::Escape) && self.is_full_screen {
+        // Escape leaves a control first, then the full screen.
+        if !self.had_focus && also(Key::Escape) && self.is_full_screen {
             self.send(Command::FullScreen);
         }
         self.fly(context);

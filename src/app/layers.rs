@@ -72,12 +72,12 @@ impl Layers {
         self.shown.as_mut().filter(|shown| shown.layer == layer)
     }
 
-    /// The layer and its mean at a pixel of the whole picture, and of how many samples.
-    pub fn value_at(&self, [x, y]: [u32; 2]) -> Option<(Layer, [f64; 3], u64)> {
+    /// The layer and its mean at a pixel of the whole picture.
+    pub fn value_at(&self, [x, y]: [u32; 2]) -> Option<(Layer, [f64; 3])> {
         let shown = self.shown.as_ref()?;
         let (image, at) = (&shown.image, [x / shown.divisor, y / shown.divisor]);
         let is_inside = at[0] < image.width && at[1] < image.height;
-        is_inside.then(|| (shown.layer, image.mean(at), image.samples))
+        is_inside.then(|| (shown.layer, image.mean(at)))
     }
 
     /// Samples per pixel of a layer at the picture's own size; 0 while there is none.

@@ -16,6 +16,7 @@ mod layers;
 mod menu;
 mod navigation;
 mod panels;
+mod paths;
 mod perform;
 mod plot;
 mod remembered;

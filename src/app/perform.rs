@@ -96,6 +96,9 @@ impl Window {
     /// Carries a command out; one that can do nothing says why.
     pub fn perform(&mut self, context: &egui::Context, command: Command) {
         self.performed = Some(command);
+        if let Some(log) = &mut self.frame_log {
+            log.command(&command.name());
+        }
         self.end_move();
         if let Some(reason) = self.useless(command) {
             self.toasts.good(format!("{}: {}", command.name().trim_end_matches('…'), lower_first(&reason)));

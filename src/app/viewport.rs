@@ -2,7 +2,6 @@
 
 use super::compare::Mode;
 use super::navigation;
-use super::theme;
 use super::window::Window;
 use crate::heat::{HeatScale, colour_at};
 use crate::layers::Layer;
@@ -63,7 +62,9 @@ impl Show {
         match self {
             Show::Picture => "The film, as it will be saved",
             Show::Normals => "Which way surfaces face: x red, y green, z blue",
-            Show::Albedo => "What surfaces reflect, without light and shadow; glass takes nothing and is white",
+            Show::Albedo => {
+                "What surfaces reflect, without light and shadow; glass takes nothing and is white"
+            }
             Show::Bounces => "How many rays a path takes, the camera's included: where the time goes",
             Show::Error => "Standard error of each pixel's mean, linear radiance: where the noise is",
             Show::Occupancy => {
@@ -298,7 +299,8 @@ fn handle_mouse(window: &mut Window, ui: &Ui, response: &egui::Response, rect: R
         } else if response.clicked() && (modifiers.alt || is_alt_release(ui)) {
             let settings = window.document.settings;
             if let Some(pixel) = window.viewport.pixel_at(at, [settings.width, settings.height]) {
-                window.inspector.list_path(&window.document, pixel, 0);
+                let sender = window.messages.0.clone();
+                window.paths.list(&window.document, pixel, &sender, ui.ctx());
             }
         } else if response.clicked() {
             focus(window, place);
@@ -410,7 +412,7 @@ fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
         let colour = ui.visuals().weak_text_color();
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font.clone(), colour);
     }
-    paint_path(window, ui, &painter, rect);
+    window.paths.paint(&window.document, ui, &painter, rect);
     paint_mark(window, ui, &painter, rect, &font);
 }
 
@@ -467,7 +469,11 @@ fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, scale: &HeatScale) 
         let [red, green, blue] = colour_at((step as f64 + 0.5) / STEPS as f64);
         let left = bar.left() + bar.width() * step as f32 / STEPS as f32;
         let size = vec2(bar.width() / STEPS as f32 + 0.5, bar.height());
-        painter.rect_filled(Rect::from_min_size(pos2(left, bar.top()), size), 0.0, Color32::from_rgb(red, green, blue));
+        painter.rect_filled(
+            Rect::from_min_size(pos2(left, bar.top()), size),
+            0.0,
+            Color32::from_rgb(red, green, blue),
+        );
     }
     for (value, name) in scale.marks {
         let at = pos2(bar.left() + bar.width() * scale.place(*value) as f32, bar.bottom() + 2.0);
@@ -501,24 +507,4 @@ fn paint_mark(window: &mut Window, ui: &Ui, painter: &egui::Painter, rect: Rect,
     painter.circle_filled(at, 1.5, Color32::WHITE);
     badge(ui, painter, at + vec2(14.0, 0.0), Align2::LEFT_CENTER, &mark.text, font);
     ui.ctx().request_repaint_after(MARK - age);
-}
-
-/// The listed path as lines over the picture.
-fn paint_path(window: &Window, ui: &Ui, painter: &egui::Painter, rect: Rect) {
-    let document = &window.document;
-    let place = |point| {
-        let [x, y] = document.camera.place_of(point, document.aspect())?;
-        Some(rect.min + vec2(x as f32, y as f32) * rect.size())
-    };
-    let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
-    let points: Vec<Pos2> = window.inspector.path_points().map_while(place).collect();
-    for pair in points.windows(2) {
-        painter.line_segment([pair[0], pair[1]], Stroke::new(3.0, Color32::from_black_alpha(120)));
-        painter.line_segment([pair[0], pair[1]], Stroke::new(1.5, theme::accent(ui)));
-    }
-    for (index, point) in points.iter().enumerate() {
-        painter.circle(*point, 4.0, theme::accent(ui), Stroke::new(1.0, Color32::BLACK));
-        let font = TextStyle::Small.resolve(ui.style());
-        painter.text(*point + vec2(6.0, -6.0), Align2::LEFT_BOTTOM, index + 1, font, Color32::WHITE);
-    }
 }

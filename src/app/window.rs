@@ -6,9 +6,10 @@ use super::device::{Device, DeviceOptions};
 use super::dialogs::Dialog;
 use super::document::{Document, Origin, Source, Stop};
 use super::files::Message;
-use super::frame_log::FrameLog;
+use super::frame_log::{FrameLog, FrameTimes};
 use super::inspector::Inspector;
 use super::layers::Layers;
+use super::paths::Paths;
 use super::remembered::Remembered;
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
@@ -43,6 +44,7 @@ pub struct Window {
     pub(super) layers: Layers,
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
+    pub(super) paths: Paths,
     pub(super) dialog: Option<Dialog>,
     pub(super) toasts: Toasts,
     pub(super) messages: (Sender<Message>, Receiver<Message>),
@@ -58,6 +60,7 @@ pub struct Window {
     pub(super) is_paused: bool,
     pub(super) is_full_screen: bool,
     pub(super) frame_log: Option<FrameLog>,
+    frame_times: FrameTimes,
     /// What was carried out last.
     pub(super) performed: Option<Command>,
     backend: BackendChoice,
@@ -66,6 +69,8 @@ pub struct Window {
     moved: Option<Instant>,
     /// The changes of this frame belong to a move that has begun before.
     is_in_gesture: bool,
+    /// A control or a menu had the keyboard in the frame before.
+    pub(super) had_focus: bool,
     told_messages: (u64, usize),
     is_dressed: bool,
 }
@@ -95,6 +100,7 @@ impl Window {
             layers: Layers::default(),
             viewport: Viewport::default(),
             inspector: Inspector::default(),
+            paths: Paths::default(),
             dialog: None,
             toasts: Toasts::default(),
             messages: std::sync::mpsc::channel(),
@@ -106,12 +112,14 @@ impl Window {
             is_paused: false,
             is_full_screen: false,
             frame_log,
+            frame_times: FrameTimes::default(),
             performed: None,
             device_options: DeviceOptions::of(&options.backend),
             backend: options.backend,
             last_document: document.clone(),
             moved: None,
             is_in_gesture: false,
+            had_focus: false,
             told_messages: (0, 0),
             is_dressed: false,
             remembered,
@@ -183,6 +191,21 @@ impl Window {
         self.viewport.show.layer().map_or(0, |layer| self.layers.samples(layer))
     }
 
+    /// Where the picture is drawn, points.
+    pub fn picture_rect(&self) -> egui::Rect {
+        self.viewport.rect
+    }
+
+    /// Whether the window takes the whole screen.
+    pub fn is_full_screen(&self) -> bool {
+        self.is_full_screen
+    }
+
+    /// How many paths of a pixel are listed.
+    pub fn listed_paths(&self) -> usize {
+        self.paths.len()
+    }
+
     /// Whether tracing waits.
     pub fn is_paused(&self) -> bool {
         self.is_paused
@@ -204,6 +227,7 @@ impl Window {
         }
         self.seconds_before = Some(0.0);
         self.inspector.forget();
+        self.paths.forget();
     }
 
     /// Goes on with a film of the document that is shown now.
@@ -233,9 +257,17 @@ impl Window {
         let context = ui.ctx().clone();
         self.dress(&context);
         self.receive();
+        let begin = Instant::now();
         let is_pictured = self.main.poll(&context);
-        if is_pictured && let Some(log) = &mut self.frame_log {
-            log.pictured();
+        self.frame_times.picture = begin.elapsed();
+        if let Some(log) = &mut self.frame_log {
+            if is_pictured {
+                log.pictured();
+            }
+            let status = self.main.status();
+            if let Some(backend) = status.backend.as_ref().filter(|_| status.samples_per_pixel > 0) {
+                log.tracing(status.run, backend.name);
+            }
         }
         self.tell_messages();
         self.take_input(&context);
@@ -248,6 +280,9 @@ impl Window {
             self.perform(&context, command);
         }
         self.follow(&context);
+        self.had_focus = context.memory(|memory| memory.focused().is_some())
+            || egui::Popup::is_any_open(&context)
+            || self.dialog.is_some();
     }
 
     fn dress(&mut self, context: &egui::Context) {
@@ -352,6 +387,7 @@ impl Window {
             self.save(format, path);
         }
         self.inspector.follow(&self.document, &self.main, &self.messages.0, context);
+        self.paths.follow(&self.document, &self.messages.0, context);
     }
 
     /// The backend of the chosen device, with lanes and threads as chosen.
@@ -414,9 +450,12 @@ fn document_of(options: &WindowOptions) -> Document {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         if let Some(log) = &mut self.frame_log {
-            log.frame(frame.info().cpu_usage);
+            let cpu = Duration::from_secs_f32(frame.info().cpu_usage.unwrap_or_default());
+            log.frame(FrameTimes { cpu, ..self.frame_times });
         }
+        let begin = Instant::now();
         self.ui_in(ui);
+        self.frame_times.ui = begin.elapsed();
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
