@@ -606,13 +606,14 @@ fn at_twice_the_font_size_it_looks_as_it_did() {
 
 /// Everything that a command or a control can change.
 fn state_of(harness: &mut Harness<'_, Window>) -> String {
-    let nodes = harness.root().children_recursive().count();
+    let nodes: Vec<_> =
+        harness.root().children_recursive().map(|node| node.accesskit_node().toggled()).collect();
     let window = harness.state_mut();
     let remembered = format!("{:?}", window.remembered_mut());
     let document = window.document();
     let stage = document.stage().map(|stage| stage.id);
     format!(
-        "{stage:?} {:?} {:?} {:?} {remembered} {:?} {:?} {:?} {} {nodes}",
+        "{stage:?} {:?} {:?} {:?} {remembered} {:?} {:?} {:?} {:?} {nodes:?}",
         document.camera,
         document.settings,
         document.stop,
@@ -656,10 +657,12 @@ fn every_control_changes_something() {
             continue;
         }
         let before = state_of(&mut harness);
-        let node = harness
-            .get_all_by_label(&name)
-            .find(|node| node.accesskit_node().role() == role)
-            .unwrap_or_else(|| panic!("{name} has gone"));
+        let is_it = |node: &Node<'_>| {
+            let node = node.accesskit_node();
+            node.role() == role && node.label().unwrap_or_default() == name
+        };
+        let node =
+            harness.root().children_recursive().find(is_it).unwrap_or_else(|| panic!("{name} has gone"));
         match role {
             Role::Slider | Role::SpinButton => {
                 let value = node.accesskit_node().numeric_value().unwrap_or_default();

@@ -104,7 +104,8 @@ impl Layers {
         // Before a coarse one has been seen, another would only keep it from being so.
         let is_unseen =
             self.ordered.as_ref().is_some_and(|ordered| ordered.layer == layer && !ordered.is_pictured);
-        if !is_at_it && !(is_moving && is_unseen) {
+        let has_to_wait = is_moving && is_unseen;
+        if !is_at_it && !has_to_wait {
             // A document that cannot be rendered says so elsewhere.
             let _ = self.order(context, layer, document, is_moving);
         }

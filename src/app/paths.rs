@@ -292,13 +292,16 @@ fn list_rays(ui: &mut Ui, record: &PathRecord, scene: &Scene) {
             };
             lines.push(("attenuation", triple([share(0), share(1), share(2)])));
         }
-        egui::Grid::new(("ray", index)).num_columns(2).spacing([8.0, 1.0]).show(ui, |ui| {
-            for (name, value) in lines {
-                ui.label(RichText::new(name).small().color(weak));
-                ui.label(RichText::new(value).small());
-                ui.end_row();
-            }
-        });
+        egui::Grid::new(("ray", index)).num_columns(2).min_row_height(0.0).spacing([8.0, 1.0]).show(
+            ui,
+            |ui| {
+                for (name, value) in lines {
+                    ui.label(RichText::new(name).small().color(weak));
+                    ui.label(RichText::new(value).small());
+                    ui.end_row();
+                }
+            },
+        );
     }
     ui.label(RichText::new(format!("adds {}", triple(record.radiance))).small().color(weak));
 }
