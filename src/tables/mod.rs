@@ -80,8 +80,11 @@ impl Groups {
         let scale = smallest_length(scene, camera);
         let is_anchored =
             |s: &Sphere| exact && f64::from(f32::EPSILON) / 2.0 * s.radius > ANCHOR_SHARE * scale;
+        let lens_radius =
+            camera.effective_focus_distance() * (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
         let needs_both_roots = |s: &Sphere| {
-            matches!(scene.material_of(s), Material::Dielectric { .. }) || holds_the_eye(s, camera)
+            matches!(scene.material_of(s), Material::Dielectric { .. })
+                || holds_the_eye(s, camera, lens_radius)
         };
         let mut groups = Groups::default();
         for (index, sphere) in scene.spheres.iter().enumerate() {
@@ -320,9 +323,7 @@ fn smallest_length(scene: &Scene, camera: &Camera) -> f64 {
 }
 
 /// Whether a ray from the camera can start inside the sphere.
-fn holds_the_eye(sphere: &Sphere, camera: &Camera) -> bool {
-    let lens_radius =
-        camera.effective_focus_distance() * (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
+fn holds_the_eye(sphere: &Sphere, camera: &Camera, lens_radius: f64) -> bool {
     // The margin is far above what rounding can move the eye by.
     let reach = sphere.radius * (1.0 + 1e-5) + lens_radius * (1.0 + 1e-5);
     camera.look_from.distance(sphere.center) <= reach + 1e-6 * camera.look_from.abs().max_element()
