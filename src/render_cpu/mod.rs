@@ -347,7 +347,7 @@ mod tests {
         assert_eq!([sum(0), sum(1)], [stats.busy_lanes, stats.offered_lanes]);
         assert!(occupancy.share_at([19, 11]).is_some_and(|share| share > 0.0 && share <= 1.0));
         assert_eq!(occupancy.share_at([0, 4000]), None);
-        renderer.prepare(&small("metals")).expect("prepared");
+        renderer.prepare(&small("metals"), &AtomicBool::new(false)).expect("prepared");
         assert!(renderer.tile_occupancy().expect("packets").tiles.is_empty());
         assert_eq!(CpuRenderer::reference(Some(1)).expect("available").tile_occupancy(), None);
     }
