@@ -8,6 +8,8 @@ pub mod describe;
 pub mod diff;
 pub mod failure;
 pub mod film;
+pub mod heat;
+pub mod layers;
 pub mod output;
 pub mod progressive;
 pub mod recipe;

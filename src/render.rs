@@ -8,6 +8,7 @@ use crate::scene::{Camera, Material, Scene, SceneError};
 use crate::stages::{Rules, Shading};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use thiserror::Error;
@@ -84,12 +85,20 @@ impl RenderSettings {
 }
 
 /// A picture to be rendered, checked once. Two equal jobs have the same samples.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct RenderJob {
-    scene: Scene,
+    scene: Arc<Scene>,
     camera: Camera,
     settings: RenderSettings,
     rules: Rules,
+}
+
+impl PartialEq for RenderJob {
+    /// Scenes that are one in memory are not compared sphere by sphere.
+    fn eq(&self, other: &Self) -> bool {
+        (self.camera, self.settings, self.rules) == (other.camera, other.settings, other.rules)
+            && (Arc::ptr_eq(&self.scene, &other.scene) || self.scene == other.scene)
+    }
 }
 
 impl RenderJob {
@@ -104,6 +113,15 @@ impl RenderJob {
         rules: Rules,
     ) -> Result<Self, JobError> {
         scene.validate()?;
+        RenderJob { scene: Arc::new(scene), camera, settings, rules }.seen_by(camera, settings)
+    }
+
+    /// The same scene under the same rules, seen by another camera or in another size: the scene is shared, and
+    /// not checked again.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with the camera or the settings.
+    pub fn seen_by(&self, camera: Camera, settings: RenderSettings) -> Result<Self, JobError> {
         camera.validate()?;
         for (what, pixels) in [("width", settings.width), ("height", settings.height)] {
             if !(1..=SIZE_LIMIT).contains(&pixels) {
@@ -113,7 +131,12 @@ impl RenderJob {
         if !(1..=DEPTH_LIMIT).contains(&settings.max_depth) {
             return Err(JobError::Depth { depth: settings.max_depth });
         }
-        Ok(RenderJob { scene, camera, settings, rules })
+        Ok(RenderJob { scene: Arc::clone(&self.scene), camera, settings, rules: self.rules })
+    }
+
+    /// Whether both have one scene in memory, under the same rules.
+    pub fn shares_scene_with(&self, other: &RenderJob) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene) && self.rules == other.rules
     }
 
     /// Spheres, materials and sky.
@@ -229,6 +252,26 @@ impl Stats {
     }
 }
 
+/// How full the packets were in each tile of a picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TileOccupancy {
+    /// Side of a tile, pixels.
+    pub side: u32,
+    /// Tiles in a row.
+    pub columns: u32,
+    /// Lanes that traced a ray, and lanes there were, over all intersections; row by row from the top.
+    pub tiles: Vec<[u64; 2]>,
+}
+
+impl TileOccupancy {
+    /// Share of lanes in use in the tile of a pixel, `0..=1`; `None` where nothing has been traced.
+    pub fn share_at(&self, [x, y]: [u32; 2]) -> Option<f64> {
+        let side = self.side.max(1);
+        let [busy, offered] = *self.tiles.get((y / side * self.columns + x / side) as usize)?;
+        (offered > 0).then(|| busy as f64 / offered as f64)
+    }
+}
+
 /// Why samples could not be added.
 #[derive(Debug, Error)]
 pub enum RenderError {
@@ -285,6 +328,11 @@ pub trait Renderer: Send {
     /// What the prepared job's kernel contains, and what making it took, in words.
     fn kernel(&self) -> String {
         String::new()
+    }
+
+    /// How full the packets were since the prepared job's first pass; `None` if it traces without packets.
+    fn tile_occupancy(&self) -> Option<TileOccupancy> {
+        None
     }
 
     /// Begins a film of `job`: builds what tracing it needs (tables, hierarchy, kernels), unless that is there, and

@@ -68,7 +68,8 @@ fn factory() -> Factory {
     })
 }
 
-const CPU: BackendChoice = BackendChoice::Cpu(CpuOptions { isa: None, lanes: None, threads: None });
+const CPU: BackendChoice =
+    BackendChoice::Cpu(CpuOptions { isa: None, lanes: None, threads: None, gives_way: false });
 const FAILING: BackendChoice = BackendChoice::Reference { threads: None };
 
 fn other_cpu() -> BackendChoice {

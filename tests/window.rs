@@ -7,7 +7,7 @@ use egui_kittest::{Harness, Node};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use weekender::app::{Command, Device, Theme, Window};
+use weekender::app::{Command, Device, Show, Theme, Window};
 use weekender::cli::{self, Request};
 use weekender::output::{OutputFormat, read_description};
 use weekender::progressive::{Plan, Progressive, Work};
@@ -383,14 +383,33 @@ fn the_wheel_and_keys_move_and_clicks_aim() {
 
     harness.run_steps(60);
     click(&mut harness, Modifiers::ALT);
+    until(&mut harness, "sixteen paths", |window| window.listed_paths() == 16);
     harness.run_steps(2);
-    assert!(harness.query_by_label_contains("Path of pixel").is_some());
+    assert!(harness.query_by_label_contains("Paths of pixel").is_some());
+    let is_open = |harness: &Harness<'_, Window>, index: usize| {
+        let header = control(harness, &format!("Path of sample {index}")).rect();
+        let next = control(harness, &format!("Path of sample {}", index + 1)).rect();
+        next.top() - header.bottom() > 40.0
+    };
+    harness.run_steps(30);
+    assert!(is_open(&harness, 0) && !is_open(&harness, 1));
     harness.get_by_label("Path of the sample after").click();
+    harness.run_steps(30);
+    assert!(is_open(&harness, 1) && !is_open(&harness, 0));
+    control(&harness, "Path of sample 3").click();
+    harness.run_steps(30);
+    assert!(is_open(&harness, 3) && !is_open(&harness, 1));
+    control(&harness, "Paths listed").set_value_accesskit(64.0);
+    until(&mut harness, "sixty-four paths", |window| window.listed_paths() == 64);
+    control(&harness, "Paths listed").set_value_accesskit(1000.0);
+    harness.run_steps(3);
+    assert_eq!(harness.state().listed_paths(), 64, "no more than that");
+    harness.state_mut().document_mut().settings.seed += 1;
+    until(&mut harness, "the paths of another seed", |window| window.listed_paths() == 64);
+    // The list may still change, and with it the button's place.
+    harness.get_by_label("Clear paths").click_accesskit();
     harness.run_steps(2);
-    assert!(harness.query_by_label("sample 1").is_some());
-    harness.get_by_label("Clear path").click();
-    harness.run_steps(2);
-    assert!(harness.query_by_label_contains("Path of pixel").is_none());
+    assert!(harness.query_by_label_contains("Paths of pixel").is_none());
 }
 
 /// Saves through the path box and waits for the file.
@@ -584,4 +603,314 @@ fn the_light_window_looks_as_it_did() {
 #[test]
 fn at_twice_the_font_size_it_looks_as_it_did() {
     snapshot("window_twice_the_font", Theme::Dark, [640.0, 400.0], 2.0);
+}
+
+/// Everything that a command or a control can change.
+fn state_of(harness: &mut Harness<'_, Window>) -> String {
+    let nodes: Vec<_> =
+        harness.root().children_recursive().map(|node| node.accesskit_node().toggled()).collect();
+    let window = harness.state_mut();
+    let remembered = format!("{:?}", window.remembered_mut());
+    let document = window.document();
+    let stage = document.stage().map(|stage| stage.id);
+    format!(
+        "{stage:?} {:?} {:?} {:?} {remembered} {:?} {:?} {:?} {:?} {nodes:?}",
+        document.camera,
+        document.settings,
+        document.stop,
+        window.show(),
+        window.is_comparing(),
+        window.is_paused(),
+        window.has_dialog(),
+    )
+}
+
+#[test]
+fn every_control_changes_something() {
+    use egui::accesskit::Role;
+    let opened = || {
+        let mut harness = open("--stage defocus --size 32x18 --samples 4000000000");
+        until(&mut harness, "a picture", has_samples(1));
+        harness.run_steps(3);
+        harness
+    };
+    let is_control = |role| {
+        matches!(role, Role::Button | Role::Slider | Role::SpinButton | Role::CheckBox | Role::ComboBox)
+    };
+    let harness = opened();
+    let controls: Vec<(String, Role)> = harness
+        .root()
+        .children_recursive()
+        .map(|node| node.accesskit_node())
+        .filter(|node| is_control(node.role()) && !node.is_disabled())
+        .map(|node| (node.label().unwrap_or_default(), node.role()))
+        .collect();
+    assert!(controls.len() > 45, "{controls:?}");
+    let mut harness = opened();
+    for (name, role) in controls {
+        assert!(!name.is_empty(), "a {role:?} without a name");
+        // What says which of several is chosen changes nothing when it is the chosen one.
+        if name == Command::Device(Device::Cpu).name() {
+            continue;
+        }
+        // What only writes to the clipboard or the disk is tried elsewhere.
+        if name == "Copy as command" {
+            continue;
+        }
+        let before = state_of(&mut harness);
+        let is_it = |node: &Node<'_>| {
+            let node = node.accesskit_node();
+            node.role() == role && node.label().unwrap_or_default() == name
+        };
+        let node =
+            harness.root().children_recursive().find(is_it).unwrap_or_else(|| panic!("{name} has gone"));
+        match role {
+            Role::Slider | Role::SpinButton => {
+                let value = node.accesskit_node().numeric_value().unwrap_or_default();
+                node.set_value_accesskit(value + 1.0);
+            }
+            _ => node.click_accesskit(),
+        }
+        harness.run_steps(4);
+        assert_ne!(state_of(&mut harness), before, "{role:?} {name}");
+        harness = opened();
+    }
+}
+
+/// What a command has to have changed, given the window as it was.
+fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Harness<'_, Window>) -> bool {
+    let copied =
+        harness.output().platform_output.commands.iter().any(
+            |output| matches!(output, egui::OutputCommand::CopyText(text) if text.starts_with("weekender")),
+        );
+    let window = harness.state_mut();
+    let remembered = window.remembered_mut().clone();
+    let document = window.document();
+    match command {
+        Command::Open
+        | Command::Save(_)
+        | Command::SaveScene
+        | Command::LoadReference
+        | Command::Palette
+        | Command::Help => window.has_dialog(),
+        Command::CopyCommand => copied || window.messages().iter().any(|text| text.starts_with("Copied")),
+        Command::Undo | Command::Redo | Command::Home | Command::ResetAll => {
+            document.camera != before.camera || document.settings != before.settings
+        }
+        Command::AddBookmark => remembered.bookmarks.len() == 1,
+        Command::Show(show) => window.show() == show,
+        Command::Wipe | Command::WipeDifference => window.is_comparing(),
+        Command::Panels => !remembered.has_panels,
+        Command::Controls => !remembered.has_controls,
+        Command::Info => !remembered.has_info,
+        Command::Plot => remembered.has_plot,
+        Command::Theme(theme) => remembered.theme == theme,
+        Command::Pause => window.is_paused(),
+        Command::Restart => window.status().run > 1,
+        Command::SwitchDevice => remembered.device == Device::Gpu,
+        Command::Device(device) => remembered.device == device,
+        Command::PreviousStage => document.stage() == before.stage().and_then(|stage| stage.previous()),
+        Command::NextStage => document.stage() == before.stage().and_then(|stage| stage.next()),
+        Command::Stage(stage) => document.stage() == Some(stage),
+        // The next two are the window system's, the others the viewport's, which has tests of its own.
+        Command::Quit | Command::Book | Command::FullScreen => true,
+        Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
+    }
+}
+
+#[test]
+fn every_command_does_what_it_says() {
+    for command in Command::all() {
+        let mut harness = open(SMALL);
+        until(&mut harness, "a picture", has_samples(1));
+        // Something to take back, and something to make again.
+        if matches!(command, Command::Undo | Command::Redo | Command::Home | Command::ResetAll) {
+            harness.run_steps(90);
+            harness.state_mut().document_mut().camera.vfov_degrees = 33.0;
+            harness.run_steps(90);
+        }
+        if command == Command::Redo {
+            send(&mut harness, Command::Undo);
+        }
+        if harness.state().useless(command).is_some() {
+            continue;
+        }
+        let before = harness.state().document().clone();
+        harness.state_mut().send(command);
+        harness.step();
+        assert!(is_done(command, &before, &mut harness), "{command:?}");
+    }
+}
+
+#[test]
+fn zoom_commands_change_what_is_seen_and_not_the_picture() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    let (fitting, run) = (harness.state().picture_rect(), harness.state().status().run);
+    send(&mut harness, Command::ActualSize);
+    let actual = harness.state().picture_rect();
+    assert_eq!(actual.size(), egui::vec2(32.0, 18.0));
+    send(&mut harness, Command::ZoomIn);
+    assert_eq!(harness.state().picture_rect().size(), actual.size() * 1.25);
+    send(&mut harness, Command::ZoomOut);
+    assert!((harness.state().picture_rect().width() - actual.width()).abs() < 1e-3);
+    send(&mut harness, Command::Fit);
+    assert_eq!(harness.state().picture_rect(), fitting);
+    assert_eq!(harness.state().status().run, run);
+}
+
+#[test]
+fn views_are_shown_and_follow_the_camera() {
+    let mut harness = open("--stage defocus --size 64x36");
+    until(&mut harness, "a picture", has_samples(2));
+    for show in [Show::Normals, Show::Albedo, Show::Bounces] {
+        send(&mut harness, Command::Show(show));
+        until(&mut harness, "sixteen samples", |window| window.layer_samples() == 16);
+        harness.state_mut().document_mut().camera.vfov_degrees += 1.0;
+        harness.run_steps(2);
+        until(&mut harness, "the moved layer", |window| window.layer_samples() == 16);
+        assert_eq!(harness.state().show(), show);
+    }
+    for show in [Show::Occupancy, Show::Error] {
+        send(&mut harness, Command::Show(show));
+        assert_eq!((harness.state().show(), harness.state().layer_samples()), (show, 0));
+    }
+    // A stage that sends no rays has no such views: it says so and shows its picture.
+    send(&mut harness, Command::Show(Show::Albedo));
+    send(&mut harness, Command::Stage(&Stage::ALL[0]));
+    harness.run_steps(2);
+    assert_eq!(harness.state().show(), Show::Picture);
+    assert!(harness.state().messages().iter().any(|text| text.starts_with("No albedo here")));
+    send(&mut harness, Command::Show(Show::Bounces));
+    assert_eq!(harness.state().show(), Show::Picture);
+}
+
+#[test]
+fn a_pause_outlasts_a_move_of_the_camera() {
+    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000");
+    until(&mut harness, "samples", has_samples(16));
+    harness.key_press(Key::Space);
+    until(&mut harness, "a pause", |window| window.status().phase == weekender::progressive::Phase::Paused);
+    let run = harness.state().status().run;
+    drag(&mut harness, PointerButton::Primary, Modifiers::NONE);
+    until(&mut harness, "the moved picture", |window| {
+        window.status().run > run && window.shown() == Some((8, 1)) && window.status().phase.is_over()
+    });
+    std::thread::sleep(Duration::from_millis(60));
+    harness.run_steps(5);
+    assert!(harness.state().is_paused());
+    assert_eq!(harness.state().status().samples_per_pixel, 8, "it waits");
+    let run = harness.state().status().run;
+    harness.key_press(Key::Space);
+    until(&mut harness, "more samples", |window| window.status().samples_per_pixel > 8);
+    assert_eq!(harness.state().status().run, run, "the same film goes on");
+}
+
+#[test]
+fn controls_take_no_value_that_cannot_be() {
+    let mut harness = open("--stage defocus --size 32x18");
+    let values = [0.0, -1.0, 1e-300, 180.0, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
+    let names =
+        ["Field of view", "Defocus angle", "Focus distance", "Look from x", "Up y", "Width", "Depth", "Seed"];
+    for name in names {
+        for value in values {
+            control(&harness, name).set_value_accesskit(value);
+            harness.run_steps(2);
+            let document = harness.state().document();
+            let outcome = document.job(1);
+            assert!(outcome.is_ok(), "{name} {value}: {}", outcome.unwrap_err());
+        }
+    }
+    for name in ["Samples", "Time"] {
+        control(&harness, name).click();
+        harness.run_steps(2);
+    }
+    for name in ["Samples limit", "Time limit", "Error limit"] {
+        for value in values {
+            control(&harness, name).set_value_accesskit(value);
+            harness.run_steps(2);
+            let stop = harness.state().document().stop;
+            assert!(stop.samples.is_none_or(|samples| samples >= 1), "{name} {value}: {stop:?}");
+            assert!(
+                stop.seconds.is_none_or(|seconds| (0.1..=1e6).contains(&seconds)),
+                "{name} {value}: {stop:?}"
+            );
+            assert!(stop.noise.is_none_or(|noise| (1e-6..=1.0).contains(&noise)), "{name} {value}: {stop:?}");
+        }
+    }
+}
+
+/// What eframe keeps in a file.
+#[derive(Default)]
+struct Storage(std::collections::HashMap<String, String>);
+
+impl eframe::Storage for Storage {
+    fn get_string(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+
+    fn set_string(&mut self, key: &str, value: String) {
+        self.0.insert(key.to_owned(), value);
+    }
+
+    fn remove_string(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+
+    fn flush(&mut self) {}
+}
+
+#[test]
+fn settings_are_remembered() {
+    let options = |arguments: &str| match cli::parse(arguments.split_whitespace().map(Into::into)).unwrap() {
+        Request::Window(options) => *options,
+        other => panic!("{other:?}"),
+    };
+    let mut harness = open(SMALL);
+    for command in [
+        Command::Theme(Theme::Light),
+        Command::Plot,
+        Command::Info,
+        Command::Device(Device::Reference),
+        Command::AddBookmark,
+    ] {
+        send(&mut harness, command);
+    }
+    harness.state_mut().remembered_mut().threads = Some(1);
+    let mut storage = Storage::default();
+    eframe::App::save(harness.state_mut(), &mut storage);
+    let kept = harness.state_mut().remembered_mut().clone();
+
+    let mut again = Window::new(options("weekender --stage metal"), Some(&storage)).unwrap();
+    assert_eq!(*again.remembered_mut(), kept);
+    assert_eq!((kept.theme, kept.has_plot, kept.has_info), (Theme::Light, true, false));
+    assert_eq!((kept.device, kept.bookmarks.len(), kept.threads), (Device::Reference, 1, Some(1)));
+    // What the command line says goes before what is remembered.
+    let mut told = Window::new(options("weekender --stage metal --device cpu"), Some(&storage)).unwrap();
+    assert_eq!(told.remembered_mut().device, Device::Cpu);
+    // What cannot be read is as if there were nothing.
+    storage.0.values_mut().for_each(|value| *value = "(theme: Purple)".to_owned());
+    let mut fresh = Window::new(options("weekender --stage metal"), Some(&storage)).unwrap();
+    assert_eq!(fresh.remembered_mut().theme, Theme::System);
+}
+
+#[test]
+fn escape_leaves_a_control_before_tab_hides_the_panels() {
+    let mut harness = open(SMALL);
+    control(&harness, "Seed").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Tab);
+    harness.run_steps(2);
+    assert!(harness.state_mut().remembered_mut().has_panels, "Tab goes to the next control");
+    send(&mut harness, Command::FullScreen);
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(harness.state().performed(), Some(Command::FullScreen));
+    assert!(harness.state().is_full_screen(), "the first Escape leaves the control");
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert!(!harness.state().is_full_screen());
+    harness.key_press(Key::Tab);
+    harness.run_steps(2);
+    assert!(!harness.state_mut().remembered_mut().has_panels);
 }

@@ -3,9 +3,10 @@
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::io::{BufRead, BufReader};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
+use weekender::app::Device;
 use weekender::output::read_description;
 
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -111,41 +112,107 @@ fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
     (picture.width(), picture.height(), picture.into_raw())
 }
 
+/// What the window says of itself while it is used: lines of `--frame-log`.
+struct Log(PathBuf);
+
+impl Log {
+    /// The fields of all whole lines of a kind, without the kind and the time.
+    fn lines(&self, kind: &str) -> Vec<Vec<String>> {
+        let text = std::fs::read_to_string(&self.0).unwrap_or_default();
+        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+        let fields = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+        whole.lines().map(fields).filter(|line| line[0] == kind).map(|line| line[2..].to_vec()).collect()
+    }
+
+    /// Renders and backends that have traced, in order.
+    fn tracings(&self) -> Vec<(u64, String)> {
+        self.lines("tracing").iter().map(|line| (line[0].parse().unwrap(), line[1].clone())).collect()
+    }
+
+    fn wait_for(&self, what: &str, is_so: impl Fn(&Log) -> bool) {
+        let begin = Instant::now();
+        while !is_so(self) {
+            let (commands, tracings) = (self.lines("command"), self.tracings());
+            assert!(begin.elapsed() < PATIENCE, "never: {what}; {commands:?}; {tracings:?}");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    fn wait_for_command(&self, name: &str, times: usize) {
+        let count = |log: &Log| log.lines("command").iter().filter(|line| line[0] == name).count();
+        self.wait_for(name, |log| count(log) >= times);
+    }
+
+    fn wait_for_backend(&self, name: &str, after: usize) -> (u64, String) {
+        let found = |log: &Log| log.tracings().into_iter().skip(after).find(|(_, backend)| backend == name);
+        self.wait_for(name, |log| found(log).is_some());
+        found(self).unwrap()
+    }
+}
+
+/// Saves a picture by keyboard.
+fn save(display: &Display, path: &Path) {
+    display.key("ctrl+s");
+    std::thread::sleep(Duration::from_millis(500));
+    display.key("ctrl+a");
+    display.type_text(path.to_str().unwrap());
+    display.key("Return");
+    wait_for_file(path);
+}
+
 #[test]
 fn a_person_can_use_the_window() {
     let Some(display) = Display::start() else { return };
     let home = tempfile::tempdir().unwrap();
+    let log = Log(home.path().join("frames.csv"));
     let mut child = display
         .weekender(home.path())
-        .args(["--stage", "glass-refract", "--size", "240x135"])
+        .args(["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000", "--device", "cpu"])
+        .arg("--frame-log")
+        .arg(&log.0)
         .spawn()
         .unwrap();
     let id = display.wait_for_window(&mut child);
-    std::thread::sleep(Duration::from_secs(2));
+    let (run, _) = log.wait_for_backend("cpu", 0);
     display.xdotool(&["windowfocus", "--sync", &id]);
 
-    // Switch the device and back, change the stage, drag.
+    // Switch the device and back: both trace into one film.
     display.key("g");
-    std::thread::sleep(Duration::from_millis(600));
-    display.key("g");
+    log.wait_for_command("Switch between CPU and GPU", 1);
+    match Device::Gpu.unavailable() {
+        Some(reason) => eprintln!("the device was not switched: {reason}"),
+        None => {
+            assert_eq!(log.wait_for_backend("gpu", 1), (run, "gpu".to_owned()));
+            let by_gpu = home.path().join("gpu.png");
+            save(&display, &by_gpu);
+            let description = read_description(&by_gpu).unwrap();
+            assert!(
+                description.get("Backend").unwrap().starts_with("gpu"),
+                "{:?}",
+                description.get("Backend")
+            );
+            display.key("g");
+            assert_eq!(log.wait_for_backend("cpu", 2), (run, "cpu".to_owned()));
+        }
+    }
+
+    // Change the stage, drag, and wait for what is seen then.
     display.key("Next");
     display.key("Next");
+    log.wait_for_command("Next stage", 2);
+    log.wait_for("another stage", |log| log.tracings().last().is_some_and(|(last, _)| *last > run));
+    let (before, _) = log.tracings().last().cloned().unwrap();
     display.xdotool(&["mousemove", "620", "420"]);
     display.xdotool(&["mousedown", "1"]);
     for _ in 0..8 {
         display.xdotool(&["mousemove_relative", "--", "6", "-3"]);
     }
     display.xdotool(&["mouseup", "1"]);
-    std::thread::sleep(Duration::from_secs(2));
+    log.wait_for("the moved picture", |log| log.tracings().last().is_some_and(|(last, _)| *last > before));
+    std::thread::sleep(Duration::from_secs(1));
 
-    // Save.
     let saved = home.path().join("saved.png");
-    display.key("ctrl+s");
-    std::thread::sleep(Duration::from_millis(500));
-    display.key("ctrl+a");
-    display.type_text(saved.to_str().unwrap());
-    display.key("Return");
-    wait_for_file(&saved);
+    save(&display, &saved);
     display.key("ctrl+q");
     let status = wait_for_end(&mut child);
     assert_eq!(status.code(), Some(0), "{status}");
@@ -168,10 +235,8 @@ fn a_person_can_use_the_window() {
         .output()
         .unwrap();
     assert!(batch.status.success(), "{}", String::from_utf8_lossy(&batch.stderr));
-    let is_cpu = description.get("Backend").is_some_and(|backend| backend.starts_with("cpu"));
-    if is_cpu {
-        assert!(pixels(&saved) == pixels(&again), "the saved picture differs from the batch's");
-    }
+    assert!(description.get("Backend").unwrap().starts_with("cpu"), "{:?}", description.get("Backend"));
+    assert!(pixels(&saved) == pixels(&again), "the saved picture differs from the batch's");
 }
 
 #[test]

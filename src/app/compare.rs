@@ -1,4 +1,4 @@
-//! A second picture beside the main one: another stage for the wipe, or the same scene's normals.
+//! A second picture beside the main one: another stage for the wipe and the difference.
 
 use super::document::{Document, Origin};
 use super::files::Message;
@@ -7,7 +7,7 @@ use super::viewport::Show;
 use crate::progressive::{Reference, View};
 use crate::recipe::Recipe;
 use crate::scene::Camera;
-use crate::stages::{Rules, Shading, Stage, Transfer};
+use crate::stages::Stage;
 use eframe::egui;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
@@ -19,13 +19,6 @@ pub enum Mode {
     Wipe,
     /// A heat map of where they differ.
     Difference,
-}
-
-/// What the second picture is.
-#[derive(Clone, Copy, PartialEq)]
-enum Other {
-    Stage(&'static Stage),
-    Normals,
 }
 
 /// The second picture.
@@ -41,7 +34,7 @@ pub struct Compare {
     /// The tracer of the second picture, once there has been one.
     pub tracer: Option<Tracer>,
     show: Show,
-    origin: Option<(Other, Arc<Origin>, Arc<Origin>)>,
+    origin: Option<(&'static Stage, Arc<Origin>)>,
     is_awake: bool,
     measured_samples: u64,
 }
@@ -75,9 +68,10 @@ impl Compare {
         if self.is_with_next { next.or(pair) } else { pair.or(next) }
     }
 
-    /// Whether the normals take the main picture's place.
-    pub fn has_normals(&self) -> bool {
-        self.mode.is_none() && self.show == Show::Normals
+    /// Whether the camera is what `stage` and the other differ in, so that each keeps its own.
+    pub fn is_of_cameras(&self, stage: &'static Stage) -> bool {
+        let mine = stage.recipe();
+        self.other_of(stage).is_some_and(|other| differ_in_camera(&mine, &other.recipe()))
     }
 
     /// Whether the stage that `stage` is compared with has been pictured.
@@ -110,6 +104,7 @@ impl Compare {
         match (self.show, &self.reference) {
             (Show::Error, _) => View::StandardError,
             (Show::Difference, Some(reference)) => View::Difference(Arc::clone(reference)),
+            (Show::Occupancy, _) => View::Occupancy,
             _ => View::Picture,
         }
     }
@@ -130,10 +125,7 @@ impl Compare {
         sender: &Sender<Message>,
     ) {
         let other = match (self.mode, want.document.stage()) {
-            (Some(_), Some(stage)) => self.other_of(stage).map(Other::Stage),
-            (None, _) if self.show == Show::Normals && want.document.rules().are_finished() => {
-                Some(Other::Normals)
-            }
+            (Some(_), Some(stage)) => self.other_of(stage),
             _ => None,
         };
         let Some(other) = other else {
@@ -164,6 +156,7 @@ impl Compare {
             backend: want.backend,
             stop: document.stop,
             is_moving: want.is_moving,
+            is_paused: want.is_paused,
         };
         if tracer.want(&want).is_err() {
             self.mode = None;
@@ -183,45 +176,35 @@ impl Compare {
         }
     }
 
-    fn document_of(&mut self, other: Other, mine: &Document) -> Document {
-        let is_kept =
-            matches!(&self.origin, Some((kept, of, _)) if *kept == other && Arc::ptr_eq(of, &mine.origin));
-        if !is_kept {
+    fn document_of(&mut self, other: &'static Stage, mine: &Document) -> Document {
+        if self.origin.as_ref().is_none_or(|(kept, _)| *kept != other) {
             self.origin = None;
         }
-        let (_, _, origin) = self.origin.get_or_insert_with(|| {
-            let origin = match other {
-                Other::Stage(stage) => Origin::of_stage(stage),
-                Other::Normals => {
-                    let rules =
-                        Rules { shading: Shading::Normals, transfer: Transfer::Linear, ..*mine.rules() };
-                    let recipe = Recipe { rules, ..mine.origin.recipe.clone() };
-                    Origin { recipe, source: mine.origin.source.clone() }
-                }
-            };
-            (other, Arc::clone(&mine.origin), Arc::new(origin))
-        });
+        let (_, origin) = self.origin.get_or_insert_with(|| (other, Arc::new(Origin::of_stage(other))));
         let (theirs, base) = (&origin.recipe, &mine.origin.recipe);
         let mut settings = mine.settings;
         if theirs.settings.max_depth != base.settings.max_depth {
             settings.max_depth = theirs.settings.max_depth;
         }
         let mut stop = mine.stop;
-        if other == Other::Normals {
-            stop.samples = Some(stop.samples.unwrap_or(u64::MAX).min(64));
-        } else if super::document::Stop::for_recipe(theirs) != super::document::Stop::for_recipe(base) {
+        if super::document::Stop::for_recipe(theirs) != super::document::Stop::for_recipe(base) {
             stop = super::document::Stop::for_recipe(theirs);
         }
-        Document {
-            camera: camera_of(&mine.camera, &base.camera, &theirs.camera),
-            settings,
-            stop,
-            origin: Arc::clone(origin),
-        }
+        let camera = if differ_in_camera(base, theirs) {
+            camera_of(&mine.camera, &base.camera, &theirs.camera)
+        } else {
+            mine.camera
+        };
+        Document { camera, settings, stop, origin: Arc::clone(origin) }
     }
 }
 
-/// The same camera, but for that in which the two stages differ: that is what is to be seen.
+/// Whether two pictures differ in nothing but the camera, so that it is what there is to compare.
+fn differ_in_camera(a: &Recipe, b: &Recipe) -> bool {
+    a.camera != b.camera && a.rules == b.rules && a.scene == b.scene
+}
+
+/// My camera, but for that in which the stages' cameras differ.
 fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
     fn choose<T: PartialEq>(mine: T, base: T, theirs: T) -> T {
         if base == theirs { mine } else { theirs }
@@ -252,6 +235,28 @@ mod tests {
         let camera = camera_of(&mine, &base, &theirs);
         assert_eq!((camera.look_from, camera.vfov_degrees), (glam::DVec3::Z, 30.0));
         assert_eq!(camera_of(&mine, &base, &base), mine);
+    }
+
+    #[test]
+    fn the_other_stage_is_seen_by_my_camera_unless_that_is_the_difference() {
+        let mut compare = Compare::default();
+        let mut of_cameras = Vec::new();
+        for stage in Stage::ALL {
+            let mut mine = Document::new(Origin::of_stage(stage));
+            mine.camera.look_from += glam::DVec3::new(0.25, 0.5, 0.125);
+            let other = compare.other_of(stage).unwrap();
+            let theirs = compare.document_of(other, &mine);
+            if compare.is_of_cameras(stage) {
+                of_cameras.push(stage.id);
+                assert_ne!(theirs.camera, mine.camera, "{}", stage.id);
+            } else {
+                assert_eq!(theirs.camera, mine.camera, "{}", stage.id);
+            }
+        }
+        assert!(
+            of_cameras.contains(&"view-distant") && !of_cameras.contains(&"glass-schlick"),
+            "{of_cameras:?}"
+        );
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::scene::{Camera, Scene};
 use crate::stages::{Rules, Shading, Stage};
 use std::fmt::Write;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 /// Where a picture comes from.
@@ -30,12 +30,19 @@ pub struct Origin {
     pub recipe: Recipe,
     /// Where it is from.
     pub source: Source,
+    /// Its scene under its rules, checked, for any camera and size.
+    base: OnceLock<Result<RenderJob, JobError>>,
 }
 
 impl Origin {
+    /// A recipe from somewhere.
+    pub fn new(recipe: Recipe, source: Source) -> Self {
+        Origin { recipe, source, base: OnceLock::new() }
+    }
+
     /// A stage's picture.
     pub fn of_stage(stage: &'static Stage) -> Self {
-        Origin { recipe: stage.recipe(), source: Source::Stage(stage) }
+        Origin::new(stage.recipe(), Source::Stage(stage))
     }
 
     /// The origin of a recipe from elsewhere, which may have been changed. If a stage or a built-in scene has
@@ -46,8 +53,8 @@ impl Origin {
             return Origin::of_stage(stage);
         }
         match Recipe::builtin(&recipe.name) {
-            Some(builtin) if is_same(&builtin) => Origin { recipe: builtin, source: Source::Builtin },
-            _ => Origin { recipe: recipe.clone(), source: Source::Embedded },
+            Some(builtin) if is_same(&builtin) => Origin::new(builtin, Source::Builtin),
+            _ => Origin::new(recipe.clone(), Source::Embedded),
         }
     }
 
@@ -57,6 +64,15 @@ impl Origin {
             Source::Stage(stage) => Some(stage),
             _ => None,
         }
+    }
+
+    /// The picture that `camera` and `settings` give of it. All that are asked for share one scene.
+    fn job(&self, camera: Camera, settings: RenderSettings) -> Result<RenderJob, JobError> {
+        let checked = || {
+            let (scene, rules) = (self.recipe.scene.clone(), self.recipe.rules);
+            RenderJob::new(scene, Camera::BOOK, RenderSettings::default(), rules)
+        };
+        self.base.get_or_init(checked).clone()?.seen_by(camera, settings)
     }
 }
 
@@ -190,7 +206,7 @@ impl Document {
             estimate_error: self.settings.estimate_error && divisor == 1,
             ..self.settings
         };
-        RenderJob::new(self.scene().clone(), self.acting_camera(), settings, *self.rules())
+        self.origin.job(self.acting_camera(), settings)
     }
 
     /// The command line that gives the same picture with `samples` samples per pixel, to the bit on the CPU.

@@ -4,6 +4,7 @@
 use super::dialogs::{Dialog, Purpose};
 use super::document::{Document, Origin, Source, Stop};
 use super::inspector::Pixel;
+use super::paths::Listed;
 use super::window::Window;
 use crate::describe::describe;
 use crate::film::{checkpoint, key, replace_file};
@@ -28,6 +29,8 @@ pub enum Message {
     Measured(Reference),
     /// A pixel of the film.
     Pixel(Option<Pixel>),
+    /// Paths of a pixel.
+    Paths(Listed),
     /// A name from the system's dialog.
     Chosen(Purpose, PathBuf),
 }
@@ -128,6 +131,7 @@ impl Window {
                 Message::Reference(outcome) => self.take_reference(outcome),
                 Message::Measured(reference) => self.compare.measured(&self.main, reference),
                 Message::Pixel(pixel) => self.inspector.learn(pixel),
+                Message::Paths(listed) => self.paths.learn(listed),
                 Message::Chosen(purpose, path) => {
                     if matches!(self.dialog, Some(Dialog::Path(_))) {
                         self.dialog = None;
@@ -174,7 +178,7 @@ impl Window {
     fn show_opened(&mut self, opened: Opened) {
         let Opened { path, recipe, source, stage, film, samples } = opened;
         let origin = match source {
-            Some(source) => Origin { recipe: recipe.clone(), source },
+            Some(source) => Origin::new(recipe.clone(), source),
             None => Origin::guess(&recipe, stage),
         };
         let mut document = Document::new(origin);
@@ -187,6 +191,7 @@ impl Window {
         };
         self.document = document;
         self.inspector.forget();
+        self.paths.forget();
         self.toasts.good(format!("Opened {}", path.display()));
         if let Some((film, seconds)) = film {
             self.adopt(film, seconds);

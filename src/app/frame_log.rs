@@ -5,12 +5,25 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Lines `frame,since_start_ms,since_last_ms,cpu_ms` and `latency,since_start_ms,ms`.
+/// What is said of a frame once it is over.
+#[derive(Clone, Copy, Default)]
+pub struct FrameTimes {
+    /// All that the frame's thread did, drawing and waiting for the display included.
+    pub cpu: Duration,
+    /// Of that, controls, layout and state.
+    pub ui: Duration,
+    /// Of that, taking a new picture in.
+    pub picture: Duration,
+}
+
+/// Lines `frame,since_start_ms,since_last_ms,cpu_ms,ui_ms,picture_ms`, `latency,since_start_ms,ms` from a change
+/// to its first picture, `command,since_start_ms,NAME` and `tracing,since_start_ms,RUN,BACKEND`.
 pub struct FrameLog {
     file: BufWriter<File>,
     start: Instant,
     last: Option<Instant>,
     changed: Option<Instant>,
+    tracing: Option<(u64, String)>,
 }
 
 fn milliseconds(time: Duration) -> f64 {
@@ -20,21 +33,39 @@ fn milliseconds(time: Duration) -> f64 {
 impl FrameLog {
     pub fn create(path: &Path) -> std::io::Result<Self> {
         let file = BufWriter::new(File::create(path)?);
-        Ok(FrameLog { file, start: Instant::now(), last: None, changed: None })
+        Ok(FrameLog { file, start: Instant::now(), last: None, changed: None, tracing: None })
     }
 
-    /// A frame begins; the one before took `cpu_seconds` of this thread.
-    pub fn frame(&mut self, cpu_seconds: Option<f32>) {
+    /// A frame begins; the one before took `times`.
+    pub fn frame(&mut self, times: FrameTimes) {
         let now = Instant::now();
         if let Some(last) = self.last {
-            let cpu = cpu_seconds.unwrap_or_default() * 1e3;
+            let [cpu, ui, picture] = [times.cpu, times.ui, times.picture].map(milliseconds);
             self.line(format_args!(
-                "frame,{:.3},{:.3},{cpu:.3}",
+                "frame,{:.3},{:.3},{cpu:.3},{ui:.3},{picture:.3}",
                 milliseconds(now - self.start),
                 milliseconds(now - last)
             ));
         }
         self.last = Some(now);
+    }
+
+    /// A command is carried out.
+    pub fn command(&mut self, name: &str) {
+        let since_start = milliseconds(self.start.elapsed());
+        self.line(format_args!("command,{since_start:.3},{name}"));
+        let _ = self.file.flush();
+    }
+
+    /// A backend has added samples to a render; said once for each.
+    pub fn tracing(&mut self, run: u64, backend: &str) {
+        let is_news = self.tracing.as_ref().is_none_or(|(old, name)| (*old, name.as_str()) != (run, backend));
+        if is_news {
+            self.tracing = Some((run, backend.to_owned()));
+            let since_start = milliseconds(self.start.elapsed());
+            self.line(format_args!("tracing,{since_start:.3},{run},{backend}"));
+            let _ = self.file.flush();
+        }
     }
 
     /// The user has changed the picture.

@@ -27,11 +27,14 @@ impl Window {
             if is_focused && is_plain && matches!(shortcut.logical_key, Key::Tab | Key::Space) {
                 continue;
             }
-            if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
+            // In a long frame a key can have been pressed more than once.
+            let presses = context
+                .input_mut(|input| input.count_and_consume_key(shortcut.modifiers, shortcut.logical_key));
+            if presses > 0 {
                 if command == Command::Panels {
                     context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
                 }
-                self.send(command);
+                (0..presses).for_each(|_| self.send(command));
                 if command.opens_dialog() {
                     // What is typed after it, be it within this frame, is for the dialog.
                     return;
@@ -48,7 +51,8 @@ impl Window {
         if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Y)) {
             self.send(Command::Redo);
         }
-        if also(Key::Escape) && self.is_full_screen {
+        // Escape leaves a control first, then the full screen.
+        if !self.had_focus && also(Key::Escape) && self.is_full_screen {
             self.send(Command::FullScreen);
         }
         self.fly(context);

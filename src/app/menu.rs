@@ -104,12 +104,7 @@ fn stage_list(window: &mut Window, ui: &mut Ui) {
 /// A command as a line of a menu.
 pub fn item(window: &mut Window, ui: &mut Ui, command: Command) {
     let useless = window.useless(command);
-    let mut button = Button::selectable(is_on(window, command), command.name());
-    if let Some(shortcut) = command.shortcut() {
-        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
-    }
-    let width = ui.available_width();
-    let button = button.min_size(egui::vec2(width, 0.0));
+    let button = line(ui, command, is_on(window, command));
     let mut response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
     if let Some(reason) = useless {
         response = response.on_disabled_hover_text(reason);
@@ -118,6 +113,20 @@ pub fn item(window: &mut Window, ui: &mut Ui, command: Command) {
         window.send(command);
         ui.close();
     }
+}
+
+/// A line with a command's name and keys.
+pub fn line(ui: &Ui, command: Command, is_chosen: bool) -> Button<'static> {
+    let visuals = ui.visuals();
+    let colour = if is_chosen { visuals.selection.stroke.color } else { visuals.weak_text_color() };
+    let button = Button::selectable(is_chosen, command.name());
+    let button = match command.shortcut() {
+        Some(shortcut) => {
+            button.shortcut_text(RichText::new(ui.ctx().format_shortcut(&shortcut)).color(colour))
+        }
+        None => button,
+    };
+    button.min_size(egui::vec2(ui.available_width(), 0.0))
 }
 
 fn is_on(window: &Window, command: Command) -> bool {

@@ -9,6 +9,7 @@ use super::remembered::Bookmark;
 use super::theme;
 use super::viewport::{Show, Zoom};
 use super::window::Window;
+use crate::stages::Shading;
 use eframe::egui::{self, ViewportCommand};
 
 impl Window {
@@ -35,21 +36,53 @@ impl Window {
 
     fn useless_show(&self, show: Show) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
+        let (settings, shading) = (self.document.settings, self.document.rules().shading);
         match show {
-            Show::Error if !self.document.settings.estimate_error => {
-                no("The film has one half; switch on Estimate error")
+            Show::Error if !settings.estimate_error => no("The film has one half; switch on Estimate error"),
+            Show::Difference => match &self.compare.reference {
+                None => no("Load a reference film first (File > Load reference film)"),
+                Some(film) if (film.width, film.height) != (settings.width, settings.height) => {
+                    let [width, height] = [film.width, film.height];
+                    Some(format!("The reference film is {width}x{height}; set the picture's size to that"))
+                }
+                Some(_) => None,
+            },
+            Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy
+                if shading == Shading::ImageGradient =>
+            {
+                no("This stage sends no rays: its picture is computed from the pixel's place alone")
             }
-            Show::Difference if self.compare.reference.is_none() => {
-                no("Load a reference film first (File > Load reference film)")
+            Show::Bounces if shading != Shading::Path => {
+                no("In this stage a ray sees no further than its first hit: each path is one ray")
             }
-            Show::Normals if !self.document.rules().are_finished() => {
-                no("This stage has rules of its own; the finished renderer's stages show normals")
+            Show::Occupancy if self.remembered.device == Device::Gpu => {
+                no("The graphics adapter traces without packets; switch to the CPU")
             }
-            Show::Albedo | Show::Bounces | Show::Occupancy => {
-                no("The tracers keep no such figure for each pixel yet")
+            Show::Occupancy if self.remembered.device == Device::Reference => {
+                no("The reference traces one ray at a time, without packets; switch to the CPU")
             }
             _ => None,
         }
+    }
+
+    /// Goes back to the picture if what is shown cannot be shown any more, and says why.
+    pub(super) fn leave_useless_show(&mut self) {
+        let show = self.viewport.show;
+        if let Some(reason) = self.useless_show(show) {
+            self.toasts.good(format!("No {} here: {}", show.name(), lower_first(&reason)));
+            self.choose_show(Show::Picture);
+        }
+    }
+
+    fn choose_show(&mut self, show: Show) {
+        self.viewport.show = show;
+        self.compare.show(&self.main, show);
+    }
+
+    /// One thing at a time is shown in the picture's place.
+    fn toggle_compare(&mut self, mode: Mode) {
+        self.choose_show(Show::Picture);
+        self.compare.toggle(mode);
     }
 
     pub(super) fn neighbour(&self, is_next: bool) -> Option<&'static crate::stages::Stage> {
@@ -63,6 +96,9 @@ impl Window {
     /// Carries a command out; one that can do nothing says why.
     pub fn perform(&mut self, context: &egui::Context, command: Command) {
         self.performed = Some(command);
+        if let Some(log) = &mut self.frame_log {
+            log.command(&command.name());
+        }
         self.end_move();
         if let Some(reason) = self.useless(command) {
             self.toasts.good(format!("{}: {}", command.name().trim_end_matches('…'), lower_first(&reason)));
@@ -99,11 +135,11 @@ impl Window {
                 self.toasts.good("Bookmarked; it is in the Camera panel");
             }
             Command::Show(show) => {
-                self.viewport.show = show;
-                self.compare.show(&self.main, show);
+                self.compare.mode = None;
+                self.choose_show(show);
             }
-            Command::Wipe => self.compare.toggle(Mode::Wipe),
-            Command::WipeDifference => self.compare.toggle(Mode::Difference),
+            Command::Wipe => self.toggle_compare(Mode::Wipe),
+            Command::WipeDifference => self.toggle_compare(Mode::Difference),
             Command::Fit => self.viewport.zoom = Zoom::Fit,
             Command::ActualSize => self.viewport.actual_size(),
             Command::ZoomIn => self.viewport.zoom_by(1.25),
@@ -121,14 +157,14 @@ impl Window {
                 theme::choose(context, theme);
             }
             Command::Pause => {
-                if self.is_working() {
-                    self.is_paused = true;
-                    self.main.pause();
-                    self.compare.pause();
-                } else if self.is_paused {
+                if self.is_paused {
                     self.is_paused = false;
                     self.main.resume();
                     self.compare.resume();
+                } else if self.is_working() {
+                    self.is_paused = true;
+                    self.main.pause();
+                    self.compare.pause();
                 }
             }
             Command::Restart => {

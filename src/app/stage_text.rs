@@ -3,6 +3,9 @@
 use super::command::Command;
 use super::compare::Mode;
 use super::inspector;
+use super::menu::item;
+use super::viewport::Show;
+use super::widgets::{About, control};
 use super::window::Window;
 use eframe::egui::{self, RichText, Ui};
 
@@ -37,14 +40,33 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
     ui.add_space(8.0);
     ui.separator();
     ui.add_space(4.0);
+    view_ui(window, ui);
     inspector::ui(window, ui);
+}
+
+/// What the picture's place shows.
+fn view_ui(window: &mut Window, ui: &mut Ui) {
+    let show = window.viewport.show;
+    control(ui, About::new("View", "What is shown in the picture's place (Ctrl+1 to Ctrl+7)"), |ui| {
+        egui::ComboBox::from_id_salt("view")
+            .width(ui.available_width())
+            .selected_text(show.name())
+            .show_ui(ui, |ui| Show::ALL.into_iter().for_each(|show| item(window, ui, Command::Show(show))))
+            .response
+    });
+    if show != Show::Picture {
+        ui.add(egui::Label::new(RichText::new(show.help()).small()).wrap());
+        ui.add_space(6.0);
+    }
 }
 
 fn compare_ui(window: &mut Window, ui: &mut Ui, stage: &'static crate::stages::Stage) {
     let weak = ui.visuals().weak_text_color();
     ui.label(RichText::new("Compare").small().color(weak));
     if let Some(other) = window.compare.other_of(stage) {
-        let with = format!("with {} {}", other.section, other.title);
+        let whose =
+            if window.compare.is_of_cameras(stage) { ", each with its own camera" } else { ", same camera" };
+        let with = format!("with {} {}{whose}", other.section, other.title);
         ui.add(egui::Label::new(with).wrap());
     }
     ui.horizontal_wrapped(|ui| {

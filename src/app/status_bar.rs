@@ -99,8 +99,9 @@ fn figures(status: &Status, window: &Window) -> Vec<(String, &'static str, &'sta
 
 fn phase_word(phase: &Phase, window: &Window) -> String {
     match phase {
+        Phase::Done(_) if window.is_paused() => "paused",
         Phase::Idle | Phase::Preparing => "preparing",
-        Phase::Tracing if window.is_paused => "paused",
+        Phase::Tracing if window.is_paused() => "paused",
         Phase::Tracing => "tracing",
         Phase::Paused => "paused",
         Phase::Done(_) => "done",

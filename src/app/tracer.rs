@@ -1,12 +1,12 @@
 //! The window's side of a progressive render: what is wanted, what runs, and the newest picture as a texture.
 
 use super::document::{Document, Stop};
+use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::progressive::{Phase, Plan, Progressive, Status, View, Work};
-use eframe::egui::{self, ColorImage, TextureHandle, TextureOptions};
+use eframe::egui;
 use std::io;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What a pass should take while someone moves something.
@@ -22,6 +22,9 @@ const PREVIEW_SECONDS: f64 = 0.025;
 /// A preview is no coarser than this.
 const DIVISOR_LIMIT: u32 = 8;
 
+/// How far a picture is traced that is asked for during a pause, samples per pixel.
+const PAUSED_SAMPLES: u64 = 8;
+
 /// The longest time between two pictures.
 const PICTURE_INTERVAL_LIMIT: Duration = Duration::from_millis(250);
 
@@ -32,6 +35,19 @@ pub struct Want<'a> {
     pub stop: Stop,
     /// Something moves: a coarse picture now is better than a fine one later.
     pub is_moving: bool,
+    /// What is new is traced so far that it can be seen, and then waits.
+    pub is_paused: bool,
+}
+
+impl Want<'_> {
+    fn plan(&self, is_held: bool) -> Plan {
+        let pass_target = if self.is_moving { MOVING_PASS } else { STILL_PASS };
+        let mut plan = self.stop.plan(pass_target);
+        if is_held {
+            plan.samples.end = plan.samples.end.min(PAUSED_SAMPLES);
+        }
+        plan
+    }
 }
 
 struct Started {
@@ -40,39 +56,20 @@ struct Started {
     run: u64,
     at: Instant,
     is_pictured: bool,
+    /// It began during a pause that has not ended since.
+    is_held: bool,
 }
 
 /// A picture on the screen.
 pub struct Shown {
-    image: Arc<ColorImage>,
-    texture: Option<(TextureHandle, TextureOptions)>,
+    /// Its texture.
+    pub texture: Texture,
     /// Samples per pixel.
     pub samples: u64,
     /// 1, or the preview's share of the size.
     pub divisor: u32,
     /// What it shows.
     pub document: Document,
-}
-
-impl Shown {
-    /// The texture, with pixels as squares or smoothed.
-    pub fn texture(&mut self, context: &egui::Context, options: TextureOptions) -> egui::TextureId {
-        match &mut self.texture {
-            Some((texture, old)) => {
-                if *old != options {
-                    texture.set(Arc::clone(&self.image), options);
-                    *old = options;
-                }
-                texture.id()
-            }
-            empty => {
-                let texture = context.load_texture("film", Arc::clone(&self.image), options);
-                let id = texture.id();
-                *empty = Some((texture, options));
-                id
-            }
-        }
-    }
 }
 
 /// A render thread and what is known of it.
@@ -178,15 +175,9 @@ impl Tracer {
         if let Some(picture) = self.progressive.newest_picture()
             && picture.run == started.run
         {
-            let size = [picture.width as usize, picture.height as usize];
-            let image = Arc::new(ColorImage::from_rgb(size, &picture.rgb8));
-            let texture = self.shown.take().and_then(|shown| shown.texture).map(|(mut texture, options)| {
-                texture.set(Arc::clone(&image), options);
-                (texture, options)
-            });
+            let earlier = self.shown.take().map(|shown| shown.texture);
             self.shown = Some(Shown {
-                image,
-                texture,
+                texture: Texture::new([picture.width, picture.height], &picture.rgb8, earlier),
                 samples: picture.samples_per_pixel,
                 divisor: started.divisor,
                 document: started.document.clone(),
@@ -238,7 +229,7 @@ impl Tracer {
 
     fn start(&mut self, want: &Want<'_>, divisor: u32, film: Option<Film>) -> Result<(), String> {
         let job = want.document.job(divisor).map_err(|error| error.to_string())?;
-        let plan = want.stop.plan(pass_target(want.is_moving));
+        let plan = want.plan(want.is_paused);
         let work = Work { film, ..Work::new(job, want.backend.clone(), plan.clone()) };
         self.progressive.start(work);
         self.progressive.ask_for_picture();
@@ -249,6 +240,7 @@ impl Tracer {
             run: self.status.run,
             at: Instant::now(),
             is_pictured: false,
+            is_held: want.is_paused,
         });
         self.backend = Some(want.backend.clone());
         self.plan = Some(plan);
@@ -261,7 +253,11 @@ impl Tracer {
             self.backend = Some(want.backend.clone());
             self.progressive.switch_backend(want.backend.clone());
         }
-        let plan = want.stop.plan(pass_target(want.is_moving));
+        let is_held = self.started.as_mut().is_some_and(|run| {
+            run.is_held &= want.is_paused;
+            run.is_held
+        });
+        let plan = want.plan(is_held);
         if self.plan.as_ref() != Some(&plan) {
             self.plan = Some(plan.clone());
             self.progressive.set_plan(plan);
@@ -276,8 +272,4 @@ impl Tracer {
             ((pixels / affordable).sqrt().ceil() as u32).clamp(1, DIVISOR_LIMIT)
         })
     }
-}
-
-fn pass_target(is_moving: bool) -> Duration {
-    if is_moving { MOVING_PASS } else { STILL_PASS }
 }

@@ -2,9 +2,10 @@
 
 use super::compare::Mode;
 use super::navigation;
-use super::theme;
 use super::window::Window;
-use crate::progressive::{HEAT_LIMITS, Phase, heat_colour};
+use crate::heat::{HeatScale, colour_at};
+use crate::layers::Layer;
+use crate::progressive::Phase;
 use eframe::egui::{
     self, Align2, Color32, CornerRadius, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, Sense, Stroke,
     TextStyle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
@@ -61,10 +62,15 @@ impl Show {
         match self {
             Show::Picture => "The film, as it will be saved",
             Show::Normals => "Which way surfaces face: x red, y green, z blue",
-            Show::Albedo => "What surfaces reflect, without light and shadow",
-            Show::Bounces => "How many rays a path takes: where the time goes",
-            Show::Error => "Standard error of each pixel's mean, linear radiance",
-            Show::Occupancy => "How full the packets of rays were",
+            Show::Albedo => {
+                "What surfaces reflect, without light and shadow; glass takes nothing and is white"
+            }
+            Show::Bounces => "How many rays a path takes, the camera's included: where the time goes",
+            Show::Error => "Standard error of each pixel's mean, linear radiance: where the noise is",
+            Show::Occupancy => {
+                "How full the packets were, tile by tile: a lane whose tile has no more work waits until the \
+                 last one there is done"
+            }
             Show::Difference => "Distance from a loaded film, linear radiance",
         }
     }
@@ -82,8 +88,24 @@ impl Show {
         }
     }
 
-    fn is_heat_map(self) -> bool {
-        matches!(self, Show::Error | Show::Difference)
+    /// The layer that it is, if it is one.
+    pub fn layer(self) -> Option<Layer> {
+        match self {
+            Show::Normals => Some(Layer::Normals),
+            Show::Albedo => Some(Layer::Albedo),
+            Show::Bounces => Some(Layer::RaysPerPath),
+            Show::Picture | Show::Error | Show::Occupancy | Show::Difference => None,
+        }
+    }
+
+    /// What its colours mean, if it is a heat map.
+    fn scale(self) -> Option<HeatScale> {
+        match self {
+            Show::Bounces => Some(HeatScale::RAYS),
+            Show::Error | Show::Difference => Some(HeatScale::ERROR),
+            Show::Occupancy => Some(HeatScale::OCCUPANCY),
+            Show::Picture | Show::Normals | Show::Albedo => None,
+        }
     }
 }
 
@@ -277,7 +299,8 @@ fn handle_mouse(window: &mut Window, ui: &Ui, response: &egui::Response, rect: R
         } else if response.clicked() && (modifiers.alt || is_alt_release(ui)) {
             let settings = window.document.settings;
             if let Some(pixel) = window.viewport.pixel_at(at, [settings.width, settings.height]) {
-                window.inspector.list_path(&window.document, pixel, 0);
+                let sender = window.messages.0.clone();
+                window.paths.list(&window.document, pixel, &sender, ui.ctx());
             }
         } else if response.clicked() {
             focus(window, place);
@@ -356,14 +379,15 @@ fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
         .tracer
         .as_mut()
         .and_then(|tracer| tracer.shown_mut())
-        .map(|shown| (shown.texture(context, options(shown.divisor, times)), shown.document.stage()));
-    let has_normals = window.compare.has_normals();
+        .map(|shown| (shown.texture.id(context, options(shown.divisor, times)), shown.document.stage()));
+    let layer = window.viewport.show.layer().and_then(|layer| window.layers.shown_mut(layer));
     let mut divisor = 1;
-    if let Some(shown) = window.main.shown_mut() {
+    if let Some(layer) = layer {
+        divisor = layer.divisor;
+        painter.image(layer.texture.id(context, options(divisor, times)), rect, WHOLE, Color32::WHITE);
+    } else if let Some(shown) = window.main.shown_mut() {
         divisor = shown.divisor;
-        let texture = shown.texture(context, options(divisor, times));
-        let texture = if has_normals { other.map_or(texture, |(other, _)| other) } else { texture };
-        painter.image(texture, rect, WHOLE, Color32::WHITE);
+        painter.image(shown.texture.id(context, options(divisor, times)), rect, WHOLE, Color32::WHITE);
     }
     let font = TextStyle::Body.resolve(ui.style());
     if window.compare.mode == Some(Mode::Wipe)
@@ -371,9 +395,10 @@ fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
     {
         paint_wipe(window, ui, &painter, rect, texture, stage, &font);
     }
-    let is_heat = window.compare.mode == Some(Mode::Difference) || window.viewport.show.is_heat_map();
-    if is_heat {
-        paint_scale(ui, &painter, rect.intersect(room), &font);
+    let is_difference = window.compare.mode == Some(Mode::Difference);
+    let scale = if is_difference { Some(HeatScale::ERROR) } else { window.viewport.show.scale() };
+    if let Some(scale) = scale {
+        paint_scale(ui, &painter, rect.intersect(room), &scale);
     }
     if divisor > 1 {
         let text = format!("preview 1/{divisor}");
@@ -387,7 +412,7 @@ fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
         let colour = ui.visuals().weak_text_color();
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font.clone(), colour);
     }
-    paint_path(window, ui, &painter, rect);
+    window.paths.paint(&window.document, ui, &painter, rect);
     paint_mark(window, ui, &painter, rect, &font);
 }
 
@@ -423,35 +448,36 @@ fn paint_wipe(
         badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, &name(mine), font);
     }
     if let Some(theirs) = stage {
-        badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, &name(theirs), font);
+        let is_of_cameras = window.document.stage().is_some_and(|mine| window.compare.is_of_cameras(mine));
+        let whose = if is_of_cameras { ", with its own camera" } else { "" };
+        badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, &format!("{}{whose}", name(theirs)), font);
     }
 }
 
-/// The heat map's colours with their values.
-fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, font: &FontId) {
+/// The colours of a heat map with what they mean.
+fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, scale: &HeatScale) {
     const STEPS: usize = 64;
-    let bar = Rect::from_min_size(rect.left_bottom() + vec2(16.0, -44.0), vec2(180.0, 10.0));
-    painter.rect_filled(
-        bar.expand2(vec2(26.0, 0.0))
-            .with_max_y(bar.bottom() + 26.0)
-            .with_min_y(bar.top() - 8.0)
-            .translate(vec2(14.0, 0.0)),
-        CornerRadius::same(6),
-        ui.visuals().panel_fill.gamma_multiply(0.9),
-    );
-    let bar = bar.translate(vec2(14.0, 0.0));
+    let font = TextStyle::Small.resolve(ui.style());
+    let row = font.size + 4.0;
+    let plate = vec2(228.0, 22.0 + 2.0 * row);
+    let plate = Rect::from_min_size(rect.left_bottom() + vec2(10.0, -plate.y - 10.0), plate);
+    painter.rect_filled(plate, CornerRadius::same(6), ui.visuals().panel_fill.gamma_multiply(0.9));
+    let weak = ui.visuals().weak_text_color();
+    painter.text(plate.min + vec2(24.0, 5.0), Align2::LEFT_TOP, scale.title, font.clone(), weak);
+    let bar = Rect::from_min_size(plate.min + vec2(24.0, 6.0 + row), vec2(plate.width() - 48.0, 9.0));
     for step in 0..STEPS {
-        let [red, green, blue] = heat_colour((step as f64 + 0.5) / STEPS as f64);
+        let [red, green, blue] = colour_at((step as f64 + 0.5) / STEPS as f64);
         let left = bar.left() + bar.width() * step as f32 / STEPS as f32;
-        let strip = Rect::from_min_size(pos2(left, bar.top()), vec2(bar.width() / STEPS as f32 + 0.5, 10.0));
-        painter.rect_filled(strip, 0.0, Color32::from_rgb(red, green, blue));
+        let size = vec2(bar.width() / STEPS as f32 + 0.5, bar.height());
+        painter.rect_filled(
+            Rect::from_min_size(pos2(left, bar.top()), size),
+            0.0,
+            Color32::from_rgb(red, green, blue),
+        );
     }
-    let decades = (HEAT_LIMITS[1] / HEAT_LIMITS[0]).log10().round() as usize;
-    for decade in 0..=decades {
-        let x = bar.left() + bar.width() * decade as f32 / decades as f32;
-        let value = HEAT_LIMITS[0] * 10_f64.powi(decade as i32);
-        let at = pos2(x, bar.bottom() + 3.0);
-        painter.text(at, Align2::CENTER_TOP, format!("{value}"), font.clone(), ui.visuals().text_color());
+    for (value, name) in scale.marks {
+        let at = pos2(bar.left() + bar.width() * scale.place(*value) as f32, bar.bottom() + 2.0);
+        painter.text(at, Align2::CENTER_TOP, name, font.clone(), ui.visuals().text_color());
     }
 }
 
@@ -481,24 +507,4 @@ fn paint_mark(window: &mut Window, ui: &Ui, painter: &egui::Painter, rect: Rect,
     painter.circle_filled(at, 1.5, Color32::WHITE);
     badge(ui, painter, at + vec2(14.0, 0.0), Align2::LEFT_CENTER, &mark.text, font);
     ui.ctx().request_repaint_after(MARK - age);
-}
-
-/// The listed path as lines over the picture.
-fn paint_path(window: &Window, ui: &Ui, painter: &egui::Painter, rect: Rect) {
-    let document = &window.document;
-    let place = |point| {
-        let [x, y] = document.camera.place_of(point, document.aspect())?;
-        Some(rect.min + vec2(x as f32, y as f32) * rect.size())
-    };
-    let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
-    let points: Vec<Pos2> = window.inspector.path_points().map_while(place).collect();
-    for pair in points.windows(2) {
-        painter.line_segment([pair[0], pair[1]], Stroke::new(3.0, Color32::from_black_alpha(120)));
-        painter.line_segment([pair[0], pair[1]], Stroke::new(1.5, theme::accent(ui)));
-    }
-    for (index, point) in points.iter().enumerate() {
-        painter.circle(*point, 4.0, theme::accent(ui), Stroke::new(1.0, Color32::BLACK));
-        let font = TextStyle::Small.resolve(ui.style());
-        painter.text(*point + vec2(6.0, -6.0), Align2::LEFT_BOTTOM, index + 1, font, Color32::WHITE);
-    }
 }

@@ -59,6 +59,16 @@ pub fn explained(response: Response, about: About<'_>) -> Response {
     }
 }
 
+/// Lets a control change a number; one that is none, which can be typed, is not taken.
+fn keep_finite(value: &mut f64, change: impl FnOnce(&mut f64) -> Response) -> Response {
+    let before = *value;
+    let response = change(value);
+    if !value.is_finite() {
+        *value = before;
+    }
+    response
+}
+
 /// A slider with its number.
 pub fn slider(
     ui: &mut Ui,
@@ -72,7 +82,7 @@ pub fn slider(
         ui.spacing_mut().slider_width =
             (ui.available_width() - digits - ui.spacing().item_spacing.x).max(40.0);
         ui.spacing_mut().interact_size.x = digits;
-        ui.add(change(Slider::new(value, range)))
+        keep_finite(value, |value| ui.add(change(Slider::new(value, range))))
     })
 }
 
@@ -84,12 +94,11 @@ pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, speed: f64) -> R
             let width = (ui.available_width() - 8.0) / 3.0;
             let mut all: Option<Response> = None;
             for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
-                let drag = DragValue::new(number)
-                    .speed(speed)
-                    .max_decimals(4)
-                    .range(-1e15..=1e15)
-                    .custom_formatter(|n, _| compact(n));
-                let response = ui.add_sized([width, ui.spacing().interact_size.y], drag);
+                let size = [width, ui.spacing().interact_size.y];
+                let response = keep_finite(number, |number| {
+                    let drag = DragValue::new(number).speed(speed).max_decimals(4).range(-1e15..=1e15);
+                    ui.add_sized(size, drag.custom_formatter(|n, _| compact(n)))
+                });
                 named(&response, &format!("{} {axis}", about.name));
                 let response = explained(response, about);
                 all = Some(match all {
@@ -102,6 +111,11 @@ pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, speed: f64) -> R
         .inner
         .unwrap_or_else(|| ui.label(""))
     })
+}
+
+/// A number to type or drag, which changes when it is done.
+pub fn limit(ui: &mut Ui, value: &mut f64, change: impl FnOnce(DragValue<'_>) -> DragValue<'_>) -> Response {
+    keep_finite(value, |value| ui.add(change(DragValue::new(value).update_while_editing(false))))
 }
 
 /// A whole number to type or drag.

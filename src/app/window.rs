@@ -6,12 +6,14 @@ use super::device::{Device, DeviceOptions};
 use super::dialogs::Dialog;
 use super::document::{Document, Origin, Source, Stop};
 use super::files::Message;
-use super::frame_log::FrameLog;
+use super::frame_log::{FrameLog, FrameTimes};
 use super::inspector::Inspector;
+use super::layers::Layers;
+use super::paths::Paths;
 use super::remembered::Remembered;
 use super::toasts::Toasts;
 use super::tracer::{Tracer, Want};
-use super::viewport::Viewport;
+use super::viewport::{Show, Viewport};
 use super::{menu, panels, plot, stage_text, status_bar, theme, viewport};
 use crate::backends::BackendChoice;
 use crate::cli::WindowOptions;
@@ -39,8 +41,10 @@ pub struct Window {
     pub(super) remembered: Remembered,
     pub(super) main: Tracer,
     pub(super) compare: Compare,
+    pub(super) layers: Layers,
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
+    pub(super) paths: Paths,
     pub(super) dialog: Option<Dialog>,
     pub(super) toasts: Toasts,
     pub(super) messages: (Sender<Message>, Receiver<Message>),
@@ -56,6 +60,7 @@ pub struct Window {
     pub(super) is_paused: bool,
     pub(super) is_full_screen: bool,
     pub(super) frame_log: Option<FrameLog>,
+    frame_times: FrameTimes,
     /// What was carried out last.
     pub(super) performed: Option<Command>,
     backend: BackendChoice,
@@ -64,6 +69,8 @@ pub struct Window {
     moved: Option<Instant>,
     /// The changes of this frame belong to a move that has begun before.
     is_in_gesture: bool,
+    /// A control or a menu had the keyboard in the frame before.
+    pub(super) had_focus: bool,
     told_messages: (u64, usize),
     is_dressed: bool,
 }
@@ -90,8 +97,10 @@ impl Window {
             undo: Undoer::default(),
             main: Tracer::new().context("cannot start the render thread")?,
             compare: Compare::default(),
+            layers: Layers::default(),
             viewport: Viewport::default(),
             inspector: Inspector::default(),
+            paths: Paths::default(),
             dialog: None,
             toasts: Toasts::default(),
             messages: std::sync::mpsc::channel(),
@@ -103,12 +112,14 @@ impl Window {
             is_paused: false,
             is_full_screen: false,
             frame_log,
+            frame_times: FrameTimes::default(),
             performed: None,
             device_options: DeviceOptions::of(&options.backend),
             backend: options.backend,
             last_document: document.clone(),
             moved: None,
             is_in_gesture: false,
+            had_focus: false,
             told_messages: (0, 0),
             is_dressed: false,
             remembered,
@@ -170,6 +181,36 @@ impl Window {
         self.compare.has_picture(self.document.stage())
     }
 
+    /// What the picture's place shows.
+    pub fn show(&self) -> Show {
+        self.viewport.show
+    }
+
+    /// Samples per pixel of the layer that is shown, at the picture's own size.
+    pub fn layer_samples(&self) -> u64 {
+        self.viewport.show.layer().map_or(0, |layer| self.layers.samples(layer))
+    }
+
+    /// Where the picture is drawn, points.
+    pub fn picture_rect(&self) -> egui::Rect {
+        self.viewport.rect
+    }
+
+    /// Whether the window takes the whole screen.
+    pub fn is_full_screen(&self) -> bool {
+        self.is_full_screen
+    }
+
+    /// How many paths of a pixel are listed.
+    pub fn listed_paths(&self) -> usize {
+        self.paths.len()
+    }
+
+    /// Whether tracing waits.
+    pub fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
     /// Asks for a command, to be carried out in the next frame.
     pub fn send(&mut self, command: Command) {
         self.queue.push(command);
@@ -186,6 +227,7 @@ impl Window {
         }
         self.seconds_before = Some(0.0);
         self.inspector.forget();
+        self.paths.forget();
     }
 
     /// Goes on with a film of the document that is shown now.
@@ -215,9 +257,17 @@ impl Window {
         let context = ui.ctx().clone();
         self.dress(&context);
         self.receive();
+        let begin = Instant::now();
         let is_pictured = self.main.poll(&context);
-        if is_pictured && let Some(log) = &mut self.frame_log {
-            log.pictured();
+        self.frame_times.picture = begin.elapsed();
+        if let Some(log) = &mut self.frame_log {
+            if is_pictured {
+                log.pictured();
+            }
+            let status = self.main.status();
+            if let Some(backend) = status.backend.as_ref().filter(|_| status.samples_per_pixel > 0) {
+                log.tracing(status.run, backend.name);
+            }
         }
         self.tell_messages();
         self.take_input(&context);
@@ -230,6 +280,9 @@ impl Window {
             self.perform(&context, command);
         }
         self.follow(&context);
+        self.had_focus = context.memory(|memory| memory.focused().is_some())
+            || egui::Popup::is_any_open(&context)
+            || self.dialog.is_some();
     }
 
     fn dress(&mut self, context: &egui::Context) {
@@ -298,7 +351,6 @@ impl Window {
                     self.note_move();
                 }
                 self.seconds_before = Some(0.0);
-                self.is_paused = false;
                 if let Some(log) = &mut self.frame_log {
                     log.changed();
                 }
@@ -314,20 +366,28 @@ impl Window {
             context.request_repaint_after(Duration::from_millis(40));
         }
         self.backend = self.chosen_backend();
-        let want =
-            Want { document: &self.document, backend: &self.backend, stop: self.document.stop, is_moving };
+        self.leave_useless_show();
+        let want = Want {
+            document: &self.document,
+            backend: &self.backend,
+            stop: self.document.stop,
+            is_moving,
+            is_paused: self.is_paused,
+        };
         let outcome = match self.pending_film.take() {
             Some(film) => self.main.go_on_with(film, &want),
             None => self.main.want(&want),
         };
         self.invalid = outcome.err();
         self.compare.follow(context, &want, &self.main, &self.messages.0);
+        self.layers.follow(context, self.viewport.show.layer(), &self.document, is_moving);
         if self.main.is_full(&self.document)
             && let Some((format, path)) = self.pending_save.take()
         {
             self.save(format, path);
         }
         self.inspector.follow(&self.document, &self.main, &self.messages.0, context);
+        self.paths.follow(&self.document, &self.messages.0, context);
     }
 
     /// The backend of the chosen device, with lanes and threads as chosen.
@@ -369,13 +429,13 @@ fn document_of(options: &WindowOptions) -> Document {
         (None, Some(path), _) => {
             // The file as it is, so that the flags are changes that can be reset.
             let recipe = crate::recipe::file::load(path).unwrap_or_else(|_| recipe.clone());
-            Origin { recipe, source: Source::File(path.clone()) }
+            Origin::new(recipe, Source::File(path.clone()))
         }
         (None, None, Some(builtin)) => {
             // A built-in scene that a stage shows is opened as that stage.
             match crate::stages::Stage::find(&builtin.name) {
                 Ok(stage) if stage.recipe().scene == builtin.scene => Origin::of_stage(stage),
-                _ => Origin { recipe: builtin, source: Source::Builtin },
+                _ => Origin::new(builtin, Source::Builtin),
             }
         }
         (None, None, None) => Origin::guess(recipe, None),
@@ -390,9 +450,12 @@ fn document_of(options: &WindowOptions) -> Document {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
         if let Some(log) = &mut self.frame_log {
-            log.frame(frame.info().cpu_usage);
+            let cpu = Duration::from_secs_f32(frame.info().cpu_usage.unwrap_or_default());
+            log.frame(FrameTimes { cpu, ..self.frame_times });
         }
+        let begin = Instant::now();
         self.ui_in(ui);
+        self.frame_times.ui = begin.elapsed();
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

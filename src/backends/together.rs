@@ -1,7 +1,7 @@
 //! Several renderers at once on one film: each takes samples as it finishes, the faster ones more.
 
 use crate::film::Film;
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
@@ -133,6 +133,10 @@ impl Renderer for Together {
 
     fn hierarchy_time(&self) -> Duration {
         self.members.iter().map(|member| member.renderer.hierarchy_time()).sum()
+    }
+
+    fn tile_occupancy(&self) -> Option<TileOccupancy> {
+        self.members.iter().find_map(|member| member.renderer.tile_occupancy())
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {

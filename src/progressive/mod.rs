@@ -16,7 +16,7 @@ pub use passes::PassSizer;
 pub use plan::{EndReason, NOISE_TARGET_FIRST_SAMPLES, Plan};
 pub use shared::Picture;
 pub use status::{Contribution, HistoryPoint, Phase, Status};
-pub use view::{HEAT_LIMITS, Reference, View, heat_colour, heat_place, standard_error};
+pub use view::{Reference, View, standard_error};
 
 use crate::backends::{self, BackendChoice, BackendError};
 use crate::film::Film;

@@ -1,6 +1,8 @@
 //! What of a film is shown: the picture itself, or something about it as a heat map.
 
 use crate::film::Film;
+use crate::heat::HeatScale;
+use crate::render::TileOccupancy;
 use crate::stages::Transfer;
 use std::sync::Arc;
 
@@ -14,6 +16,8 @@ pub enum View {
     StandardError,
     /// How far each pixel is from a reference. A film of another size is shown as a picture.
     Difference(Arc<Reference>),
+    /// How full the packets were, tile by tile; dark where there is no such figure.
+    Occupancy,
 }
 
 /// A picture to compare with, linear RGB.
@@ -34,36 +38,6 @@ impl Reference {
     }
 }
 
-/// The values at the two ends of a heat map, whose scale is logarithmic: linear radiance.
-pub const HEAT_LIMITS: [f64; 2] = [1e-4, 1.0];
-
-/// From dark to bright; evenly spaced.
-const HEAT_COLOURS: [[f64; 3]; 7] = [
-    [0.0, 0.0, 4.0],
-    [40.0, 11.0, 84.0],
-    [101.0, 21.0, 110.0],
-    [159.0, 42.0, 99.0],
-    [212.0, 72.0, 66.0],
-    [245.0, 125.0, 21.0],
-    [252.0, 255.0, 164.0],
-];
-
-/// The colour of a place on the heat map's scale, `0..=1`.
-pub fn heat_colour(place: f64) -> [u8; 3] {
-    let last = HEAT_COLOURS.len() - 1;
-    let along = place.clamp(0.0, 1.0) * last as f64;
-    let from = (along as usize).min(last - 1);
-    let share = along - from as f64;
-    let channel = |i: usize| HEAT_COLOURS[from][i] * (1.0 - share) + HEAT_COLOURS[from + 1][i] * share;
-    [0, 1, 2].map(|i| channel(i).round() as u8)
-}
-
-/// Where a value stands on the heat map's scale, `0..=1`.
-pub fn heat_place(value: f64) -> f64 {
-    let [low, high] = HEAT_LIMITS;
-    if value <= low { 0.0 } else { ((value / low).ln() / (high / low).ln()).min(1.0) }
-}
-
 /// The standard error of a pixel's mean, linear RGB, as the halves show it; see [`Film::error`].
 pub fn standard_error(film: &Film, pixel: usize) -> Option<[f64; 3]> {
     let [half_a, half_b] = film.halves() else { return None };
@@ -77,27 +51,43 @@ pub fn standard_error(film: &Film, pixel: usize) -> Option<[f64; 3]> {
 }
 
 impl View {
-    /// The film in this view, three bytes a pixel, top row first.
-    pub(super) fn resolve(&self, film: &Film, transfer: Transfer) -> Vec<u8> {
-        let pixels = 0..film.width() as usize * film.height() as usize;
+    /// What the colours mean; `None` where they are those of the picture.
+    pub fn scale(&self) -> Option<HeatScale> {
         match self {
-            View::StandardError => pixels
-                .flat_map(|pixel| {
-                    let error = standard_error(film, pixel).unwrap_or_default();
-                    heat_colour(heat_place(root_mean_square(error)))
-                })
-                .collect(),
+            View::Picture => None,
+            View::StandardError | View::Difference(_) => Some(HeatScale::ERROR),
+            View::Occupancy => Some(HeatScale::OCCUPANCY),
+        }
+    }
+
+    /// The film in this view, three bytes a pixel, top row first.
+    pub(super) fn resolve(
+        &self,
+        film: &Film,
+        transfer: Transfer,
+        occupancy: Option<&TileOccupancy>,
+    ) -> Vec<u8> {
+        let scale = self.scale().unwrap_or(HeatScale::ERROR);
+        let width = film.width() as usize;
+        let heat = |value: &dyn Fn(usize) -> f64| -> Vec<u8> {
+            (0..width * film.height() as usize).flat_map(|pixel| scale.colour(value(pixel))).collect()
+        };
+        match self {
+            View::StandardError => {
+                heat(&|pixel| root_mean_square(standard_error(film, pixel).unwrap_or_default()))
+            }
             View::Difference(reference)
                 if (reference.width, reference.height) == (film.width(), film.height()) =>
             {
-                pixels
-                    .flat_map(|pixel| {
-                        let (mean, other) = (film.mean(pixel), reference.means[pixel]);
-                        let difference = [0, 1, 2].map(|i| mean[i] - f64::from(other[i]));
-                        heat_colour(heat_place(root_mean_square(difference)))
-                    })
-                    .collect()
+                heat(&|pixel| {
+                    let (mean, other) = (film.mean(pixel), reference.means[pixel]);
+                    root_mean_square([0, 1, 2].map(|i| mean[i] - f64::from(other[i])))
+                })
             }
+            View::Occupancy => heat(&|pixel| {
+                let at = [(pixel % width) as u32, (pixel / width) as u32];
+                occupancy.and_then(|tiles| tiles.share_at(at)).unwrap_or(0.0)
+            }),
             View::Picture | View::Difference(_) => film.to_rgb8(transfer),
         }
     }
@@ -122,15 +112,6 @@ mod tests {
     }
 
     #[test]
-    fn the_scale_goes_from_dark_to_bright() {
-        assert_eq!(heat_colour(heat_place(0.0)), [0, 0, 4]);
-        assert_eq!(heat_colour(heat_place(1e9)), [252, 255, 164]);
-        let sum = |place| heat_colour(place).iter().map(|x| u32::from(*x)).sum::<u32>();
-        assert!((0..20).all(|i| sum(f64::from(i) / 20.0) <= sum(f64::from(i + 1) / 20.0)));
-        assert!((heat_place(1e-2) - 0.5).abs() < 1e-12);
-    }
-
-    #[test]
     fn the_error_of_a_pixel_is_that_of_the_film() {
         let film = film(1, 3);
         let error = standard_error(&film, 0).unwrap();
@@ -142,14 +123,25 @@ mod tests {
     #[test]
     fn views_show_what_they_say() {
         let film = film(1, 1);
-        assert_eq!(View::StandardError.resolve(&film, Transfer::Linear), heat_colour(0.0));
+        let shown = |view: View, tiles| view.resolve(&film, Transfer::Linear, tiles);
+        assert_eq!(shown(View::StandardError, None), HeatScale::ERROR.colour(0.0));
         let same = View::Difference(Arc::new(Reference::of(&film)));
-        assert_eq!(same.resolve(&film, Transfer::Linear), heat_colour(0.0));
+        assert_eq!(shown(same, None), HeatScale::ERROR.colour(0.0));
         let far = Reference { means: vec![[0.0; 3]], ..Reference::of(&film) };
-        assert_eq!(View::Difference(Arc::new(far)).resolve(&film, Transfer::Linear), heat_colour(1.0));
+        assert_eq!(shown(View::Difference(Arc::new(far)), None), HeatScale::ERROR.colour(1.0));
         let other_size = Reference { width: 2, height: 1, means: vec![[0.0; 3]; 2] };
         let picture = film.to_rgb8(Transfer::Linear);
-        assert_eq!(View::Difference(Arc::new(other_size)).resolve(&film, Transfer::Linear), picture);
-        assert_eq!(View::Picture.resolve(&film, Transfer::Linear), picture);
+        assert_eq!(shown(View::Difference(Arc::new(other_size)), None), picture);
+        assert_eq!(shown(View::Picture, None), picture);
+    }
+
+    #[test]
+    fn occupancy_is_shown_tile_by_tile() {
+        let tiles = TileOccupancy { side: 2, columns: 2, tiles: vec![[1, 4], [3, 3]] };
+        let shown = View::Occupancy.resolve(&Film::new(3, 1, 1), Transfer::Linear, Some(&tiles));
+        let [quarter, full] = [0.25, 1.0].map(|share| HeatScale::OCCUPANCY.colour(share));
+        assert_eq!(shown, [quarter, quarter, full].concat());
+        let nothing = View::Occupancy.resolve(&Film::new(1, 1, 1), Transfer::Linear, None);
+        assert_eq!(nothing, HeatScale::OCCUPANCY.colour(0.0));
     }
 }

@@ -143,7 +143,8 @@ impl Worker {
                 None => self.step(),
             }
             if let Some(render) = &mut self.render {
-                render.show(&self.shared, &self.view);
+                let renderer = self.backend.as_ref().map(|(_, renderer)| renderer.as_ref());
+                render.show(&self.shared, &self.view, renderer);
             }
         }
     }
@@ -549,17 +550,19 @@ impl Render {
     }
 
     /// Resolves a picture if someone waits for one that he has not seen.
-    fn show(&mut self, shared: &Shared, view: &View) {
+    fn show(&mut self, shared: &Shared, view: &View, renderer: Option<&dyn Renderer>) {
         let samples = self.film.sample_count();
         let is_new = self.pictured_samples != Some(samples);
         if is_new && samples > 0 && shared.is_picture_wanted() && !self.cancel.load(Ordering::Relaxed) {
             self.pictured_samples = Some(samples);
+            let renderer = renderer.filter(|_| *view == View::Occupancy);
+            let occupancy = renderer.and_then(Renderer::tile_occupancy);
             shared.put_picture(Picture {
                 run: self.status.run,
                 width: self.film.width(),
                 height: self.film.height(),
                 samples_per_pixel: samples,
-                rgb8: view.resolve(&self.film, self.job.rules().transfer),
+                rgb8: view.resolve(&self.film, self.job.rules().transfer, occupancy.as_ref()),
             });
         }
     }

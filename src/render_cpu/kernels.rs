@@ -121,7 +121,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
 }
 
 /// Records one path.
-pub type Recorder = Box<dyn Fn(&WideTables<f32>, [u32; 2], u64) -> PathRecord>;
+pub type Recorder = Box<dyn Fn(&WideTables<f32>, [u32; 2], u64) -> PathRecord + Send + Sync>;
 
 /// A recorder that computes the same bits as the kernels of `isa`.
 pub fn recorder(isa: Isa) -> Recorder {

@@ -16,10 +16,10 @@ pub mod work;
 
 pub use crate::record::{PathRecord, RecordedHit, RecordedRay};
 pub use isa::Isa;
-pub use record::record_path;
+pub use record::{PathRecorder, record_path};
 
 use crate::film::Film;
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use crate::tables::{Real, Tables};
 use kernels::Kernel;
 use rayon::prelude::*;
@@ -30,6 +30,10 @@ use tiles::{tile_side, tiles};
 use wide::WideTables;
 use work::{DealtBlock, TileStats, Work, dealing_order};
 
+/// By how much threads that give way are nicer: each step is a tenth of the time, where there is not enough.
+#[cfg(target_os = "linux")]
+const NICENESS: i32 = 5;
+
 /// What a CPU backend is to use; `None` leaves the choice to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CpuOptions {
@@ -39,6 +43,8 @@ pub struct CpuOptions {
     pub lanes: Option<usize>,
     /// Threads; by default one a core.
     pub threads: Option<usize>,
+    /// Whether the threads give way to whatever else wants to run, such as a window. On Linux.
+    pub gives_way: bool,
 }
 
 /// Options that this machine cannot meet.
@@ -89,6 +95,7 @@ pub struct CpuRenderer {
     threads: rayon::ThreadPool,
     job: Option<RenderJob>,
     prepared: Option<Prepared>,
+    occupancy: TileOccupancy,
 }
 
 impl CpuRenderer {
@@ -107,7 +114,7 @@ impl CpuRenderer {
         if !isa.lane_counts().contains(&lanes) {
             return Err(CpuError::Lanes { lanes, isa, available: isa.lane_counts().to_vec() });
         }
-        CpuRenderer::with_packets(Some((isa, lanes)), options.threads)
+        CpuRenderer::with_packets(Some((isa, lanes)), options.threads, options.gives_way)
     }
 
     /// The reference: scalar, `f64`, `threads` threads (`None`: one a core).
@@ -115,18 +122,40 @@ impl CpuRenderer {
     /// # Errors
     /// [`CpuError::Threads`].
     pub fn reference(threads: Option<usize>) -> Result<Self, CpuError> {
-        CpuRenderer::with_packets(None, threads)
+        CpuRenderer::with_packets(None, threads, false)
     }
 
-    fn with_packets(packets: Option<(Isa, usize)>, threads: Option<usize>) -> Result<Self, CpuError> {
+    fn with_packets(
+        packets: Option<(Isa, usize)>,
+        threads: Option<usize>,
+        gives_way: bool,
+    ) -> Result<Self, CpuError> {
         let threads = threads.unwrap_or(0);
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|index| format!("trace-{index}"))
+            .start_handler(move |_| {
+                if gives_way {
+                    give_way();
+                }
+            })
             .build()
-            .map(|threads| CpuRenderer { packets, threads, job: None, prepared: None })
+            .map(|threads| CpuRenderer {
+                packets,
+                threads,
+                job: None,
+                prepared: None,
+                occupancy: TileOccupancy::default(),
+            })
             .map_err(|error| CpuError::Threads { threads, reason: error.to_string() })
     }
+}
+
+/// Lowers the priority of this thread. Where that cannot be, it is as it was.
+fn give_way() {
+    // On Linux this is the thread's, not the process's.
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::nice(NICENESS);
 }
 
 impl Renderer for CpuRenderer {
@@ -162,10 +191,12 @@ impl Renderer for CpuRenderer {
         if self.prepared.is_some() && self.job.as_ref() == Some(job) {
             return Ok(());
         }
-        self.prepared = None;
-        self.prepared = Some(match self.packets {
-            Some((isa, lanes)) => {
-                let tables = Tables::new(job);
+        self.occupancy = TileOccupancy::default();
+        let before = self.job.take();
+        self.prepared = Some(match (self.packets, self.prepared.take()) {
+            (Some((isa, lanes)), old) => {
+                let old = if let Some(Prepared::Single(wide, _)) = old { Some(wide.tables) } else { None };
+                let tables = Tables::renewed(old.zip(before), job);
                 let needed = kernels::needs_of(&job.features(), &tables);
                 let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
@@ -173,12 +204,18 @@ impl Renderer for CpuRenderer {
                 })?;
                 Prepared::Single(Box::new(WideTables::new(tables)), kernel)
             }
-            None => {
-                Prepared::Double(Box::new(WideTables::new(Tables::new(job))), kernels::reference_kernel())
+            (None, old) => {
+                let old = if let Some(Prepared::Double(wide, _)) = old { Some(wide.tables) } else { None };
+                let tables = Tables::renewed(old.zip(before), job);
+                Prepared::Double(Box::new(WideTables::new(tables)), kernels::reference_kernel())
             }
         });
         self.job = Some(job.clone());
         Ok(())
+    }
+
+    fn tile_occupancy(&self) -> Option<TileOccupancy> {
+        self.packets.map(|_| self.occupancy.clone())
     }
 
     fn accumulate(
@@ -190,17 +227,20 @@ impl Renderer for CpuRenderer {
     ) -> Result<Stats, RenderError> {
         self.prepare(job, cancel)?;
         let start = Instant::now();
-        let tiles = match &self.prepared {
-            Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, &range, film, cancel),
-            Some(Prepared::Double(tables, kernel)) => self.trace(tables, kernel, &range, film, cancel),
-            None => TileStats::default(),
+        let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
+        let traced = match &self.prepared {
+            Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, side, &range, film, cancel),
+            Some(Prepared::Double(tables, kernel)) => self.trace(tables, kernel, side, &range, film, cancel),
+            None => Vec::new(),
         };
         if cancel.load(Ordering::Relaxed) {
             return Err(RenderError::Cancelled);
         }
         let pixels = u64::from(film.width()) * u64::from(film.height());
         let paths = pixels * range.end.saturating_sub(range.start);
+        let tiles = traced.iter().copied().fold(TileStats::default(), TileStats::plus);
         film.record(range, tiles.rejected)?;
+        self.note_occupancy(side, film.width().div_ceil(side), &traced);
         Ok(Stats {
             paths,
             rays: tiles.rays,
@@ -213,18 +253,18 @@ impl Renderer for CpuRenderer {
 }
 
 impl CpuRenderer {
-    /// Adds samples `range` to the film's sums.
+    /// Adds samples `range` to the film's sums. Returns the figures of each tile, row by row.
     fn trace<R: Real>(
         &self,
         tables: &WideTables<R>,
         kernel: &Kernel<R>,
+        side: u32,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> TileStats {
+    ) -> Vec<TileStats> {
         let settings = &tables.tables.settings;
         let blocks = DealtBlock::of_range(range.clone(), settings, tables.tables.block_limit);
-        let side = tile_side(settings.width, settings.height, self.threads.current_num_threads());
         let order = dealing_order(side);
         let tiles = tiles(film.halves_mut(), settings.width, side);
         self.threads.install(|| {
@@ -236,7 +276,79 @@ impl CpuRenderer {
                     }
                     kernel(tables, &mut Work::new(&blocks, &order, tile.corner, tile.height, tile.rows))
                 })
-                .reduce(TileStats::default, TileStats::plus)
+                .collect()
         })
+    }
+
+    fn note_occupancy(&mut self, side: u32, columns: u32, traced: &[TileStats]) {
+        let tiles = &mut self.occupancy.tiles;
+        tiles.resize(traced.len(), [0; 2]);
+        for (tile, stats) in tiles.iter_mut().zip(traced) {
+            tile[0] += stats.rays;
+            tile[1] += stats.offered_lanes;
+        }
+        (self.occupancy.side, self.occupancy.columns) = (side, columns);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+    use crate::scene::{Material, Sphere};
+    use glam::DVec3;
+
+    fn small(scene: &str) -> RenderJob {
+        let mut recipe = Recipe::find(scene).expect("a built-in scene");
+        (recipe.settings.width, recipe.settings.height) = (20, 12);
+        recipe.job().expect("valid")
+    }
+
+    fn film(renderer: &mut CpuRenderer, job: &RenderJob) -> Film {
+        let mut film = job.new_film();
+        renderer.accumulate(job, 0..4, &mut film, &AtomicBool::new(false)).expect("traced");
+        film
+    }
+
+    #[test]
+    fn a_hierarchy_outlives_the_move_of_a_camera_and_gives_the_same_film() {
+        let first = small("field:200");
+        let mut moved = *first.camera();
+        moved.look_from += DVec3::new(0.5, 0.25, -1.0);
+        moved.defocus_angle_degrees = 1.0;
+        let scene = first.scene();
+        let is_small_and_opaque =
+            |s: &&Sphere| s.radius < 10.0 && !matches!(scene.material_of(s), Material::Dielectric { .. });
+        let mut inside = *first.camera();
+        inside.look_from = scene.spheres.iter().find(is_small_and_opaque).expect("one").center;
+        let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
+        film(&mut renderer, &first);
+        assert_ne!(renderer.hierarchy_time(), Duration::ZERO);
+        for (camera, is_kept) in [(moved, true), (inside, false), (moved, false), (*first.camera(), true)] {
+            let job = first.seen_by(camera, *first.settings()).expect("valid");
+            let again = film(&mut renderer, &job);
+            assert_eq!(renderer.hierarchy_time() == Duration::ZERO, is_kept, "{camera:?}");
+            let mut fresh = CpuRenderer::new(CpuOptions::default()).expect("available");
+            assert!(again == film(&mut fresh, &job), "{camera:?}");
+        }
+    }
+
+    #[test]
+    fn the_tiles_add_up_to_the_picture() {
+        let job = small("three-spheres");
+        let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
+        let mut film = job.new_film();
+        let mut stats = Stats::default();
+        for range in [0..2, 2..4] {
+            stats.add(&renderer.accumulate(&job, range, &mut film, &AtomicBool::new(false)).expect("traced"));
+        }
+        let occupancy = renderer.tile_occupancy().expect("packets");
+        let sum = |which: usize| occupancy.tiles.iter().map(|tile| tile[which]).sum::<u64>();
+        assert_eq!([sum(0), sum(1)], [stats.busy_lanes, stats.offered_lanes]);
+        assert!(occupancy.share_at([19, 11]).is_some_and(|share| share > 0.0 && share <= 1.0));
+        assert_eq!(occupancy.share_at([0, 4000]), None);
+        renderer.prepare(&small("metals"), &AtomicBool::new(false)).expect("prepared");
+        assert!(renderer.tile_occupancy().expect("packets").tiles.is_empty());
+        assert_eq!(CpuRenderer::reference(Some(1)).expect("available").tile_occupancy(), None);
     }
 }

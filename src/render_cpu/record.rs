@@ -2,7 +2,7 @@
 //! backends apart.
 
 use super::Isa;
-use super::kernels::recorder;
+use super::kernels::{Recorder, recorder};
 use super::lanes::{Lanes, V3, Wide};
 use super::path::SinglePath;
 use super::sphere::NONE;
@@ -15,10 +15,36 @@ use crate::tables::{Real, Tables};
 
 /// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as `isa` traces it; `None`: in
 /// `f64`.
-pub fn record_path(job: &RenderJob, [x, y]: [u32; 2], index: u64, isa: Option<Isa>) -> PathRecord {
+pub fn record_path(job: &RenderJob, pixel: [u32; 2], index: u64, isa: Option<Isa>) -> PathRecord {
     match isa {
-        Some(isa) => recorder(isa)(&WideTables::new(Tables::new(job)), [x, y], index),
-        None => record(super::lanes::Reference, &WideTables::new(Tables::new(job)), [x, y], index),
+        Some(isa) => recorder(isa)(&WideTables::new(Tables::new(job)), pixel, index),
+        None => record(super::lanes::Reference, &WideTables::new(Tables::new(job)), pixel, index),
+    }
+}
+
+/// Records many paths of one job after the other, or from several threads.
+pub struct PathRecorder {
+    job: RenderJob,
+    tables: WideTables<f32>,
+    recorder: Recorder,
+}
+
+impl PathRecorder {
+    /// A recorder of what `isa` traces. From one of an earlier job it takes what is still of use.
+    pub fn new(job: &RenderJob, isa: Isa, earlier: Option<PathRecorder>) -> Self {
+        let old = earlier.map(|earlier| (earlier.tables.tables, earlier.job));
+        let tables = WideTables::new(Tables::renewed(old, job));
+        PathRecorder { tables, recorder: recorder(isa), job: job.clone() }
+    }
+
+    /// What is recorded.
+    pub fn job(&self) -> &RenderJob {
+        &self.job
+    }
+
+    /// Sample `index` of a pixel, which must lie in the picture.
+    pub fn record(&self, pixel: [u32; 2], index: u64) -> PathRecord {
+        (self.recorder)(&self.tables, pixel, index)
     }
 }
 

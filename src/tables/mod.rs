@@ -62,6 +62,43 @@ pub struct Tables<R> {
     pub settings: RenderSettings,
     /// The rules in force.
     pub rules: Rules,
+    groups: Groups,
+}
+
+/// Which spheres are intersected how: indices in the scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Groups {
+    opaque: Vec<u32>,
+    two_root: Vec<u32>,
+    anchored: Vec<u32>,
+}
+
+impl Groups {
+    fn of(job: &RenderJob) -> Self {
+        let (scene, camera) = (job.scene(), job.camera());
+        let exact = job.rules().surface == Surface::Exact;
+        let scale = smallest_length(scene, camera);
+        let is_anchored =
+            |s: &Sphere| exact && f64::from(f32::EPSILON) / 2.0 * s.radius > ANCHOR_SHARE * scale;
+        let lens_radius =
+            camera.effective_focus_distance() * (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
+        let needs_both_roots = |s: &Sphere| {
+            matches!(scene.material_of(s), Material::Dielectric { .. })
+                || holds_the_eye(s, camera, lens_radius)
+        };
+        let mut groups = Groups::default();
+        for (index, sphere) in scene.spheres.iter().enumerate() {
+            let group = if is_anchored(sphere) {
+                &mut groups.anchored
+            } else if needs_both_roots(sphere) {
+                &mut groups.two_root
+            } else {
+                &mut groups.opaque
+            };
+            group.push(index as u32);
+        }
+        groups
+    }
 }
 
 /// A sphere far larger than the scene: `anchor` is a point on it near the scene, `inward` the unit vector from
@@ -143,37 +180,45 @@ impl<R: Copy> CameraTable<R> {
 impl<R: Real> Tables<R> {
     /// Sorts, anchors and rounds the scene, and builds the hierarchy if one is worth it.
     pub fn new(job: &RenderJob) -> Self {
-        let (scene, camera, rules) = (job.scene(), job.camera(), *job.rules());
-        let exact = rules.surface == Surface::Exact;
-        let scale = smallest_length(scene, camera);
-        let is_anchored =
-            |s: &Sphere| exact && f64::from(f32::EPSILON) / 2.0 * s.radius > ANCHOR_SHARE * scale;
-        let needs_both_roots = |s: &Sphere| {
-            matches!(scene.material_of(s), Material::Dielectric { .. }) || holds_the_eye(s, camera)
-        };
-        let (mut opaque, mut two_root, mut anchored) = (Vec::new(), Vec::new(), Vec::new());
-        for (index, sphere) in scene.spheres.iter().enumerate() {
-            let group = if is_anchored(sphere) {
-                &mut anchored
-            } else if needs_both_roots(sphere) {
-                &mut two_root
-            } else {
-                &mut opaque
-            };
-            group.push(index as u32);
+        let groups = Groups::of(job);
+        let has_hierarchy = job.rules().surface == Surface::Exact
+            && groups.opaque.len() + groups.two_root.len() >= HIERARCHY_MIN_SPHERES;
+        if !has_hierarchy {
+            return Tables::from_groups(job, &groups.opaque, &groups.two_root, &groups.anchored);
         }
-        let mut hierarchy = None;
         let begin = Instant::now();
-        if exact && opaque.len() + two_root.len() >= HIERARCHY_MIN_SPHERES {
-            opaque.append(&mut two_root);
-            let spheres: Vec<Sphere> = opaque.iter().map(|i| scene.spheres[*i as usize]).collect();
-            let (built, order) = Hierarchy::build(&spheres);
-            two_root = order.iter().map(|i| opaque[*i as usize]).collect();
-            opaque.clear();
-            hierarchy = Some(built);
+        let all: Vec<u32> = groups.opaque.iter().chain(&groups.two_root).copied().collect();
+        let spheres: Vec<Sphere> = all.iter().map(|i| job.scene().spheres[*i as usize]).collect();
+        let (hierarchy, order) = Hierarchy::build(&spheres);
+        let two_root: Vec<u32> = order.iter().map(|i| all[*i as usize]).collect();
+        let hierarchy_time = begin.elapsed();
+        let tables = Tables::from_groups(job, &[], &two_root, &groups.anchored);
+        Tables { hierarchy: Some(hierarchy), hierarchy_time, groups, ..tables }
+    }
+
+    /// The tables of `job`; where there are those of a job that differs in camera and settings alone, the
+    /// hierarchy is not built again.
+    pub fn renewed(old: Option<(Self, RenderJob)>, job: &RenderJob) -> Self {
+        if let Some((mut tables, before)) = old
+            && tables.follow(&before, job)
+        {
+            return tables;
         }
-        let hierarchy_time = if hierarchy.is_some() { begin.elapsed() } else { Duration::ZERO };
-        Tables { hierarchy, hierarchy_time, ..Tables::from_groups(job, &opaque, &two_root, &anchored) }
+        Tables::new(job)
+    }
+
+    /// Makes the tables of `before` those of `job`, if the hierarchy would be the same; else does nothing and
+    /// returns false.
+    fn follow(&mut self, before: &RenderJob, job: &RenderJob) -> bool {
+        let is_same = self.hierarchy.is_some() && job.shares_scene_with(before);
+        if !is_same || Groups::of(job) != self.groups {
+            return false;
+        }
+        let settings = *job.settings();
+        self.camera = CameraTable::new(job.camera(), settings.width, settings.height);
+        self.settings = settings;
+        self.hierarchy_time = Duration::ZERO;
+        true
     }
 
     /// The spheres of `two_root` as the scene has them. The tables must be the job's.
@@ -216,6 +261,7 @@ impl<R: Real> Tables<R> {
             block_limit: block_limit(scene.sky.bottom.max(scene.sky.top).max_element()),
             settings,
             rules: *job.rules(),
+            groups: Groups::default(),
         }
     }
 }
@@ -277,9 +323,7 @@ fn smallest_length(scene: &Scene, camera: &Camera) -> f64 {
 }
 
 /// Whether a ray from the camera can start inside the sphere.
-fn holds_the_eye(sphere: &Sphere, camera: &Camera) -> bool {
-    let lens_radius =
-        camera.effective_focus_distance() * (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
+fn holds_the_eye(sphere: &Sphere, camera: &Camera, lens_radius: f64) -> bool {
     // The margin is far above what rounding can move the eye by.
     let reach = sphere.radius * (1.0 + 1e-5) + lens_radius * (1.0 + 1e-5);
     camera.look_from.distance(sphere.center) <= reach + 1e-6 * camera.look_from.abs().max_element()

@@ -156,7 +156,8 @@ pub fn widest() -> CpuRenderer {
 }
 
 pub fn packets(isa: Isa, lanes: usize) -> CpuRenderer {
-    CpuRenderer::new(CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: THREADS }).unwrap()
+    CpuRenderer::new(CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: THREADS, gives_way: false })
+        .unwrap()
 }
 
 /// Scalar `f32` without fused multiply and add: every processor has it.

@@ -12,7 +12,7 @@ const MOUSE: [(&str, &str); 10] = [
     ("Middle drag, Shift and drag", "move the picture"),
     ("Click", "focus on what is there"),
     ("Double click", "look at what is there"),
-    ("Alt and click", "show what a ray meets"),
+    ("Alt and click", "list the paths of a pixel, bounce by bounce"),
     ("W A S D, Q E", "fly; with Shift fast"),
     ("F6", "go to the controls with the keyboard"),
 ];

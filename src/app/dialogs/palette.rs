@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use crate::app::command::Command;
+use crate::app::menu::line;
 use crate::app::window::Window;
 use eframe::egui::{self, Key, Modifiers, RichText, Ui};
 
@@ -69,11 +70,7 @@ impl Palette {
             }
             for (index, command) in commands.iter().enumerate() {
                 let useless = window.useless(*command);
-                let mut button = egui::Button::selectable(index == self.chosen, command.name());
-                if let Some(shortcut) = command.shortcut() {
-                    button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
-                }
-                let button = button.min_size(egui::vec2(ui.available_width(), 0.0));
+                let button = line(ui, *command, index == self.chosen);
                 let response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
                 let response = response.on_disabled_hover_text(useless.unwrap_or_default());
                 if index == self.chosen && (up || down) {

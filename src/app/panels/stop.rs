@@ -2,7 +2,7 @@
 
 use super::Group;
 use crate::app::document::Stop;
-use crate::app::widgets::{About, check};
+use crate::app::widgets::{About, check, limit};
 use crate::app::window::Window;
 use crate::render::SAMPLE_LIMIT;
 use eframe::egui::{DragValue, Ui};
@@ -46,14 +46,7 @@ fn ui(window: &mut Window, ui: &mut Ui) {
     let mut has_seconds = stop.seconds.is_some();
     let mut seconds = stop.seconds.unwrap_or(10.0);
     row(ui, "Time", "Seconds of tracing", None, &mut has_seconds, |ui| {
-        ui.add(
-            DragValue::new(&mut seconds)
-                .range(0.1..=1e6)
-                .speed(0.5)
-                .max_decimals(1)
-                .suffix(" s")
-                .update_while_editing(false),
-        )
+        limit(ui, &mut seconds, |drag| drag.range(0.1..=1e6).speed(0.5).max_decimals(1).suffix(" s"))
     });
     stop.seconds = has_seconds.then_some(seconds);
 
@@ -61,13 +54,7 @@ fn ui(window: &mut Window, ui: &mut Ui) {
     let mut noise = stop.noise.unwrap_or(Stop::NOISE);
     let help = "Estimated error: root of the mean square over pixels and channels, linear radiance";
     row(ui, "Error", help, one_half, &mut has_noise, |ui| {
-        ui.add(
-            DragValue::new(&mut noise)
-                .range(1e-6..=1.0)
-                .speed(1e-4)
-                .max_decimals(6)
-                .update_while_editing(false),
-        )
+        limit(ui, &mut noise, |drag| drag.range(1e-6..=1.0).speed(1e-4).max_decimals(6))
     });
     stop.noise = has_noise.then_some(noise);
 }

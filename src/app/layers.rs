@@ -1,0 +1,240 @@
+//! Layers of the picture, traced on a thread of their own: a coarse one at once, then finer ones.
+
+use super::document::Document;
+use super::texture::Texture;
+use crate::film::to_byte;
+use crate::heat::HeatScale;
+use crate::layers::{Layer, LayerImage};
+use crate::render::{JobError, RenderJob, RenderSettings};
+use crate::render_cpu::{Isa, PathRecorder};
+use crate::stages::Transfer;
+use eframe::egui::Context;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Samples per pixel of a finished layer.
+const SAMPLES: u64 = 16;
+
+/// Most pixels of the coarse layer, which has one sample each.
+const COARSE_PIXELS: u32 = 20_000;
+
+/// What the thread is to trace.
+struct Order {
+    number: u64,
+    layer: Layer,
+    job: RenderJob,
+    is_coarse: bool,
+    cancel: Arc<AtomicBool>,
+}
+
+/// What the thread has traced.
+struct Traced {
+    number: u64,
+    image: LayerImage,
+    rgb8: Vec<u8>,
+    divisor: u32,
+}
+
+type Slot = Arc<Mutex<Option<Traced>>>;
+
+struct Ordered {
+    layer: Layer,
+    document: Document,
+    is_coarse: bool,
+    is_pictured: bool,
+}
+
+/// A layer on the screen.
+pub struct ShownLayer {
+    /// Its picture.
+    pub texture: Texture,
+    /// 1, or by how much it is smaller than the picture.
+    pub divisor: u32,
+    layer: Layer,
+    image: LayerImage,
+}
+
+/// The layer that is looked at.
+#[derive(Default)]
+pub struct Layers {
+    orders: Option<Sender<Order>>,
+    slot: Slot,
+    number: u64,
+    ordered: Option<Ordered>,
+    cancel: Arc<AtomicBool>,
+    shown: Option<ShownLayer>,
+}
+
+impl Layers {
+    /// What there is of a layer.
+    pub fn shown_mut(&mut self, layer: Layer) -> Option<&mut ShownLayer> {
+        self.shown.as_mut().filter(|shown| shown.layer == layer)
+    }
+
+    /// The layer and its mean at a pixel of the whole picture.
+    pub fn value_at(&self, [x, y]: [u32; 2]) -> Option<(Layer, [f64; 3])> {
+        let shown = self.shown.as_ref()?;
+        let (image, at) = (&shown.image, [x / shown.divisor, y / shown.divisor]);
+        let is_inside = at[0] < image.width && at[1] < image.height;
+        is_inside.then(|| (shown.layer, image.mean(at)))
+    }
+
+    /// Samples per pixel of a layer at the picture's own size; 0 while there is none.
+    pub fn samples(&self, layer: Layer) -> u64 {
+        let shown = self.shown.as_ref().filter(|shown| shown.layer == layer && shown.divisor == 1);
+        shown.map_or(0, |shown| shown.image.samples)
+    }
+
+    /// Has `layer` of the document traced, and fetches what is new of it.
+    pub fn follow(&mut self, context: &Context, layer: Option<Layer>, document: &Document, is_moving: bool) {
+        let Some(layer) = layer else {
+            if self.ordered.take().is_some() {
+                self.cancel.store(true, Ordering::Relaxed);
+                self.shown = None;
+            }
+            return;
+        };
+        self.fetch();
+        let is_at_it = self.ordered.as_ref().is_some_and(|ordered| {
+            ordered.layer == layer
+                && ordered.document.has_same_film(document)
+                && (is_moving || !ordered.is_coarse)
+        });
+        // Before a coarse one has been seen, another would only keep it from being so.
+        let is_unseen =
+            self.ordered.as_ref().is_some_and(|ordered| ordered.layer == layer && !ordered.is_pictured);
+        let has_to_wait = is_moving && is_unseen;
+        if !is_at_it && !has_to_wait {
+            // A document that cannot be rendered says so elsewhere.
+            let _ = self.order(context, layer, document, is_moving);
+        }
+    }
+
+    fn fetch(&mut self) {
+        let traced = self.slot.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let Some(Traced { number, image, rgb8, divisor }) = traced else { return };
+        if let Some(ordered) = &mut self.ordered
+            && number == self.number
+        {
+            ordered.is_pictured = true;
+            let earlier = self.shown.take().map(|shown| shown.texture);
+            let texture = Texture::new([image.width, image.height], &rgb8, earlier);
+            self.shown = Some(ShownLayer { texture, divisor, layer: ordered.layer, image });
+        }
+    }
+
+    fn order(
+        &mut self,
+        context: &Context,
+        layer: Layer,
+        document: &Document,
+        is_coarse: bool,
+    ) -> Result<(), JobError> {
+        let job = document.job(1)?;
+        self.cancel.store(true, Ordering::Relaxed);
+        self.cancel = Arc::default();
+        self.number += 1;
+        let document = document.clone();
+        self.ordered = Some(Ordered { layer, document, is_coarse, is_pictured: false });
+        let cancel = Arc::clone(&self.cancel);
+        let order = Order { number: self.number, layer, job, is_coarse, cancel };
+        let slot = &self.slot;
+        let orders = self.orders.get_or_insert_with(|| start_thread(Arc::clone(slot), context.clone()));
+        // Without a thread there are no layers, and nothing else is lost.
+        let _ = orders.send(order);
+        Ok(())
+    }
+}
+
+impl Drop for Layers {
+    fn drop(&mut self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+}
+
+fn start_thread(slot: Slot, context: Context) -> Sender<Order> {
+    let (sender, orders): (_, Receiver<Order>) = channel();
+    let work = move || {
+        let mut recorder = None;
+        while let Ok(mut order) = orders.recv() {
+            while let Ok(newer) = orders.try_recv() {
+                order = newer;
+            }
+            // The jobs differ from one that has been checked in size and depth alone.
+            let _ = order.trace(&mut recorder, &slot, &context);
+        }
+    };
+    let _ = std::thread::Builder::new().name("layers".into()).spawn(work);
+    sender
+}
+
+impl Order {
+    fn trace(
+        &self,
+        recorder: &mut Option<PathRecorder>,
+        slot: &Slot,
+        context: &Context,
+    ) -> Result<(), JobError> {
+        let job = self.layer.job(&self.job)?;
+        let settings = *job.settings();
+        let pixels = f64::from(settings.width) * f64::from(settings.height);
+        let divisor = (pixels / f64::from(COARSE_PIXELS)).sqrt().ceil().max(1.0) as u32;
+        let coarse = RenderSettings {
+            width: settings.width.div_ceil(divisor),
+            height: settings.height.div_ceil(divisor),
+            ..settings
+        };
+        let coarse = job.seen_by(*job.camera(), coarse)?;
+        let is_whole = self.refine(recorder, &coarse, divisor, 1, slot, context);
+        if is_whole && !self.is_coarse {
+            self.refine(recorder, &job, 1, SAMPLES, slot, context);
+        }
+        Ok(())
+    }
+
+    /// Adds samples, and shows them when there are twice as many as before. Returns false if it was cancelled.
+    fn refine(
+        &self,
+        recorder: &mut Option<PathRecorder>,
+        job: &RenderJob,
+        divisor: u32,
+        samples: u64,
+        slot: &Slot,
+        context: &Context,
+    ) -> bool {
+        let isa = Isa::available().into_iter().max().unwrap_or(Isa::Baseline);
+        let earlier = recorder.take();
+        let paths = recorder.insert(PathRecorder::new(job, isa, earlier));
+        let mut image = LayerImage::new(self.layer, job);
+        for index in 0..samples {
+            if !image.add_sample(paths, &self.cancel) {
+                return false;
+            }
+            if (index + 1).is_power_of_two() {
+                let rgb8 = coloured(self.layer, &image, job.rules().transfer);
+                let traced = Traced { number: self.number, image: image.clone(), rgb8, divisor };
+                *slot.lock().unwrap_or_else(PoisonError::into_inner) = Some(traced);
+                context.request_repaint();
+            }
+        }
+        true
+    }
+}
+
+/// Three bytes a pixel.
+fn coloured(layer: Layer, image: &LayerImage, transfer: Transfer) -> Vec<u8> {
+    let mut rgb8 = Vec::with_capacity(image.width as usize * image.height as usize * 3);
+    for y in 0..image.height {
+        for x in 0..image.width {
+            let mean = image.mean([x, y]);
+            let byte = |v, transfer| to_byte(v, transfer, y as usize, image.height as usize);
+            rgb8.extend(match layer {
+                Layer::Normals => mean.map(|v| byte(v, Transfer::Linear)),
+                Layer::Albedo => mean.map(|v| byte(v, transfer)),
+                Layer::RaysPerPath => HeatScale::RAYS.colour(mean[0]),
+            });
+        }
+    }
+    rgb8
+}

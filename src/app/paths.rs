@@ -1,0 +1,307 @@
+//! The paths of one pixel, listed ray by ray and drawn as lines over the picture.
+
+use super::document::Document;
+use super::files::Message;
+use super::theme;
+use super::widgets::compact;
+use crate::render_cpu::{Isa, PathRecord, PathRecorder, RecordedRay};
+use crate::scene::{Camera, Scene};
+use eframe::egui::{
+    self, Align2, Color32, DragValue, Painter, Pos2, Rect, RichText, Stroke, TextStyle, Ui, vec2,
+};
+use glam::DVec3;
+use std::sync::mpsc::Sender;
+
+/// How many paths can be listed at once.
+const COUNT_LIMIT: u64 = 64;
+
+/// How far a ray to the sky is drawn, scene units.
+const SKY_LENGTH: f64 = 2.0;
+
+/// What is in front of the eye by less than this share of the view's length is not drawn.
+const NEAR_SHARE: f64 = 1e-4;
+
+/// Paths of a pixel that another thread has recorded.
+pub struct Listed {
+    number: u64,
+    pixel: [u32; 2],
+    /// What was shown then.
+    document: Document,
+    /// Of samples 0, 1, 2 and so on.
+    records: Vec<PathRecord>,
+}
+
+/// The list of paths.
+pub struct Paths {
+    count: u64,
+    /// Of the newest question.
+    number: u64,
+    is_waiting: bool,
+    listed: Option<Listed>,
+    /// The sample whose path stands out.
+    selected: Option<usize>,
+    /// It has just been listed and is to be scrolled to.
+    is_new: bool,
+}
+
+impl Default for Paths {
+    fn default() -> Self {
+        Paths { count: 16, number: 0, is_waiting: false, listed: None, selected: None, is_new: false }
+    }
+}
+
+impl Paths {
+    /// Lists the paths of a pixel; another thread records them.
+    pub fn list(
+        &mut self,
+        document: &Document,
+        pixel: [u32; 2],
+        sender: &Sender<Message>,
+        context: &egui::Context,
+    ) {
+        // A document that cannot be rendered says so elsewhere.
+        let Ok(job) = document.job(1) else { return };
+        self.number += 1;
+        let (number, count, document) = (self.number, self.count, document.clone());
+        let (sender, context) = (sender.clone(), context.clone());
+        let record = move || {
+            let isa = Isa::available().into_iter().max().unwrap_or(Isa::Baseline);
+            let recorder = PathRecorder::new(&job, isa, None);
+            let records = (0..count).map(|sample| recorder.record(pixel, sample)).collect();
+            // A window that has been closed wants no answer.
+            let _ = sender.send(Message::Paths(Listed { number, pixel, document, records }));
+            context.request_repaint();
+        };
+        self.is_waiting = std::thread::Builder::new().name("paths".into()).spawn(record).is_ok();
+    }
+
+    /// They have been recorded.
+    pub fn learn(&mut self, listed: Listed) {
+        if listed.number == self.number {
+            self.is_waiting = false;
+            self.is_new = self.listed.as_ref().is_none_or(|old| old.pixel != listed.pixel);
+            let last = listed.records.len().saturating_sub(1);
+            self.selected = if self.is_new { Some(0) } else { self.selected.map(|index| index.min(last)) };
+            self.listed = Some(listed);
+        }
+    }
+
+    /// Takes them off the picture.
+    pub fn forget(&mut self) {
+        self.number += 1;
+        (self.listed, self.is_waiting) = (None, false);
+    }
+
+    /// Lists them anew if other numbers make other paths; a camera that moves looks at those there are.
+    pub fn follow(&mut self, document: &Document, sender: &Sender<Message>, context: &egui::Context) {
+        let Some(listed) = &self.listed else { return };
+        if self.is_waiting || listed.document.settings == document.settings {
+            return;
+        }
+        let [x, y] = listed.pixel;
+        if x < document.settings.width && y < document.settings.height {
+            let before = Document { camera: listed.document.camera, ..document.clone() };
+            self.list(&before, [x, y], sender, context);
+        } else {
+            self.forget();
+        }
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.listed.as_ref().map_or(0, |listed| listed.records.len())
+    }
+
+    /// Draws all paths, the selected one last and strongest.
+    pub fn paint(&self, document: &Document, ui: &Ui, painter: &Painter, rect: Rect) {
+        let Some(listed) = &self.listed else { return };
+        let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
+        let accent = theme::accent(ui);
+        let view = View {
+            camera: &document.camera,
+            aspect: document.aspect(),
+            rect,
+            is_from_eye: listed.document.camera == document.camera,
+        };
+        for (index, record) in listed.records.iter().enumerate() {
+            if Some(index) != self.selected {
+                let (shade, line) = (Color32::from_black_alpha(50), accent.gamma_multiply(0.5));
+                view.paint_lines(record, painter, [Stroke::new(2.0, shade), Stroke::new(1.0, line)]);
+            }
+        }
+        if let Some(record) = self.selected.and_then(|index| listed.records.get(index)) {
+            let shade = Color32::from_black_alpha(150);
+            view.paint_lines(record, painter, [Stroke::new(4.5, shade), Stroke::new(2.0, accent)]);
+            view.paint_numbers(record, painter, accent, TextStyle::Small.resolve(ui.style()));
+        }
+    }
+}
+
+/// Where a ray ends, or how far it is drawn.
+fn end_of(ray: &RecordedRay) -> DVec3 {
+    let length = ray.hit.map_or(SKY_LENGTH, |hit| hit.distance);
+    DVec3::from(ray.origin) + DVec3::from(ray.direction) * length
+}
+
+/// How paths are seen on the picture.
+struct View<'a> {
+    camera: &'a Camera,
+    aspect: f64,
+    rect: Rect,
+    /// The paths begin where the camera stands, so that their first rays are points.
+    is_from_eye: bool,
+}
+
+impl View<'_> {
+    fn place(&self, point: DVec3) -> Option<Pos2> {
+        let [x, y] = self.camera.place_of(point, self.aspect)?;
+        Some(self.rect.min + vec2(x as f32, y as f32) * self.rect.size())
+    }
+
+    /// The part of a line that lies before the eye.
+    fn line(&self, mut a: DVec3, mut b: DVec3) -> Option<[Pos2; 2]> {
+        let near = NEAR_SHARE * self.camera.look_from.distance(self.camera.look_at);
+        let [depth_a, depth_b] = [a, b].map(|point| self.camera.depth_of(point));
+        let cut = a + (b - a) * ((near - depth_a) / (depth_b - depth_a));
+        match (depth_a < near, depth_b < near) {
+            (true, true) => return None,
+            (true, false) => a = cut,
+            (false, true) => b = cut,
+            (false, false) => {}
+        }
+        Some([self.place(a)?, self.place(b)?])
+    }
+
+    fn paint_lines(&self, record: &PathRecord, painter: &Painter, strokes: [Stroke; 2]) {
+        let first = usize::from(self.is_from_eye);
+        for stroke in strokes {
+            for ray in record.rays.iter().skip(first) {
+                if let Some(line) = self.line(DVec3::from(ray.origin), end_of(ray)) {
+                    painter.line_segment(line, stroke);
+                }
+            }
+        }
+    }
+
+    fn paint_numbers(&self, record: &PathRecord, painter: &Painter, colour: Color32, font: egui::FontId) {
+        for (index, ray) in record.rays.iter().enumerate() {
+            let Some(at) = self.place(end_of(ray)) else { continue };
+            painter.circle(at, 4.0, colour, Stroke::new(1.0, Color32::BLACK));
+            let (number, corner) = ((index + 1).to_string(), at + vec2(6.0, -5.0));
+            let shade = Color32::from_black_alpha(200);
+            painter.text(corner + vec2(1.0, 1.0), Align2::LEFT_BOTTOM, &number, font.clone(), shade);
+            painter.text(corner, Align2::LEFT_BOTTOM, number, font.clone(), Color32::WHITE);
+        }
+    }
+}
+
+pub fn ui(window: &mut super::Window, ui: &mut Ui) {
+    let weak = ui.visuals().weak_text_color();
+    let document = window.document.clone();
+    let paths = &mut window.paths;
+    let Some(listed) = &paths.listed else {
+        let text =
+            if paths.is_waiting { "Recording paths…" } else { "Alt-click lists the paths of a pixel." };
+        ui.label(RichText::new(text).color(weak).small());
+        return;
+    };
+    let pixel = listed.pixel;
+    ui.add_space(6.0);
+    let heading = ui.label(RichText::new(format!("Paths of pixel {}, {}", pixel[0], pixel[1])).strong());
+    if std::mem::take(&mut paths.is_new) {
+        heading.scroll_to_me(Some(egui::Align::Min));
+    }
+    let last = listed.records.len().saturating_sub(1);
+    let mut selected = paths.selected;
+    let mut count = paths.count;
+    let mut is_cleared = false;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let drag = DragValue::new(&mut count).range(1..=COUNT_LIMIT).speed(0.2).suffix(" paths");
+        let help = format!("How many of the pixel's samples are listed, 1 to {COUNT_LIMIT}");
+        ui.add(drag).on_hover_text(help).accessible_name("Paths listed");
+        let step = |ui: &mut Ui, label: &str, name: &str, to: Option<usize>| {
+            let button = egui::Button::new(label).small();
+            let response = ui.add_enabled(to.is_some(), button).on_hover_text(name);
+            response.on_disabled_hover_text("There is none").accessible_name(name).clicked()
+        };
+        let at = selected.unwrap_or(0);
+        let [before, after] = [at.checked_sub(1), Some(at + 1).filter(|next| *next <= last)];
+        if step(ui, "‹", "Path of the sample before", before) {
+            selected = before;
+        }
+        if step(ui, "›", "Path of the sample after", after) {
+            selected = after;
+        }
+        let clear = ui.small_button("Clear").on_hover_text("Take the paths off the picture");
+        is_cleared = clear.accessible_name("Clear paths").clicked();
+    });
+    if listed.document.camera != document.camera {
+        let text = "As the camera stood when they were listed; Alt-click lists anew.";
+        ui.add(egui::Label::new(RichText::new(text).small().color(weak)).wrap());
+    }
+    for (index, record) in listed.records.iter().enumerate() {
+        let rays = if record.rays.len() == 1 { "ray" } else { "rays" };
+        let text = format!("sample {index:>2}  {:>2} {rays}", record.rays.len());
+        let header = egui::CollapsingHeader::new(RichText::new(text).monospace())
+            .id_salt(("path", index))
+            .open(Some(selected == Some(index)))
+            .show(ui, |ui| list_rays(ui, record, document.scene()))
+            .header_response
+            .on_hover_text("One path of this pixel; the open one is drawn strongest");
+        if header.accessible_name(format!("Path of sample {index}")).clicked() {
+            selected = (selected != Some(index)).then_some(index);
+        }
+    }
+    paths.selected = selected;
+    if is_cleared {
+        paths.forget();
+    } else if count != paths.count {
+        paths.count = count;
+        let before = Document { camera: listed.document.camera, ..document };
+        let sender = window.messages.0.clone();
+        window.paths.list(&before, pixel, &sender, ui.ctx());
+    }
+}
+
+fn list_rays(ui: &mut Ui, record: &PathRecord, scene: &Scene) {
+    let weak = ui.visuals().weak_text_color();
+    let triple = |v: [f64; 3]| format!("{} {} {}", compact(v[0]), compact(v[1]), compact(v[2]));
+    for (index, ray) in record.rays.iter().enumerate() {
+        let what = match ray.hit {
+            Some(hit) => {
+                let (object, material) = super::inspector::names(scene, hit.sphere);
+                format!("{object}, {material}")
+            }
+            None => "leaves to the sky".to_owned(),
+        };
+        ui.add(egui::Label::new(format!("{}  {what}", index + 1)).wrap());
+        let mut lines = vec![("throughput", triple(ray.throughput))];
+        if let Some(hit) = ray.hit {
+            let point = end_of(ray);
+            let sphere = &scene.spheres[hit.sphere];
+            let normal = (point - sphere.center) / sphere.radius;
+            lines.push(("position", triple(point.to_array())));
+            lines.push(("normal", triple(normal.to_array())));
+            lines.push(("distance", compact(hit.distance)));
+        }
+        // What the surface took is the next ray's share of this one's.
+        if let Some(next) = record.rays.get(index + 1) {
+            let share = |i: usize| {
+                if ray.throughput[i] == 0.0 { 0.0 } else { next.throughput[i] / ray.throughput[i] }
+            };
+            lines.push(("attenuation", triple([share(0), share(1), share(2)])));
+        }
+        egui::Grid::new(("ray", index)).num_columns(2).min_row_height(0.0).spacing([8.0, 1.0]).show(
+            ui,
+            |ui| {
+                for (name, value) in lines {
+                    ui.label(RichText::new(name).small().color(weak));
+                    ui.label(RichText::new(value).small());
+                    ui.end_row();
+                }
+            },
+        );
+    }
+    ui.label(RichText::new(format!("adds {}", triple(record.radiance))).small().color(weak));
+}

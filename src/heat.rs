@@ -1,0 +1,104 @@
+//! Heat maps: colours from dark to bright for numbers, and the scale that tells them.
+
+/// What the colours of a heat map mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeatScale {
+    /// What is measured, with its unit.
+    pub title: &'static str,
+    /// The values at the two ends.
+    limits: [f64; 2],
+    is_logarithmic: bool,
+    /// Values that a legend names, and how.
+    pub marks: &'static [(f64, &'static str)],
+}
+
+/// From dark to bright; evenly spaced.
+const COLOURS: [[f64; 3]; 7] = [
+    [0.0, 0.0, 4.0],
+    [40.0, 11.0, 84.0],
+    [101.0, 21.0, 110.0],
+    [159.0, 42.0, 99.0],
+    [212.0, 72.0, 66.0],
+    [245.0, 125.0, 21.0],
+    [252.0, 255.0, 164.0],
+];
+
+impl HeatScale {
+    /// Errors and differences, linear radiance.
+    pub const ERROR: HeatScale = HeatScale {
+        title: "linear radiance",
+        limits: [1e-4, 1.0],
+        is_logarithmic: true,
+        marks: &[(1e-4, "0.0001"), (1e-3, "0.001"), (1e-2, "0.01"), (0.1, "0.1"), (1.0, "1")],
+    };
+
+    /// Rays of a path.
+    pub const RAYS: HeatScale = HeatScale {
+        title: "rays per path",
+        limits: [1.0, 32.0],
+        is_logarithmic: true,
+        marks: &[(1.0, "1"), (2.0, "2"), (4.0, "4"), (8.0, "8"), (16.0, "16"), (32.0, "32")],
+    };
+
+    /// Lanes in use.
+    pub const OCCUPANCY: HeatScale = HeatScale {
+        title: "share of lanes in use",
+        limits: [0.0, 1.0],
+        is_logarithmic: false,
+        marks: &[(0.0, "0 %"), (0.25, "25"), (0.5, "50"), (0.75, "75"), (1.0, "100 %")],
+    };
+
+    /// Where a value stands on the scale, `0..=1`.
+    pub fn place(&self, value: f64) -> f64 {
+        let [low, high] = self.limits;
+        if value <= low {
+            0.0
+        } else if self.is_logarithmic {
+            ((value / low).ln() / (high / low).ln()).min(1.0)
+        } else {
+            ((value - low) / (high - low)).min(1.0)
+        }
+    }
+
+    /// The colour of a value.
+    pub fn colour(&self, value: f64) -> [u8; 3] {
+        colour_at(self.place(value))
+    }
+}
+
+/// The colour of a place on any scale, `0..=1`.
+pub fn colour_at(place: f64) -> [u8; 3] {
+    let last = COLOURS.len() - 1;
+    let along = place.clamp(0.0, 1.0) * last as f64;
+    let from = (along as usize).min(last - 1);
+    let share = along - from as f64;
+    let channel = |i: usize| COLOURS[from][i] * (1.0 - share) + COLOURS[from + 1][i] * share;
+    [0, 1, 2].map(|i| channel(i).round() as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SCALES: [HeatScale; 3] = [HeatScale::ERROR, HeatScale::RAYS, HeatScale::OCCUPANCY];
+
+    #[test]
+    fn scales_go_from_dark_to_bright() {
+        for scale in SCALES {
+            assert_eq!(scale.colour(-1.0), [0, 0, 4]);
+            assert_eq!(scale.colour(1e9), [252, 255, 164]);
+        }
+        let sum = |place| colour_at(place).iter().map(|x| u32::from(*x)).sum::<u32>();
+        assert!((0..20).all(|i| sum(f64::from(i) / 20.0) <= sum(f64::from(i + 1) / 20.0)));
+    }
+
+    #[test]
+    fn marks_are_evenly_spaced_from_end_to_end() {
+        for scale in SCALES {
+            let last = scale.marks.len() - 1;
+            for (index, (value, _)) in scale.marks.iter().enumerate() {
+                assert!((scale.place(*value) - index as f64 / last as f64).abs() < 1e-12, "{value}");
+            }
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! What a picture is made of beside light: for each pixel the normal and the albedo of what is seen first, and
+//! how many rays its paths take. The paths are those of the picture, as [`PathRecorder`] tells them.
+
+use crate::record::PathRecord;
+use crate::render::{JobError, RenderJob, RenderSettings};
+use crate::render_cpu::PathRecorder;
+use crate::scene::{Material, Scene};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// One of a picture's layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layer {
+    /// `(n + 1) / 2` of the normal where the camera's ray meets a surface; the sky where it meets none.
+    Normals,
+    /// The reflectance of the surface that the camera's ray meets, linear RGB; the sky where it meets none.
+    Albedo,
+    /// Rays per path, the camera's included, in all three components.
+    RaysPerPath,
+}
+
+impl Layer {
+    /// All of them.
+    pub const ALL: [Layer; 3] = [Layer::Normals, Layer::Albedo, Layer::RaysPerPath];
+
+    /// The job of which this layer's paths are: the picture's, cut off where the layer sees no further.
+    ///
+    /// # Errors
+    /// If the settings of `job` cannot be, which they are not.
+    pub fn job(self, job: &RenderJob) -> Result<RenderJob, JobError> {
+        let settings = *job.settings();
+        // What a surface takes of the light is seen in the ray after it.
+        let depth = match self {
+            Layer::Normals => 1,
+            Layer::Albedo => 2,
+            Layer::RaysPerPath => settings.max_depth,
+        };
+        job.seen_by(*job.camera(), RenderSettings { max_depth: depth.min(settings.max_depth), ..settings })
+    }
+
+    fn value(self, scene: &Scene, record: &PathRecord) -> DVec3 {
+        let Some(first) = record.rays.first() else { return DVec3::ZERO };
+        if self == Layer::RaysPerPath {
+            return DVec3::splat(record.rays.len() as f64);
+        }
+        let direction = DVec3::from(first.direction);
+        let Some((hit, sphere)) = first.hit.and_then(|hit| Some((hit, scene.spheres.get(hit.sphere)?)))
+        else {
+            let height = (direction.y + 1.0) / 2.0;
+            return (1.0 - height) * scene.sky.bottom + height * scene.sky.top;
+        };
+        match (self, record.rays.get(1)) {
+            (Layer::Normals, _) => {
+                let point = DVec3::from(first.origin) + hit.distance * direction;
+                ((point - sphere.center) / sphere.radius + 1.0) / 2.0
+            }
+            // The camera's ray counts in full, so that the next one's throughput is what the surface left.
+            (_, Some(next)) => DVec3::from(next.throughput),
+            (_, None) => match *scene.material_of(sphere) {
+                Material::Lambertian { albedo } | Material::Metal { albedo, .. } => albedo,
+                Material::Dielectric { .. } => DVec3::ONE,
+            },
+        }
+    }
+}
+
+/// A layer, averaged over samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerImage {
+    layer: Layer,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Samples per pixel.
+    pub samples: u64,
+    sums: Vec<[f32; 3]>,
+}
+
+impl LayerImage {
+    /// An empty one in the size of `job`.
+    pub fn new(layer: Layer, job: &RenderJob) -> Self {
+        let RenderSettings { width, height, .. } = *job.settings();
+        LayerImage {
+            layer,
+            width,
+            height,
+            samples: 0,
+            sums: vec![[0.0; 3]; width as usize * height as usize],
+        }
+    }
+
+    /// Adds the next sample of each pixel. `paths` records [`Layer::job`] in this size. Returns false, with sums
+    /// that are of no use, if it was cancelled.
+    pub fn add_sample(&mut self, paths: &PathRecorder, cancel: &AtomicBool) -> bool {
+        let (layer, index, scene) = (self.layer, self.samples, paths.job().scene());
+        self.sums.par_chunks_mut(self.width.max(1) as usize).enumerate().for_each(|(y, row)| {
+            if cancel.load(Ordering::Relaxed) {
+                return;
+            }
+            for (x, sum) in row.iter_mut().enumerate() {
+                let value = layer.value(scene, &paths.record([x as u32, y as u32], index));
+                [0, 1, 2].into_iter().for_each(|i| sum[i] += value[i] as f32);
+            }
+        });
+        self.samples += 1;
+        !cancel.load(Ordering::Relaxed)
+    }
+
+    /// The mean of a pixel, which must lie in the picture.
+    pub fn mean(&self, [x, y]: [u32; 2]) -> [f64; 3] {
+        let count = self.samples.max(1) as f64;
+        self.sums[y as usize * self.width as usize + x as usize].map(|sum| f64::from(sum) / count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+    use crate::render_cpu::Isa;
+    use crate::stages::Stage;
+
+    fn image(layer: Layer, recipe: &Recipe, samples: u64) -> LayerImage {
+        let mut recipe = recipe.clone();
+        (recipe.settings.width, recipe.settings.height) = (32, 18);
+        let job = layer.job(&recipe.job().unwrap()).unwrap();
+        let paths = PathRecorder::new(&job, Isa::available().into_iter().max().unwrap(), None);
+        let mut image = LayerImage::new(layer, &job);
+        (0..samples).for_each(|_| assert!(image.add_sample(&paths, &AtomicBool::new(false))));
+        image
+    }
+
+    fn of_stage(layer: Layer, id: &str) -> LayerImage {
+        image(layer, &Stage::find(id).unwrap().recipe(), 4)
+    }
+
+    #[test]
+    fn normals_and_albedo_are_those_of_the_scene() {
+        // The middle sphere faces the camera; the ground below it is the book's yellow-green.
+        let normal = of_stage(Layer::Normals, "metal").mean([16, 9]);
+        assert!((normal[2] - 1.0).abs() < 0.02, "{normal:?}");
+        let ground = of_stage(Layer::Albedo, "metal").mean([16, 17]);
+        assert!(ground.iter().zip([0.8, 0.8, 0.0]).all(|(a, b)| (a - b).abs() < 1e-6), "{ground:?}");
+        let sky = of_stage(Layer::Albedo, "metal").mean([16, 0]);
+        assert!((sky[2] - 1.0).abs() < 1e-3 && sky[0] < 0.9, "{sky:?}");
+    }
+
+    #[test]
+    fn rays_are_as_many_as_the_renderer_counts() {
+        use crate::render::Renderer;
+        use crate::render_cpu::{CpuOptions, CpuRenderer};
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        let image = image(Layer::RaysPerPath, &recipe, 2);
+        (recipe.settings.width, recipe.settings.height) = (32, 18);
+        let job = recipe.job().unwrap();
+        let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
+        let mut film = job.new_film();
+        let stats = renderer.accumulate(&job, 0..2, &mut film, &AtomicBool::new(false)).unwrap();
+        let sum: f64 = (0..18).flat_map(|y| (0..32).map(move |x| [x, y])).map(|at| image.mean(at)[0]).sum();
+        assert!((sum * 2.0 - stats.rays as f64).abs() < 0.01 * stats.rays as f64, "{sum} {}", stats.rays);
+    }
+
+    #[test]
+    fn every_stage_has_every_layer() {
+        for stage in Stage::ALL {
+            for layer in Layer::ALL {
+                let image = image(layer, &stage.recipe(), 1);
+                let sane = |v: f64| (0.0..=100.0).contains(&v);
+                assert!(image.sums.iter().flatten().all(|v| sane(f64::from(*v))), "{} {layer:?}", stage.id);
+            }
+        }
+    }
+
+    #[test]
+    fn a_cancelled_layer_says_so() {
+        let recipe = Recipe::builtin("three-spheres").unwrap();
+        let job = Layer::Normals.job(&recipe.job().unwrap()).unwrap();
+        let paths = PathRecorder::new(&job, Isa::Baseline, None);
+        assert!(!LayerImage::new(Layer::Normals, &job).add_sample(&paths, &AtomicBool::new(true)));
+    }
+}
