@@ -20,8 +20,9 @@ fn compare(arguments: &[&str], directory: &Path) -> (i32, String, String) {
 
 /// Renders `out` with `flags`.
 fn render(directory: &Path, out: &str, flags: &[&str]) {
-    let usual = ["--batch", "--device", "cpu", "--size", "160x90", "--progress", "off", "--out", out];
-    let (code, _, errors) = weekender(&[&usual[..], flags].concat(), directory);
+    let usual = ["--batch", "--device", "cpu", "--progress", "off", "--out", out];
+    let size: &[&str] = if flags.contains(&"--size") { &[] } else { &["--size", "160x90"] };
+    let (code, _, errors) = weekender(&[&usual[..], size, flags].concat(), directory);
     assert_eq!(code, 0, "{errors}");
 }
 

@@ -2,6 +2,7 @@
 
 use super::side::Side;
 use super::verdict::{Comparison, Evidence, PARTED};
+use crate::statistics::blocks::SUM_DEVIATIONS;
 
 /// All that is said of a comparison.
 pub(super) fn told(sides: &[Side; 2], comparison: &Comparison) -> String {
@@ -24,13 +25,14 @@ pub(super) fn told(sides: &[Side; 2], comparison: &Comparison) -> String {
         );
     }
     let test = &comparison.test;
-    let most = test.sums.iter().fold(0.0_f64, |most, sum| most.max(*sum));
-    let count = test.blocks.len();
     line(
         "blocks",
         &format!(
-            "{count} of about 8x8 pixels: sum of z^2 {most:.0} (noise: at most {:.0}), largest |z| {:.2} (at most {:.2})",
-            test.sum_limits[1], test.largest, test.largest_limit
+            "{} of about 8x8 pixels: sum of z^2 {:+.1} deviations from that of noise (at most {SUM_DEVIATIONS:+.0}), largest |z| {:.2} (at most {:.2})",
+            test.blocks.len(),
+            test.largest_excess(),
+            test.largest,
+            test.largest_limit
         ),
     );
     if !comparison.is_same {

@@ -2,7 +2,7 @@
 
 use super::side::Side;
 use crate::film::Film;
-use crate::statistics::blocks::{BlockTest, Differences, Noise};
+use crate::statistics::blocks::{BlockTest, Differences, Noise, SUM_DEVIATIONS};
 use serde::Serialize;
 
 /// What rounding may move a mean by: docs/numerics.md, cases 12 and 13.
@@ -125,6 +125,7 @@ pub fn compare(a: &Side, b: &Side, paired: Option<PairedSamples>) -> Comparison 
         noise: variances.as_ref().map_or(Noise::Spread, |v| Noise::Variances(&v.of_difference)),
         steps: steps.as_deref(),
         tolerance: ROUNDING_BIAS,
+        rare: variances.as_ref().map_or(0.0, |v| v.rare),
     });
     let finite = || difference.iter().flatten().copied().filter(|x| x.is_finite());
     let count = finite().count();
@@ -150,12 +151,10 @@ fn judge(comparison: &mut Comparison, compared: usize) {
     if compared == 0 {
         reasons.push("no pixel could be compared".to_owned());
     }
-    let most = test.sums.iter().fold(0.0_f64, |most, sum| most.max(*sum));
-    if most > test.sum_limits[1] {
+    if test.largest_excess() > SUM_DEVIATIONS {
         reasons.push(format!(
-            "the sum of z^2 over {} blocks is {most:.0}, but noise gives at most {:.0}",
-            test.blocks.len(),
-            test.sum_limits[1]
+            "the sum of z^2 over the blocks is {:.1} deviations above that of noise, which stays below {SUM_DEVIATIONS:.0}",
+            test.largest_excess()
         ));
     }
     if test.largest > test.largest_limit {
@@ -182,8 +181,11 @@ fn judge(comparison: &mut Comparison, compared: usize) {
                 .to_owned(),
         );
     }
+    if test.is_too_near() && comparison.paired.is_none() {
+        notes.push("the blocks are nearer to each other than the noise of the halves allows: do the halves belong to one picture?".to_owned());
+    }
     if comparison.left_out > 0 {
-        let text = "are left out: they are at the end of a picture's whole numbers, or no numbers";
+        let text = "are left out, with their blocks: they are at the end of a picture's whole numbers, or no numbers";
         notes.push(format!("{} channels of pixels {text}", comparison.left_out));
     }
 }
@@ -213,6 +215,8 @@ struct Variances {
     of_difference: Vec<[f64; 3]>,
     /// Root of the mean of both pictures' variances, added.
     of_both: f64,
+    /// What two samples of radiance 1, one in each half, bring to a pixel.
+    rare: f64,
 }
 
 fn variances(a: &Halves, b: &Halves) -> Variances {
@@ -225,7 +229,12 @@ fn variances(a: &Halves, b: &Halves) -> Variances {
             [0, 1, 2].map(|channel| (b[channel] - a[channel]).powi(2))
         })
         .collect();
-    Variances { of_difference, of_both: (both / (3 * count) as f64).sqrt() }
+    let pair = |film: &Film| std::f64::consts::SQRT_2 / film.sample_count() as f64;
+    Variances {
+        of_difference,
+        of_both: (both / (3 * count) as f64).sqrt(),
+        rare: pair(a.film).hypot(pair(b.film)),
+    }
 }
 
 fn added(a: Option<&Vec<[f64; 3]>>, b: Option<&Vec<[f64; 3]>>) -> Option<Vec<[f64; 3]>> {

@@ -241,17 +241,14 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_counts_for_more_than_its_brightness() {
-        let flat = vec![[0.5; 3]; 48 * 32];
-        let mut one_line = flat.clone();
-        for row in 0..32 {
-            one_line[row * 48 + 24] = [0.8; 3];
-        }
-        let spread: Vec<[f64; 3]> = flat.iter().map(|v| v.map(|x| x + 0.3 / 48.0)).collect();
-        let flat = Appearance::of(48, &flat);
-        let of_line = flat.difference(&Appearance::of(48, &one_line));
-        let of_spread = flat.difference(&Appearance::of(48, &spread));
-        assert!(of_line > 2.0 * of_spread, "{of_line} {of_spread}");
+    fn what_is_too_fine_to_be_seen_counts_for_less() {
+        let chequers = |side: usize| -> Vec<[f64; 3]> {
+            let sign = |x: usize, y: usize| if (x / side + y / side) % 2 == 0 { 1.0 } else { -1.0 };
+            (0..48 * 36).map(|i| [0.5 + 0.1 * sign(i % 48, i / 48); 3]).collect()
+        };
+        let flat = Appearance::of(48, &vec![[0.5; 3]; 48 * 36]);
+        let [fine, coarse] = [1, 12].map(|side| flat.difference(&Appearance::of(48, &chequers(side))));
+        assert!(fine < 0.5 * coarse, "{fine} {coarse}");
     }
 
     #[test]

@@ -65,7 +65,7 @@ mod tests {
         {
             for (t, z) in [(five_percent, 1.960), (per_mille, 3.2905)] {
                 let found = from_student(t, freedom);
-                assert!((found - z).abs() < 0.02, "{freedom}, {t}: {found}");
+                assert!((found - z).abs() < 0.03, "{freedom}, {t}: {found}");
                 assert_eq!(from_student(-t, freedom), -found);
             }
         }
