@@ -152,8 +152,9 @@ fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
 /// From the newest estimate to where the target should be met, and between which times.
 fn ahead(plot: &mut PlotUi, now: &Point, target: f64, prediction: &Prediction, color: Color32) {
     let y = target.log10();
-    let way = vec![logarithm(now), [prediction.time.log10(), y]];
-    let range = prediction.range.map(|time| [time.log10(), y]).to_vec();
+    let at = |seconds_from_now: f64| [(now.time + seconds_from_now).log10(), y];
+    let way = vec![logarithm(now), at(prediction.time)];
+    let range = prediction.range.map(at).to_vec();
     plot.line(Line::new("expected", PlotPoints::from(way)).color(color).width(1.0).allow_hover(false));
     plot.line(Line::new("expected", PlotPoints::from(range)).color(color).width(4.0).allow_hover(false));
 }
@@ -195,7 +196,7 @@ fn points(status: &Status) -> Vec<Point> {
     history.chain(now).filter(|point| point.time > 0.0 && point.error > 0.0).collect()
 }
 
-/// When the error will be at the target; `None` where it is, or where too little is known.
+/// In how many seconds from now the error will be at the target; `None` where it is, or where too little is known.
 pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
     if status.samples_per_pixel < NOISE_TARGET_FIRST_SAMPLES || status.phase.is_over() {
         return None;
@@ -218,6 +219,13 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
     predict(&history, now, target?)
         .map(|found| Prediction { time: from_now(found.time), range: found.range.map(from_now) })
         .filter(|found| found.time < 1e6)
+}
+
+/// As "RMSE .005 in about 38 s (33 to 44)", while there is a target ahead.
+pub fn prediction_label(window: &Window) -> Option<String> {
+    let target = window.document.stop.noise;
+    let prediction = prediction(window.main.status(), target)?;
+    Some(format!("RMSE {} {}", target?, prediction_words(&prediction)))
 }
 
 /// As "in about 38 s (33 to 44)".

@@ -59,8 +59,9 @@ fn difference(comparison: &Comparison) -> String {
         Evidence::Spread => "noise, in blocks",
     };
     let noise = comparison.noise.map_or_else(String::new, |noise| format!("; noise of both {noise:.2e}"));
+    let deviation = comparison.bias_deviation.map_or_else(String::new, |x| format!(" ± {x:.1e}"));
     format!(
-        "{:.2} x {of} ({:.2e} RMS{noise}), {:+.1e} on average",
+        "{:.2} x {of} ({:.2e} RMS{noise}), {:+.1e}{deviation} on average",
         comparison.times_noise(),
         comparison.rms,
         comparison.bias

@@ -93,6 +93,8 @@ pub struct Comparison {
     pub rms: f64,
     /// Mean difference, second less first.
     pub bias: f64,
+    /// Its deviation, of noise and rounding, where the noise is known.
+    pub bias_deviation: Option<f64>,
     /// Root of the mean square that the noise of both pictures would give if they had none in common.
     pub noise: Option<f64>,
     /// Where the noise is known from.
@@ -134,6 +136,7 @@ pub fn compare(a: &Side, b: &Side, paired: Option<PairedSamples>) -> Comparison 
         is_same: count > 0 && steps.is_none() && finite().all(|x| x == 0.0),
         rms: mean(finite().map(|x| x * x).sum()).sqrt(),
         bias: mean(finite().sum()),
+        bias_deviation: variances.as_ref().map(|v| v.of_mean.hypot(ROUNDING_BIAS)),
         noise: variances.map(|v| v.of_both),
         evidence,
         left_out: 3 * difference.len() - count,
@@ -161,6 +164,14 @@ fn judge(comparison: &mut Comparison, compared: usize) {
         reasons.push(format!(
             "a block is {:.1} deviations off, but noise gives at most {:.1}",
             test.largest, test.largest_limit
+        ));
+    }
+    if let Some(deviation) = comparison.bias_deviation
+        && comparison.bias.abs() > SUM_DEVIATIONS * deviation
+    {
+        let times = comparison.bias.abs() / deviation;
+        reasons.push(format!(
+            "the mean is {times:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}"
         ));
     }
     if let Some(paired) = &comparison.paired {
@@ -215,25 +226,33 @@ struct Variances {
     of_difference: Vec<[f64; 3]>,
     /// Root of the mean of both pictures' variances, added.
     of_both: f64,
+    /// Deviation of the mean difference over all pixels and channels.
+    of_mean: f64,
     /// What two samples of radiance 1, one in each half, bring to a pixel.
     rare: f64,
 }
 
 fn variances(a: &Halves, b: &Halves) -> Variances {
     let count = a.film.width() as usize * a.film.height() as usize;
-    let mut both = 0.0;
+    let (mut both, mut of_mean) = (0.0, 0.0);
     let of_difference = (0..count)
         .map(|pixel| {
             let (a, b) = (a.deviation(pixel), b.deviation(pixel));
             both += a.iter().chain(&b).map(|x| x * x).sum::<f64>();
-            [0, 1, 2].map(|channel| (b[channel] - a[channel]).powi(2))
+            let deviation = [0, 1, 2].map(|channel| b[channel] - a[channel]);
+            // Channels of a pixel share their noise.
+            of_mean += (deviation.iter().sum::<f64>() / 3.0).powi(2);
+            deviation.map(|x| x * x)
         })
         .collect();
+    // As in a block, both halves may hold the same rare path.
     let pair = |film: &Film| std::f64::consts::SQRT_2 / film.sample_count() as f64;
+    let rare = pair(a.film).hypot(pair(b.film));
     Variances {
         of_difference,
+        of_mean: of_mean.sqrt().hypot(rare) / count as f64,
         of_both: (both / (3 * count) as f64).sqrt(),
-        rare: pair(a.film).hypot(pair(b.film)),
+        rare,
     }
 }
 
@@ -261,5 +280,53 @@ impl Comparison {
             Some(_) => f64::INFINITY,
             None => self.test.ratio(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{PixelSum, fixed_point};
+    use crate::sampling::pcg4d;
+
+    /// Two samples a pixel: noise that depends on pixel and half, and an offset.
+    fn side(seed: u32, offset: f64) -> Side {
+        let mut film = Film::new(80, 48, 2);
+        for half in 0..2_u32 {
+            for pixel in 0..80 * 48 {
+                let noise = f64::from(pcg4d([pixel, half, seed, 5])[0]) / 4_294_967_296.0;
+                let sum: PixelSum = fixed_point([0.5 + 0.2 * noise + offset; 3]).unwrap();
+                film.halves_mut()[half as usize][pixel as usize] = sum;
+            }
+        }
+        film.record(0..2, 0).unwrap();
+        Side::of_film(String::new(), String::new(), film)
+    }
+
+    #[test]
+    fn noise_is_equal_and_an_offset_that_noise_hides_is_not_once_samples_are_the_same() {
+        let noise = compare(&side(1, 0.0), &side(2, 0.0), None);
+        assert!(noise.is_equal(), "{:?}", noise.reasons);
+        assert!((noise.times_noise() - 1.0).abs() < 0.1, "{}", noise.times_noise());
+        assert!(compare(&side(1, 0.0), &side(2, 1e-3), None).is_equal());
+        let same = compare(&side(1, 0.0), &side(1, 1e-3), None);
+        assert!(!same.is_equal() && same.times_noise() < 0.1, "{same:?}");
+        assert!(compare(&side(1, 0.0), &side(1, 1e-6), None).is_equal());
+        assert!(compare(&side(1, 0.0), &side(1, 0.0), None).is_same);
+    }
+
+    #[test]
+    fn paired_samples_tell_other_paths_from_rounding() {
+        let (a, b) = (side(1, 0.0), side(1, 1e-5));
+        let mut sums = PairedSums::default();
+        let (film_a, film_b) = (a.film.as_ref().unwrap(), b.film.as_ref().unwrap());
+        sums.add(film_a, film_b);
+        let found = sums.finish();
+        assert_eq!((found.count, found.parted), (80 * 48, 0));
+        // A film of two samples has their sum.
+        assert!((found.rms - 2e-5).abs() < 1e-6, "{found:?}");
+        let other = side(2, 0.0);
+        sums.add(film_a, other.film.as_ref().unwrap());
+        assert!(sums.finish().parted_share() > 0.4);
     }
 }

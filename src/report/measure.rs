@@ -137,7 +137,7 @@ mod tests {
     /// Rare and large, as of paths that took another way.
     fn chance(pixel: u32, half: u32) -> f64 {
         let [a, b, ..] = pcg4d([pixel, half, 3, 9]);
-        if a % 50 > 0 { 0.0 } else { f64::from(b) / 4_294_967_296.0 - 0.5 }
+        if !a.is_multiple_of(50) { 0.0 } else { f64::from(b) / 4_294_967_296.0 - 0.5 }
     }
 
     #[test]

@@ -23,7 +23,7 @@ use progress::Progress;
 use reference::Reference;
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
@@ -264,6 +264,6 @@ fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
 }
 
-fn write_text(path: &PathBuf, text: &str) -> Result<()> {
+fn write_text(path: &Path, text: &str) -> Result<()> {
     Ok(replace_file(path, |writer| writer.write_all(text.as_bytes()))?)
 }

@@ -99,7 +99,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     let middle = values.len() / 2;
     match values.len() {
         0 => f64::NAN,
-        count if count % 2 == 1 => values[middle],
+        count if !count.is_multiple_of(2) => values[middle],
         _ => 0.5 * (values[middle - 1] + values[middle]),
     }
 }

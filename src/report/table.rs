@@ -240,7 +240,7 @@ fn samples_to(curve: &CurveSummary, error: f64) -> Option<f64> {
 fn number(x: f64) -> String {
     match x.abs() {
         size if !size.is_finite() => "-".to_owned(),
-        size if size >= 1e5 || size < 1e-3 => format!("{x:.2e}"),
+        size if !(1e-3..1e5).contains(&size) => format!("{x:.2e}"),
         size => format!("{x:.*}", (2 - size.log10().floor() as i32).max(0) as usize),
     }
 }

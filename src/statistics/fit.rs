@@ -159,7 +159,7 @@ mod tests {
         let points: Vec<Point> = curve(-0.5, 8)
             .into_iter()
             .enumerate()
-            .map(|(i, p)| Point { error: p.error * if i % 2 == 0 { 1.1 } else { 1.0 / 1.1 }, ..p })
+            .map(|(i, p)| Point { error: p.error * if i.is_multiple_of(2) { 1.1 } else { 1.0 / 1.1 }, ..p })
             .collect();
         let law = PowerLaw::through(&points).unwrap();
         assert!((law.slope + 0.5).abs() < 3.0 * law.slope_deviation);

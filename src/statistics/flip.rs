@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn what_is_too_fine_to_be_seen_counts_for_less() {
         let chequers = |side: usize| -> Vec<[f64; 3]> {
-            let sign = |x: usize, y: usize| if (x / side + y / side) % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = |x: usize, y: usize| if (x / side + y / side).is_multiple_of(2) { 1.0 } else { -1.0 };
             (0..48 * 36).map(|i| [0.5 + 0.1 * sign(i % 48, i / 48); 3]).collect()
         };
         let flat = Appearance::of(48, &vec![[0.5; 3]; 48 * 36]);
