@@ -308,8 +308,8 @@ mod tests {
         let noise = compare(&side(1, 0.0), &side(2, 0.0), None);
         assert!(noise.is_equal(), "{:?}", noise.reasons);
         assert!((noise.times_noise() - 1.0).abs() < 0.1, "{}", noise.times_noise());
-        assert!(compare(&side(1, 0.0), &side(2, 1e-3), None).is_equal());
-        let same = compare(&side(1, 0.0), &side(1, 1e-3), None);
+        assert!(compare(&side(1, 0.0), &side(2, 2e-3), None).is_equal());
+        let same = compare(&side(1, 0.0), &side(1, 2e-3), None);
         assert!(!same.is_equal() && same.times_noise() < 0.1, "{same:?}");
         assert!(compare(&side(1, 0.0), &side(1, 1e-6), None).is_equal());
         assert!(compare(&side(1, 0.0), &side(1, 0.0), None).is_same);
