@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
-use weekender::{app, batch, diff};
+use weekender::{app, batch, compare, diff, report};
 
 fn main() -> ExitCode {
     run().unwrap_or_else(|failure| failure.report())
@@ -16,6 +16,8 @@ fn run() -> Result<ExitCode, Failure> {
         Request::SaveScene(options) => batch::save_scene(&options),
         Request::Merge(options) => batch::merge(&options),
         Request::Diff(options) => diff::run(&options),
+        Request::Compare(options) => compare::run(&options),
+        Request::Report(options) => report::run(&options),
         Request::Batch(options) => batch::run(*options),
     }
 }

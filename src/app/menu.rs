@@ -2,6 +2,7 @@
 
 use super::command::{Command, Group};
 use super::device::Device;
+use super::plot;
 use super::theme;
 use super::viewport::Show;
 use super::window::Window;
@@ -217,6 +218,10 @@ fn pause(window: &mut Window, ui: &mut Ui) {
         .on_disabled_hover_text("The picture is done; see Stop for when it ends");
     if response.clicked() {
         window.send(Command::Pause);
+    }
+    if let Some(words) = plot::prediction_label(window) {
+        ui.label(RichText::new(words).small())
+            .on_hover_text("From the estimates so far, within two deviations");
     }
 }
 

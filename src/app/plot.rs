@@ -1,23 +1,23 @@
-//! The error against the seconds that were traced, both on scales of powers of ten.
+//! The error against the seconds that were traced, both on scales of powers of ten: a curve for each backend since
+//! the last restart, how it should go on, and the target, which can be typed or dragged.
 
 use super::theme;
+use super::widgets::compact;
 use super::window::Window;
-use eframe::egui::{self, RichText, Ui};
-use egui_plot::{HLine, HoverPosition, Line, LineStyle, Plot, PlotPoints, Points};
+use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
+use crate::statistics::fit::{Point, Prediction, predict};
+use eframe::egui::{self, Color32, CursorIcon, DragValue, RichText, Sense, Ui};
+use egui_plot::{HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, PlotUi, Points};
+use std::fmt::Write;
+
+/// Targets that can be chosen, RMSE.
+const TARGETS: std::ops::RangeInclusive<f64> = 1e-6..=1.0;
+
+/// How near the pointer must be to the target to take hold of it, points.
+const GRIP: f32 = 8.0;
 
 pub fn ui(window: &mut Window, ui: &mut Ui) {
-    let status = window.main.status();
-    let mut points: Vec<[f64; 2]> = status
-        .history
-        .iter()
-        .filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0)
-        .map(|point| [point.trace_seconds.log10(), point.rmse_estimate.log10()])
-        .collect();
-    let now = status.error.filter(|error| error.rmse > 0.0 && !status.trace.is_zero());
-    points.extend(now.map(|error| [status.trace.as_secs_f64().log10(), error.rmse.log10()]));
-    let target = window.document.stop.noise;
-    let accent = theme::accent(ui);
-    let weak = ui.visuals().weak_text_color();
+    let status = window.main.status().clone();
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(12, 6));
     egui::Panel::bottom("plot")
         .frame(frame)
@@ -25,38 +25,235 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
         .default_size(150.0)
         .size_range(90.0..=400.0)
         .show(ui, |ui| {
-            ui.label(
-                RichText::new("Estimated error (RMSE, linear radiance) against seconds").small().color(weak),
-            );
-            if points.is_empty() {
+            header(window, ui, &status);
+            if points(&status).is_empty() {
+                let weak = ui.visuals().weak_text_color();
                 ui.centered_and_justified(|ui| ui.label(RichText::new("No estimate yet").color(weak)));
-                return;
+            } else {
+                plot(window, ui, &status);
             }
-            Plot::new("error")
-                .allow_drag(false)
-                .allow_zoom(false)
-                .allow_scroll(false)
-                .allow_boxed_zoom(false)
-                .show_background(false)
-                .set_margin_fraction(egui::vec2(0.03, 0.12))
-                .x_axis_formatter(|mark, _| power(mark.value, " s"))
-                .y_axis_formatter(|mark, _| power(mark.value, ""))
-                .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
-                .y_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
-                .label_formatter(|hover| {
-                    let (HoverPosition::NearDataPoint { position: at, .. }
-                    | HoverPosition::Elsewhere { position: at }) = hover;
-                    Some(format!("{:.2} s\nerror {:.5}", 10_f64.powf(at.x), 10_f64.powf(at.y)))
-                })
-                .show(ui, |plot| {
-                    if let Some(target) = target.filter(|target| *target > 0.0) {
-                        let style = LineStyle::dashed_loose();
-                        plot.hline(HLine::new("target", target.log10()).color(weak).style(style));
-                    }
-                    plot.line(Line::new("error", PlotPoints::from(points.clone())).color(accent).width(1.5));
-                    plot.points(Points::new("error", PlotPoints::from(points)).color(accent).radius(2.5));
-                });
         });
+}
+
+/// What the plot shows, the target as a number, and the plot's data.
+fn header(window: &mut Window, ui: &mut Ui, status: &Status) {
+    let weak = ui.visuals().weak_text_color();
+    ui.horizontal_wrapped(|ui| {
+        ui.label(
+            RichText::new("Estimated error (RMSE, linear radiance) against seconds").small().color(weak),
+        );
+        if let Some(target) = &mut window.document.stop.noise {
+            ui.label(RichText::new("target").small());
+            let number = DragValue::new(target).range(TARGETS).speed(1e-4).max_decimals(6);
+            ui.add(number.update_while_editing(false))
+                .accessible_name("Target error")
+                .on_hover_text("The render ends here; the line in the plot can be dragged, too");
+        }
+        if let Some(prediction) = prediction(status, window.document.stop.noise) {
+            ui.label(RichText::new(prediction_words(&prediction)).small());
+        }
+        let copy = ui.add_enabled(!status.history.is_empty(), egui::Button::new("Copy data").small());
+        if copy.on_hover_text("Copies the plot's points as CSV").clicked() {
+            ui.copy_text(csv(&status.history));
+        }
+    });
+}
+
+fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
+    let accent = theme::accent(ui);
+    let visuals = ui.visuals();
+    let (weak, strong) = (visuals.weak_text_color(), visuals.strong_text_color());
+    let colors = [accent, visuals.warn_fg_color, visuals.error_fg_color, strong];
+    let curves = curves(&status.history);
+    let all = points(status);
+    let target = window.document.stop.noise;
+    let prediction = prediction(status, target);
+    let mut plot = Plot::new("error")
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .show_background(false)
+        .sense(Sense::click_and_drag())
+        .set_margin_fraction(egui::vec2(0.03, 0.12))
+        .x_axis_formatter(|mark, _| power(mark.value, " s"))
+        .y_axis_formatter(|mark, _| power(mark.value, ""))
+        .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
+        .y_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
+        .label_formatter(|hover| {
+            let (HoverPosition::NearDataPoint { position: at, .. }
+            | HoverPosition::Elsewhere { position: at }) = hover;
+            Some(format!("{:.2} s\nerror {:.5}", 10_f64.powf(at.x), 10_f64.powf(at.y)))
+        });
+    if curves.len() > 1 {
+        plot = plot.legend(Legend::default());
+    }
+    let response = plot.show(ui, |plot| {
+        guide(plot, &all, weak);
+        if let Some(target) = target.filter(|target| *target > 0.0) {
+            let style = LineStyle::dashed_loose();
+            plot.hline(HLine::new("target", target.log10()).color(weak).style(style).allow_hover(false));
+            if let (Some(prediction), Some(now)) = (prediction, all.last()) {
+                ahead(plot, now, target, &prediction, weak);
+            }
+        }
+        for (index, (name, points)) in curves.iter().enumerate() {
+            curve(plot, name, points, colors[index % colors.len()]);
+        }
+        // The newest estimate, between two powers of two.
+        if let (Some(last), Some(now)) = (status.history.last().map(logarithms), all.last()) {
+            let newest = vec![last, logarithm(now)];
+            plot.line(Line::new("now", PlotPoints::from(newest)).color(accent).width(1.0).allow_hover(false));
+        }
+        plot.pointer_coordinate().map(|at| at.y)
+    });
+    drag_target(
+        window,
+        ui,
+        &response.response,
+        response.inner,
+        response.transform.dpos_dvalue_y().abs() as f32,
+    );
+}
+
+/// Moves the target with the pointer that took hold of its line.
+fn drag_target(
+    window: &mut Window,
+    ui: &Ui,
+    plot: &egui::Response,
+    pointer: Option<f64>,
+    points_a_unit: f32,
+) {
+    let (Some(pointer), Some(target)) = (pointer, window.document.stop.noise) else { return };
+    let held = ui.scope_id().with("target is held");
+    let is_near = ((pointer - target.log10()) as f32 * points_a_unit).abs() <= GRIP;
+    if plot.drag_started() {
+        ui.data_mut(|data| data.insert_temp(held, is_near));
+    }
+    let is_held = plot.dragged() && ui.data(|data| data.get_temp(held).unwrap_or(false));
+    if is_held {
+        window.document.stop.noise = Some(10_f64.powf(pointer).clamp(*TARGETS.start(), *TARGETS.end()));
+    }
+    if is_held || (plot.hovered() && is_near) {
+        ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
+    }
+}
+
+/// How independent samples go on from the first estimate: half the error for four times the time.
+fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else { return };
+    let [x, y] = logarithm(first);
+    let across = logarithm(last)[0] - x;
+    let ends = vec![[x, y], [x + across, y - 0.5 * across]];
+    let line = Line::new("half the error for 4 x the time", PlotPoints::from(ends));
+    plot.line(line.color(color).style(LineStyle::dotted_dense()).width(1.0).allow_hover(false));
+}
+
+/// From the newest estimate to where the target should be met, and between which times.
+fn ahead(plot: &mut PlotUi, now: &Point, target: f64, prediction: &Prediction, color: Color32) {
+    let y = target.log10();
+    let at = |seconds_from_now: f64| [(now.time + seconds_from_now).log10(), y];
+    let way = vec![logarithm(now), at(prediction.time)];
+    let range = prediction.range.map(at).to_vec();
+    plot.line(Line::new("expected", PlotPoints::from(way)).color(color).width(1.0).allow_hover(false));
+    plot.line(Line::new("expected", PlotPoints::from(range)).color(color).width(4.0).allow_hover(false));
+}
+
+fn curve(plot: &mut PlotUi, name: &str, points: &[[f64; 2]], color: Color32) {
+    plot.line(Line::new(name, PlotPoints::from(points.to_vec())).color(color).width(1.5));
+    plot.points(Points::new(name, PlotPoints::from(points.to_vec())).color(color).radius(2.5));
+}
+
+/// The history in pieces, each of what one backend did; a piece begins where the one before it ends.
+fn curves(history: &[HistoryPoint]) -> Vec<(&'static str, Vec<[f64; 2]>)> {
+    let mut curves: Vec<(&'static str, Vec<[f64; 2]>)> = Vec::new();
+    for point in history.iter().filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0) {
+        let at = logarithms(point);
+        match curves.last_mut() {
+            Some((name, points)) if *name == point.backend => points.push(at),
+            Some((_, points)) => {
+                let from = points.last().copied();
+                curves.push((point.backend, from.into_iter().chain([at]).collect()));
+            }
+            None => curves.push((point.backend, vec![at])),
+        }
+    }
+    curves
+}
+
+fn logarithms(point: &HistoryPoint) -> [f64; 2] {
+    [point.trace_seconds.log10(), point.rmse_estimate.log10()]
+}
+
+fn logarithm(point: &Point) -> [f64; 2] {
+    [point.time.log10(), point.error.log10()]
+}
+
+/// All estimates, the newest last.
+fn points(status: &Status) -> Vec<Point> {
+    let history = status.history.iter().map(|p| Point { time: p.trace_seconds, error: p.rmse_estimate });
+    let now = status.error.map(|error| Point { time: status.trace.as_secs_f64(), error: error.rmse });
+    history.chain(now).filter(|point| point.time > 0.0 && point.error > 0.0).collect()
+}
+
+/// In how many seconds from now the error will be at the target; `None` where it is, or where too little is known.
+pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
+    if status.samples_per_pixel < NOISE_TARGET_FIRST_SAMPLES || status.phase.is_over() {
+        return None;
+    }
+    let error = status.error?;
+    // A switch of backends bends the curve: only what the present one did tells how it goes on.
+    let backend = status.history.last().map(|point| point.backend);
+    let mut history: Vec<Point> = status
+        .history
+        .iter()
+        .rev()
+        .take_while(|point| {
+            Some(point.backend) == backend && point.samples_per_pixel >= NOISE_TARGET_FIRST_SAMPLES
+        })
+        .map(|point| Point { time: point.trace_seconds, error: point.rmse_estimate })
+        .collect();
+    history.reverse();
+    let now = Point { time: status.trace.as_secs_f64(), error: error.rmse };
+    let from_now = |time: f64| (time - now.time).max(0.0);
+    predict(&history, now, target?)
+        .map(|found| Prediction { time: from_now(found.time), range: found.range.map(from_now) })
+        .filter(|found| found.time < 1e6)
+}
+
+/// As "RMSE .005 in about 38 s (33 to 44)", while there is a target ahead.
+pub fn prediction_label(window: &Window) -> Option<String> {
+    let target = window.document.stop.noise;
+    let prediction = prediction(window.main.status(), target)?;
+    Some(format!("RMSE {} {}", target?, prediction_words(&prediction)))
+}
+
+/// As "in about 38 s (33 to 44)".
+pub fn prediction_words(prediction: &Prediction) -> String {
+    let [low, high] = prediction.range.map(whole);
+    format!("in about {} s ({low} to {high})", whole(prediction.time))
+}
+
+fn whole(seconds: f64) -> String {
+    format!("{:.0}", seconds.ceil())
+}
+
+/// The points with a head.
+fn csv(history: &[HistoryPoint]) -> String {
+    let mut text = String::from("backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n");
+    for point in history {
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "{},{},{},{},{}",
+            point.backend,
+            point.samples_per_pixel,
+            point.trace_seconds,
+            point.rmse_estimate,
+            point.rel_mse_estimate
+        );
+    }
+    text
 }
 
 /// A mark of a scale in powers of ten.
@@ -65,6 +262,57 @@ fn power(exponent: f64, unit: &str) -> String {
     if (exponent - exponent.round()).abs() > 1e-6 {
         String::new()
     } else {
-        format!("{}{unit}", super::widgets::compact(value))
+        format!("{}{unit}", compact(value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::ErrorEstimate;
+    use crate::progressive::Phase;
+    use std::time::Duration;
+
+    fn point(backend: &'static str, samples: u64, trace_seconds: f64) -> HistoryPoint {
+        let rmse_estimate = 0.1 / (samples as f64).sqrt();
+        HistoryPoint {
+            backend,
+            samples_per_pixel: samples,
+            trace_seconds,
+            rmse_estimate,
+            rel_mse_estimate: 0.1,
+        }
+    }
+
+    #[test]
+    fn each_backend_has_a_curve_that_joins_the_one_before() {
+        let history = [point("cpu", 2, 1.0), point("cpu", 4, 2.0), point("gpu", 8, 2.1)];
+        let found = curves(&history);
+        assert_eq!(
+            found.iter().map(|(name, points)| (*name, points.len())).collect::<Vec<_>>(),
+            [("cpu", 2), ("gpu", 2)]
+        );
+        assert_eq!(found[0].1[1], found[1].1[0]);
+        assert_eq!(csv(&history).lines().count(), 4);
+        assert!(csv(&history).ends_with("gpu,8,2.1,0.035355339059327376,0.1\n"), "{}", csv(&history));
+    }
+
+    #[test]
+    fn the_prediction_counts_from_now_and_tells_its_range() {
+        let mut status = Status {
+            samples_per_pixel: 100,
+            phase: Phase::Tracing,
+            trace: Duration::from_secs(10),
+            error: Some(ErrorEstimate { rmse: 0.004, rel_mse: 0.0 }),
+            ..Status::default()
+        };
+        let found = prediction(&status, Some(0.002)).unwrap();
+        assert!((found.time - 30.0).abs() < 1e-6, "{found:?}");
+        assert!(found.range[0] > 10.0 && found.range[1] < 90.0, "{found:?}");
+        assert!(prediction_words(&found).starts_with("in about 30 s ("), "{}", prediction_words(&found));
+        assert_eq!(prediction(&status, Some(0.01)), None);
+        assert_eq!(prediction(&status, None), None);
+        status.samples_per_pixel = 2;
+        assert_eq!(prediction(&status, Some(0.002)), None);
     }
 }

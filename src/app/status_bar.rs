@@ -1,8 +1,9 @@
 //! The bar at the bottom: how far, how fast, how good, and by whom. Each figure has a place of its own, so that
 //! nothing jumps.
 
+use super::plot;
 use super::window::Window;
-use crate::progressive::{NOISE_TARGET_FIRST_SAMPLES, Phase, Status};
+use crate::progressive::{Phase, Status};
 use eframe::egui::{self, Align, Layout, RichText, Ui};
 
 pub fn ui(window: &mut Window, ui: &mut Ui) {
@@ -90,9 +91,9 @@ fn figures(status: &Status, window: &Window) -> Vec<(String, &'static str, &'sta
     }
     figures.push((
         error_words(status, window.document.stop.noise),
-        "error 0.00000, 0.00000 in about 0000 s",
+        "error 0.00000, 0.00000 in about 0000 s (0000 to 0000)",
         "Estimated error: root of the mean square over pixels and channels, linear radiance; and when the \
-         target will be reached, as error falls with the root of the samples",
+         target will be reached, within two deviations",
     ));
     figures
 }
@@ -119,23 +120,13 @@ fn rays_per_path(status: &Status) -> String {
 fn error_words(status: &Status, target: Option<f64>) -> String {
     let Some(error) = status.error else { return "error –".to_owned() };
     let now = format!("error {:.5}", error.rmse);
-    match (target, seconds_to(status, target)) {
-        (Some(target), Some(seconds)) if seconds < 1e6 => {
-            format!("{now}, {target} in about {} s", grouped(seconds.ceil() as u64))
+    match (target, plot::prediction(status, target)) {
+        (Some(target), Some(prediction)) => {
+            format!("{now}, {target} {}", plot::prediction_words(&prediction))
         }
-        (Some(target), _) if error.rmse <= target => format!("{now}, below {target}"),
+        (Some(target), None) if error.rmse <= target => format!("{now}, below {target}"),
         _ => now,
     }
-}
-
-/// Seconds until the target is reached: the error falls with the root of the time.
-fn seconds_to(status: &Status, target: Option<f64>) -> Option<f64> {
-    let (error, target) = (status.error?.rmse, target?);
-    let seconds = status.trace.as_secs_f64();
-    if error <= target || status.samples_per_pixel < NOISE_TARGET_FIRST_SAMPLES || status.phase.is_over() {
-        return None;
-    }
-    Some(seconds * ((error / target).powi(2) - 1.0))
 }
 
 fn rejected(ui: &mut Ui, status: &Status) {
@@ -192,8 +183,8 @@ mod tests {
             error: Some(ErrorEstimate { rmse: 0.004, rel_mse: 0.0 }),
             ..Status::default()
         };
-        assert!((seconds_to(&status, Some(0.002)).unwrap() - 3.0).abs() < 1e-9);
-        assert_eq!(error_words(&status, Some(0.002)), "error 0.00400, 0.002 in about 3 s");
+        let words = error_words(&status, Some(0.002));
+        assert!(words.starts_with("error 0.00400, 0.002 in about 3 s ("), "{words}");
         assert_eq!(error_words(&status, None), "error 0.00400");
         assert_eq!(error_words(&status, Some(0.01)), "error 0.00400, below 0.01");
         status.error = None;

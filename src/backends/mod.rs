@@ -43,6 +43,30 @@ impl BackendChoice {
         BackendChoice::Cpu(CpuOptions::default())
     }
 
+    /// Names of single backends, for those who compare them: see [`BackendChoice::named`].
+    pub const NAMES: [&str; 5] = ["cpu", "scalar", "baseline", "reference", "gpu"];
+
+    /// The backend of one of [`BackendChoice::NAMES`]: the CPU's widest packets, one lane at the best level, one
+    /// lane without fused multiply and add, `f64`, the GPU. `adapter` chooses among GPUs.
+    pub fn named(name: &str, adapter: Option<&str>) -> Option<Self> {
+        Some(match name {
+            "cpu" => BackendChoice::Cpu(CpuOptions::default()),
+            "scalar" => BackendChoice::Cpu(CpuOptions { lanes: Some(1), ..CpuOptions::default() }),
+            "baseline" => {
+                let (isa, lanes) = (Some(Isa::Baseline), Some(1));
+                BackendChoice::Cpu(CpuOptions { isa, lanes, ..CpuOptions::default() })
+            }
+            "reference" => BackendChoice::Reference { threads: None },
+            "gpu" => BackendChoice::Gpu(GpuOptions {
+                adapter: adapter.map(str::to_owned),
+                // Whoever names a software adapter wants it.
+                allow_software: adapter.is_some(),
+                ..GpuOptions::default()
+            }),
+            _ => return None,
+        })
+    }
+
     /// As `--device` calls it.
     pub fn name(&self) -> &'static str {
         match self {
@@ -133,6 +157,20 @@ pub fn list() -> Vec<BackendListing> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_are_those_of_backends() {
+        let names = BackendChoice::NAMES;
+        assert!(names.into_iter().all(|name| BackendChoice::named(name, None).is_some()));
+        assert_eq!(BackendChoice::named("tpu", None), None);
+        assert_eq!(
+            names
+                .into_iter()
+                .filter(|name| BackendChoice::named(name, None) == BackendChoice::named("cpu", None))
+                .count(),
+            1
+        );
+    }
 
     #[test]
     fn one_listed_backend_is_the_automatic_one() {

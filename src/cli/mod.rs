@@ -6,8 +6,8 @@ mod sources;
 mod values;
 
 pub use options::{
-    BatchOptions, DiffOptions, JsonTarget, MergeOptions, PathChoice, RenderOptions, SaveSceneOptions,
-    SideChoice, WindowOptions,
+    BatchOptions, CompareOptions, CompareSide, DiffOptions, JsonTarget, MergeOptions, PathChoice,
+    ReferenceChoice, RenderOptions, ReportOptions, SaveSceneOptions, SideChoice, WindowOptions,
 };
 pub use raw::ProgressChoice;
 pub use sources::CliError;
@@ -30,6 +30,10 @@ pub enum Request {
     Merge(MergeOptions),
     /// Compare a path.
     Diff(Box<DiffOptions>),
+    /// Compare two pictures.
+    Compare(Box<CompareOptions>),
+    /// Measure error against time.
+    Report(Box<ReportOptions>),
     /// Render to files.
     Batch(Box<BatchOptions>),
 }
@@ -39,12 +43,21 @@ pub enum Request {
 /// # Errors
 /// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written then.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
-    let raw = Raw::try_parse_from(arguments).map_err(Failure::CommandLine)?;
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let typed = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());
+    let command = ["weekender".into()].into_iter().chain(typed).collect::<Vec<_>>().join(" ");
+    let raw = Raw::try_parse_from(&arguments).map_err(Failure::CommandLine)?;
     match raw.command {
         Some(RawCommand::Merge { films, out }) => Ok(Request::Merge(MergeOptions { films, out })),
         Some(RawCommand::Diff(raw)) => {
             options::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)
         }
+        Some(RawCommand::Compare(raw)) => {
+            options::compare(*raw).map(|options| Request::Compare(Box::new(options))).map_err(Failure::input)
+        }
+        Some(RawCommand::Report(raw)) => options::report(*raw, command)
+            .map(|options| Request::Report(Box::new(options)))
+            .map_err(Failure::input),
         None if raw.render.list => Ok(Request::List),
         None => options::request(raw.render).map_err(Failure::input),
     }

@@ -1,14 +1,14 @@
 //! Options that can be carried out, and how flags become them.
 
 use super::Request;
-use super::raw::{ProgressChoice, RawDevice, RawDiff, RawRender};
+use super::raw::{ProgressChoice, RawCompare, RawDevice, RawDiff, RawRender, RawReport};
 use super::sources::{self, CliError, Source};
 use super::values::{Level, RawSide, Simd};
 use crate::backends::BackendChoice;
-use crate::output::OutputFormat;
+use crate::output::{Encoding, OutputFormat};
 use crate::progressive::Plan;
 use crate::recipe::Recipe;
-use crate::render::{RenderJob, SAMPLE_LIMIT};
+use crate::render::{RenderJob, RenderSettings, SAMPLE_LIMIT, SamplerKind};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::{Drill, Fault, GpuOptions};
 use crate::stages::Stage;
@@ -116,6 +116,37 @@ pub struct DiffOptions {
     pub json: Option<JsonTarget>,
 }
 
+/// Two pictures that are compared.
+#[derive(Clone, Debug)]
+pub struct CompareOptions {
+    /// The pictures.
+    pub sides: [CompareSide; 2],
+    /// What backends render: what flags ask for, else what a file beside them says, at the size of that file.
+    pub recipe: Recipe,
+    /// Samples per pixel of what is rendered, if that was said.
+    pub samples: Option<u64>,
+    /// What whole numbers stand for where the file does not say.
+    pub encoding: Encoding,
+    /// Where the map of differences goes.
+    pub heat_map: Option<PathBuf>,
+    /// Where the figures go as JSON.
+    pub json: Option<JsonTarget>,
+}
+
+/// A picture that is compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CompareSide {
+    /// It is there.
+    File(PathBuf),
+    /// It is to be rendered.
+    Backend {
+        /// One of [`BackendChoice::NAMES`].
+        name: String,
+        /// What renders.
+        choice: BackendChoice,
+    },
+}
+
 /// Who traces a path that is compared.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SideChoice {
@@ -163,12 +194,10 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
     }
     let Source { mut recipe, stage } = sources::find(&raw.picture, None)?;
     sources::change(&mut recipe, &raw.picture, raw.estimate_error);
-    let settings = &mut recipe.settings;
-    if raw.find.is_some() && raw.picture.size.is_none() && settings.width > FIND_WIDTH {
-        let height = f64::from(settings.height) * f64::from(FIND_WIDTH) / f64::from(settings.width);
-        (settings.width, settings.height) = (FIND_WIDTH, (height.round() as u32).max(1));
+    if raw.find.is_some() && raw.picture.size.is_none() {
+        narrow(&mut recipe.settings, FIND_WIDTH);
     }
-    let (width, height) = (settings.width, settings.height);
+    let (width, height) = (recipe.settings.width, recipe.settings.height);
     let path = match (raw.find, raw.pixel) {
         (Some(samples), _) => PathChoice::Find { samples },
         (None, pixel) => {
@@ -200,6 +229,164 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
         tolerance: raw.tolerance,
         json: raw.json.map(json_target),
     })
+}
+
+/// What a report measures.
+#[derive(Clone, Debug)]
+pub struct ReportOptions {
+    /// Scenes, at their size.
+    pub scenes: Vec<Recipe>,
+    /// Backends by their names.
+    pub backends: Vec<(String, BackendChoice)>,
+    /// Samplers.
+    pub samplers: Vec<SamplerKind>,
+    /// Pictures of each curve.
+    pub seeds: u32,
+    /// Width and height of all pictures.
+    pub size: (u32, u32),
+    /// Seconds of tracing for all pictures of a curve.
+    pub time_limit: f64,
+    /// Most samples per pixel.
+    pub max_samples: u64,
+    /// What errors are measured against.
+    pub reference: ReferenceChoice,
+    /// Where the report goes.
+    pub out: PathBuf,
+    /// Whether progress is shown.
+    pub progress: ProgressChoice,
+    /// What was typed.
+    pub command: String,
+}
+
+/// What errors are measured against.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReferenceChoice {
+    /// A film that is there.
+    File(PathBuf),
+    /// One that is made.
+    Make {
+        /// The backend's name.
+        name: String,
+        /// What renders it.
+        choice: BackendChoice,
+        /// Samples per pixel.
+        samples: u64,
+    },
+}
+
+/// What `weekender report` is asked for; `command` is what was typed.
+pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, CliError> {
+    let adapter = raw.adapter.as_deref();
+    let named = |name: &str| {
+        let choice = BackendChoice::named(name, adapter)
+            .ok_or_else(|| CliError::BackendName { name: name.to_owned() })?;
+        Ok::<_, CliError>((name.to_owned(), choice))
+    };
+    let names = if raw.backends.is_empty() {
+        let has_gpu = adapter.is_some()
+            || matches!(
+                BackendChoice::auto(CpuOptions::default(), GpuOptions::default()),
+                BackendChoice::Gpu(_)
+            );
+        ["cpu", "scalar", "gpu"].into_iter().take(if has_gpu { 3 } else { 2 }).map(str::to_owned).collect()
+    } else {
+        raw.backends
+    };
+    if adapter.is_some() && !names.iter().chain([&raw.reference_backend]).any(|name| name == "gpu") {
+        let reason = "it chooses among GPUs; leave it out";
+        return Err(CliError::Needs { flag: "--adapter", other: "gpu among --backends", reason });
+    }
+    let scenes = raw
+        .scenes
+        .iter()
+        .map(|name| {
+            let mut recipe = sources::scene(name)?;
+            (recipe.settings.width, recipe.settings.height) = raw.size;
+            recipe.job()?;
+            Ok(recipe)
+        })
+        .collect::<Result<Vec<_>, CliError>>()?;
+    let reference = match raw.reference {
+        Some(_) if scenes.len() > 1 => {
+            let reason = "one film is the reference of one scene; say which with --scenes";
+            return Err(CliError::Together { flag: "--reference", other: "several --scenes", reason });
+        }
+        Some(path) => ReferenceChoice::File(path),
+        None => {
+            let (name, choice) = named(&raw.reference_backend)?;
+            let samples = raw.reference_samples.unwrap_or((4 * raw.max_samples).min(SAMPLE_LIMIT));
+            ReferenceChoice::Make { name, choice, samples }
+        }
+    };
+    Ok(ReportOptions {
+        scenes,
+        backends: names.iter().map(|name| named(name)).collect::<Result<_, _>>()?,
+        samplers: raw.samplers.into_iter().map(Into::into).collect(),
+        seeds: raw.seeds,
+        size: raw.size,
+        time_limit: raw.time_limit,
+        max_samples: raw.max_samples,
+        reference,
+        out: raw.out,
+        progress: raw.progress,
+        command,
+    })
+}
+
+/// Samples that are compared unless a number is asked for.
+const COMPARE_SAMPLES: u64 = 64;
+
+/// Width that pictures which are rendered to be compared have at most, pixels, unless a size is asked for.
+const COMPARE_WIDTH: u32 = 400;
+
+/// What `weekender compare` is asked for.
+pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
+    if raw.picture.stage.as_deref() == Some("all") {
+        let reason = "two pictures are compared; choose one stage";
+        return Err(CliError::Together { flag: "compare", other: "--stage all", reason });
+    }
+    let adapter = raw.adapter.as_deref();
+    let side = |name: String| match BackendChoice::named(&name, adapter) {
+        Some(choice) => CompareSide::Backend { name, choice },
+        None => CompareSide::File(PathBuf::from(name)),
+    };
+    let is_gpu = [&raw.first, &raw.second].into_iter().any(|name| name == "gpu");
+    if adapter.is_some() && !is_gpu {
+        let reason = "it chooses among GPUs; leave it out";
+        return Err(CliError::Needs { flag: "--adapter", other: "gpu as a side", reason });
+    }
+    let sides = [side(raw.first), side(raw.second)];
+    // Pictures of other programs do not say what they show.
+    let told = sides.iter().find_map(|side| match side {
+        CompareSide::File(path) => sources::find(&raw.picture, Some(path)).ok(),
+        CompareSide::Backend { .. } => None,
+    });
+    let Source { mut recipe, .. } = match told {
+        Some(source) => source,
+        None => sources::find(&raw.picture, None)?,
+    };
+    sources::change(&mut recipe, &raw.picture, None);
+    if raw.picture.size.is_none() {
+        narrow(&mut recipe.settings, COMPARE_WIDTH);
+    }
+    recipe.samples_per_pixel = COMPARE_SAMPLES;
+    recipe.job()?;
+    Ok(CompareOptions {
+        sides,
+        recipe,
+        samples: raw.samples,
+        encoding: raw.encoding.into(),
+        heat_map: raw.heat_map,
+        json: raw.json.map(json_target),
+    })
+}
+
+/// Makes a picture at most `width` pixels wide, of the same shape.
+fn narrow(settings: &mut RenderSettings, width: u32) {
+    if settings.width > width {
+        let height = f64::from(settings.height) * f64::from(width) / f64::from(settings.width);
+        (settings.width, settings.height) = (width, (height.round() as u32).max(1));
+    }
 }
 
 /// What the flags ask for, but `--list` and the subcommands.

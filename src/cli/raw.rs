@@ -4,7 +4,9 @@ use super::values::{
     Level, RawSide, Simd, parse_isa, parse_number, parse_pixel, parse_rmse, parse_sample_range,
     parse_seconds, parse_sides, parse_simd, parse_size, parse_tolerance, parse_vector,
 };
+use crate::output::Encoding;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
+use crate::stages::Transfer;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use std::ops::Range;
@@ -35,6 +37,14 @@ pub(super) enum RawCommand {
     ///
     /// The exit code is 0 where the two agree, 1 where they differ and 2 where they could not be compared.
     Diff(Box<RawDiff>),
+    /// Say whether two pictures are the same but for their noise, and where they are not
+    ///
+    /// The exit code is 0 where they are equal, 1 where they differ and 2 where they could not be compared.
+    Compare(Box<RawCompare>),
+    /// Measure how the error falls with time, for scenes, backends and samplers, and write tables and plots
+    ///
+    /// Goes on where an interrupted report of the same settings ended.
+    Report(Box<RawReport>),
 }
 
 #[derive(Debug, Args)]
@@ -224,6 +234,126 @@ pub(super) struct RawDiff {
     /// [default: on, or the scene's]
     #[arg(long, value_enum, help_heading = "Picture")]
     pub estimate_error: Option<RawSwitch>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RawCompare {
+    /// A film or picture (.exr, .pfm, .png, .ppm) of any program, or what is to render it now: cpu, scalar,
+    /// baseline (multiply and add rounded apart), reference (f64) or gpu
+    #[arg(value_name = "FIRST")]
+    pub first: String,
+    /// As the first; a backend beside a film renders the same samples, beside a picture one of its size
+    #[arg(value_name = "SECOND")]
+    pub second: String,
+
+    /// Samples per pixel of what is rendered, 1 to 4294967296 [default: the film's, or 64]
+    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+          allow_hyphen_values = true, help_heading = "Comparison")]
+    pub samples: Option<u64>,
+    /// What whole numbers in pictures of other programs stand for: the square root as in the book, linear, or sRGB
+    #[arg(long, value_enum, default_value = "gamma2", help_heading = "Comparison")]
+    pub encoding: RawEncoding,
+    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
+    pub adapter: Option<String>,
+    /// Write the differences as a picture, from dark (1e-4) to bright (1), the worst blocks framed
+    #[arg(long, value_name = "FILE.png", help_heading = "Comparison")]
+    pub heat_map: Option<PathBuf>,
+    /// Write the figures as JSON; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
+    pub json: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub picture: RawPicture,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RawReport {
+    /// Where the report goes: report.md, .csv and .json, error-vs-time.png and .svg, references
+    #[arg(long, value_name = "DIRECTORY")]
+    pub out: PathBuf,
+
+    /// Built-in scenes, field:N or scene files, with commas between them
+    #[arg(
+        long = "scenes",
+        alias = "scene",
+        value_name = "A,B,...",
+        value_delimiter = ',',
+        default_value = "three-spheres,book",
+        help_heading = "What is compared"
+    )]
+    pub scenes: Vec<String>,
+    /// Backends: cpu (the widest packets), scalar (one lane), baseline, reference (f64), gpu
+    /// [default: cpu,scalar, and gpu where there is one]
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', help_heading = "What is compared")]
+    pub backends: Vec<String>,
+    /// Samplers
+    #[arg(
+        long,
+        value_enum,
+        value_name = "A,B",
+        value_delimiter = ',',
+        default_value = "sobol,independent",
+        help_heading = "What is compared"
+    )]
+    pub samplers: Vec<RawSampler>,
+    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    #[arg(long, value_name = "SUBSTRING", help_heading = "What is compared")]
+    pub adapter: Option<String>,
+
+    /// Width and height of all pictures in pixels, each 1 to 16384
+    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x90",
+          help_heading = "How it is measured")]
+    pub size: (u32, u32),
+    /// Pictures of each curve, which differ in their random numbers alone, 1 to 1000
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000),
+          allow_hyphen_values = true, default_value = "8", help_heading = "How it is measured")]
+    pub seeds: u32,
+    /// Seconds of tracing for all pictures of a curve; a picture ends with the last doubling that fits in
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_hyphen_values = true,
+          default_value = "12", help_heading = "How it is measured")]
+    pub time_limit: f64,
+    /// Most samples per pixel, 2 to 4294967296
+    #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
+          allow_hyphen_values = true, default_value = "1024", help_heading = "How it is measured")]
+    pub max_samples: u64,
+    /// A film to measure against, of the one scene at this size and with two halves
+    #[arg(long, value_name = "FILM.exr", help_heading = "How it is measured")]
+    pub reference: Option<PathBuf>,
+    /// What renders the references otherwise: as --backends
+    #[arg(
+        long,
+        value_name = "BACKEND",
+        default_value = "reference",
+        conflicts_with = "reference",
+        help_heading = "How it is measured"
+    )]
+    pub reference_backend: String,
+    /// Samples per pixel of the references [default: 4 times --max-samples]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
+          allow_hyphen_values = true, conflicts_with = "reference", help_heading = "How it is measured")]
+    pub reference_samples: Option<u64>,
+
+    /// Progress on standard error; auto: when it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum RawEncoding {
+    Gamma2,
+    Linear,
+    Srgb,
+}
+
+impl From<RawEncoding> for Encoding {
+    fn from(raw: RawEncoding) -> Self {
+        match raw {
+            RawEncoding::Gamma2 => Encoding::Book(Transfer::Gamma2),
+            RawEncoding::Linear => Encoding::Book(Transfer::Linear),
+            RawEncoding::Srgb => Encoding::Srgb,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,6 +1,7 @@
 //! Where a picture comes from: a built-in scene, a stage, a scene file or a film; and what flags change in it.
 
 use super::raw::{RawPicture, RawSwitch};
+use crate::backends::BackendChoice;
 use crate::film::key;
 use crate::output::{OutputError, read_description};
 use crate::recipe::{Recipe, SceneNameError, file};
@@ -61,6 +62,12 @@ pub enum CliError {
         /// Pixels down.
         height: u32,
     },
+    /// No such backend.
+    #[error("there is no backend {name:?}; choose among {}", BackendChoice::NAMES.join(", "))]
+    BackendName {
+        /// What was asked for.
+        name: String,
+    },
     /// Two files of one name.
     #[error("{first} and {second} are both {}; give them different names", path.display())]
     SameFile {
@@ -104,7 +111,8 @@ pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<Source, Cl
     }
 }
 
-fn scene(name: &str) -> Result<Recipe, CliError> {
+/// The scene of this name or in this file.
+pub(super) fn scene(name: &str) -> Result<Recipe, CliError> {
     if is_file(name) { Ok(file::load(Path::new(name))?) } else { Ok(Recipe::find(name)?) }
 }
 

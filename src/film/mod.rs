@@ -252,7 +252,7 @@ impl Film {
         assert_eq!(pixels.len(), self.width as usize * rows.len(), "3 bytes for each pixel of {rows:?}");
         // The choice is the row's, and stays out of the loop over its pixels.
         for (line, row) in pixels.chunks_exact_mut(self.width as usize).zip(rows) {
-            if is_gamma(transfer, row as usize, height) {
+            if transfer.is_gamma(row as usize, height) {
                 self.for_each_sum(row..row + 1, line, |sum, pixel| {
                     *pixel = sum.0.map(|k| quantise((k as f64 / unit).sqrt()));
                 });
@@ -348,16 +348,7 @@ fn mean_of(sum: PixelSum, count: u64) -> [f64; 3] {
 
 /// One channel of a picture's pixel in `row` of `height`, from linear radiance.
 pub fn to_byte(linear: f64, transfer: Transfer, row: usize, height: usize) -> u8 {
-    quantise(if is_gamma(transfer, row, height) { linear.max(0.0).sqrt() } else { linear })
-}
-
-/// Whether `row` of `height` takes the square root.
-fn is_gamma(transfer: Transfer, row: usize, height: usize) -> bool {
-    match transfer {
-        Transfer::Linear => false,
-        Transfer::Gamma2 => true,
-        Transfer::LinearAboveGamma2 => row >= height / 2,
-    }
+    quantise(if transfer.is_gamma(row, height) { linear.max(0.0).sqrt() } else { linear })
 }
 
 fn quantise(value: f64) -> u8 {

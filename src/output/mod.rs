@@ -1,8 +1,12 @@
 //! Pictures in files: 8-bit PNG, binary PPM (P6), and OpenEXR, which is the whole film. All of them say what they
-//! show: see [`Description`].
+//! show: see [`Description`]. Pictures of other programs can be read, too: [`read_picture`].
 
+mod pfm;
 mod png;
 mod ppm;
+mod read;
+
+pub use read::{Encoding, ReadPicture, read_picture};
 
 pub use crate::film::{Description, RECIPE_KEY, WriteError, check_writable, key, replace_file};
 

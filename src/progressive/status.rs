@@ -34,6 +34,8 @@ impl Phase {
 /// The error at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HistoryPoint {
+    /// Who traced the newest samples: [`BackendInfo::name`].
+    pub backend: &'static str,
     /// Samples per pixel in the film.
     pub samples_per_pixel: u64,
     /// Wall seconds of tracing since the start.

@@ -529,7 +529,9 @@ impl Render {
         if is_history {
             self.next_history_samples = (samples + 1).next_power_of_two();
             if let Some(error) = self.status.error {
+                let backend = self.status.backend.as_ref().map_or("", |backend| backend.name);
                 self.status.history.push(HistoryPoint {
+                    backend,
                     samples_per_pixel: samples,
                     trace_seconds: self.status.trace.as_secs_f64(),
                     rmse_estimate: error.rmse,

@@ -111,3 +111,14 @@ pub enum Transfer {
     /// The upper half linear, the lower half with the square root: to compare. (Section 9.5.)
     LinearAboveGamma2,
 }
+
+impl Transfer {
+    /// Whether `row` of `height` takes the square root.
+    pub fn is_gamma(self, row: usize, height: usize) -> bool {
+        match self {
+            Transfer::Linear => false,
+            Transfer::Gamma2 => true,
+            Transfer::LinearAboveGamma2 => row >= height / 2,
+        }
+    }
+}

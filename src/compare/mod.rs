@@ -1,0 +1,243 @@
+//! `weekender compare`: whether two pictures are the same but for their noise.
+
+mod heat_map;
+mod side;
+mod text;
+mod verdict;
+
+pub use side::Side;
+pub use verdict::{Comparison, Evidence, PairedSamples, PairedSums, compare};
+
+use crate::cli::{CompareOptions, JsonTarget};
+use crate::failure::Failure;
+use crate::film::{check_writable, replace_file};
+use crate::recipe::Recipe;
+use anyhow::{Context, Result, bail};
+use serde::Serialize;
+use side::{Opened, Rendering};
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Version of the JSON: it grows when a key changes its meaning or goes away.
+const SCHEMA: u32 = 1;
+
+/// Blocks that are named.
+const NAMED_BLOCKS: usize = 5;
+
+#[derive(Serialize)]
+struct Report {
+    schema: u32,
+    version: &'static str,
+    sides: [ReportedSide; 2],
+    width: u32,
+    height: u32,
+    is_equal: bool,
+    is_same: bool,
+    times_noise: f64,
+    rms: f64,
+    bias: f64,
+    bias_deviation: Option<f64>,
+    noise: Option<f64>,
+    evidence: Evidence,
+    blocks: usize,
+    known_blocks: [usize; 3],
+    sums_of_squares: [f64; 3],
+    excess: [f64; 3],
+    largest: f64,
+    largest_limit: f64,
+    worst_blocks: Vec<ReportedBlock>,
+    paired_samples: Option<PairedSamples>,
+    reasons: Vec<String>,
+    notes: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct ReportedSide {
+    name: String,
+    about: String,
+}
+
+#[derive(Serialize)]
+struct ReportedBlock {
+    x: [u32; 2],
+    y: [u32; 2],
+    z: [f64; 3],
+    mean_difference: [f64; 3],
+}
+
+/// Compares two pictures and prints what they differ by. The exit code is 0 where that is noise, else 1.
+///
+/// # Errors
+/// [`Failure::Input`] where they could not be compared: exit code 1 says that they differ.
+pub fn run(options: &CompareOptions) -> Result<ExitCode, Failure> {
+    compared(options).map_err(Failure::Input)
+}
+
+fn compared(options: &CompareOptions) -> Result<ExitCode> {
+    if let Some(path) = &options.heat_map {
+        check_writable(path)?;
+    }
+    let (sides, paired) = sides(options)?;
+    let [a, b] = &sides;
+    if (a.width, a.height) != (b.width, b.height) {
+        bail!(
+            "{} has {}x{} pixels and {} has {}x{}; render them at one size",
+            a.name,
+            a.width,
+            a.height,
+            b.name,
+            b.width,
+            b.height
+        );
+    }
+    let mut comparison = compare(a, b, paired);
+    comparison.notes.extend(note_on_jobs(a, b));
+    let text = text::told(&sides, &comparison);
+    if options.json == Some(JsonTarget::StandardOutput) {
+        eprint!("{text}")
+    } else {
+        print(&text)
+    }
+    if let Some(path) = &options.heat_map {
+        replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
+    }
+    if let Some(target) = &options.json {
+        write_json(&report(&sides, &comparison), target)?;
+    }
+    Ok(if comparison.is_equal() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Both sides; where backends render both, compared sample by sample besides.
+fn sides(options: &CompareOptions) -> Result<([Side; 2], Option<PairedSamples>)> {
+    let [first, second] = &options.sides;
+    let open = |side| Opened::open(side, options.encoding);
+    Ok(match (open(first)?, open(second)?) {
+        (Opened::Read(a), Opened::Read(b)) => ([*a, *b], None),
+        (Opened::Read(a), Opened::Backend(mut b)) => {
+            let b = beside(options, &a, &mut b)?;
+            ([*a, b], None)
+        }
+        (Opened::Backend(mut a), Opened::Read(b)) => {
+            let a = beside(options, &b, &mut a)?;
+            ([a, *b], None)
+        }
+        (Opened::Backend(mut a), Opened::Backend(mut b)) => {
+            let recipe = options.recipe.clone();
+            let (sides, paired) =
+                both(&recipe, options.samples.unwrap_or(recipe.samples_per_pixel), &mut a, &mut b)?;
+            (sides, Some(paired))
+        }
+    })
+}
+
+/// Renders what is to be held against `read`, at its size; the same samples if it is a film of the same job.
+fn beside(options: &CompareOptions, read: &Side, rendering: &mut Rendering) -> Result<Side> {
+    let mut recipe = options.recipe.clone();
+    (recipe.settings.width, recipe.settings.height) = (read.width, read.height);
+    recipe.settings.estimate_error |= read.film.is_none();
+    let job = recipe.job()?;
+    match (&read.film, &read.job) {
+        (Some(film), Some(other)) if *other == job && options.samples.is_none() => {
+            rendering.render(&recipe, &job, film.samples().iter())
+        }
+        _ => {
+            let of_film = read.film.as_ref().map(|film| film.sample_count());
+            let samples = options.samples.or(of_film).unwrap_or(recipe.samples_per_pixel);
+            rendering.render(&recipe, &job, std::iter::once(0..samples))
+        }
+    }
+}
+
+/// Renders the same samples with both.
+fn both(
+    recipe: &Recipe,
+    samples: u64,
+    a: &mut Rendering,
+    b: &mut Rendering,
+) -> Result<([Side; 2], PairedSamples)> {
+    let job = recipe.job()?;
+    let (mut film_a, mut film_b) = (job.new_film(), job.new_film());
+    let mut sums = PairedSums::default();
+    for index in 0..samples {
+        let (sample_a, sample_b) = (a.sample(&job, index)?, b.sample(&job, index)?);
+        sums.add(&sample_a, &sample_b);
+        film_a.merge(&sample_a)?;
+        film_b.merge(&sample_b)?;
+    }
+    let mut sides = [a.side(recipe, &job, film_a), b.side(recipe, &job, film_b)];
+    if sides[0].name == sides[1].name {
+        sides[0].name.push_str(" (first)");
+        sides[1].name.push_str(" (second)");
+    }
+    Ok((sides, sums.finish()))
+}
+
+/// What the pictures say of their jobs, where that matters.
+fn note_on_jobs(a: &Side, b: &Side) -> Option<String> {
+    let (job_a, job_b) = (a.job.as_ref()?, b.job.as_ref()?);
+    let (film_a, film_b) = (a.film.as_ref()?, b.film.as_ref()?);
+    if job_a == job_b {
+        let is_paired = film_a.samples() == film_b.samples();
+        return is_paired
+            .then(|| "both hold the same samples, so that only rounding can tell them apart".to_owned());
+    }
+    let is_other_picture =
+        job_a.scene() != job_b.scene() || job_a.camera() != job_b.camera() || job_a.rules() != job_b.rules();
+    is_other_picture.then(|| {
+        "the recipes differ in scene, camera or rules: these should be different pictures".to_owned()
+    })
+}
+
+fn report(sides: &[Side; 2], comparison: &Comparison) -> Report {
+    let side = |side: &Side| ReportedSide { name: side.name.clone(), about: side.about.clone() };
+    let test = &comparison.test;
+    Report {
+        schema: SCHEMA,
+        version: env!("CARGO_PKG_VERSION"),
+        sides: [side(&sides[0]), side(&sides[1])],
+        width: sides[0].width,
+        height: sides[0].height,
+        is_equal: comparison.is_equal(),
+        is_same: comparison.is_same,
+        times_noise: comparison.times_noise(),
+        rms: comparison.rms,
+        bias: comparison.bias,
+        bias_deviation: comparison.bias_deviation,
+        noise: comparison.noise,
+        evidence: comparison.evidence,
+        blocks: test.blocks.len(),
+        known_blocks: test.counts,
+        sums_of_squares: test.sums,
+        excess: test.excess,
+        largest: test.largest,
+        largest_limit: test.largest_limit,
+        worst_blocks: test
+            .worst(NAMED_BLOCKS)
+            .into_iter()
+            .map(|block| ReportedBlock {
+                x: [block.x.start, block.x.end],
+                y: [block.y.start, block.y.end],
+                z: block.z,
+                mean_difference: block.means,
+            })
+            .collect(),
+        paired_samples: comparison.paired,
+        reasons: comparison.reasons.clone(),
+        notes: comparison.notes.clone(),
+    }
+}
+
+fn write_json(report: &Report, target: &JsonTarget) -> Result<()> {
+    let mut text = serde_json::to_string_pretty(report).context("cannot make JSON of the comparison")?;
+    text.push('\n');
+    match target {
+        JsonTarget::StandardOutput => print(&text),
+        JsonTarget::File(path) => replace_file(path, |writer| writer.write_all(text.as_bytes()))?,
+    }
+    Ok(())
+}
+
+/// Prints to standard output; a reader that has gone away is none of our business.
+fn print(text: &str) {
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+}

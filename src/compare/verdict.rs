@@ -1,0 +1,332 @@
+//! Whether two pictures are the same but for noise and rounding.
+
+use super::side::Side;
+use crate::film::Film;
+use crate::statistics::blocks::{BlockTest, Differences, Noise, SUM_DEVIATIONS};
+use serde::Serialize;
+
+/// What rounding may move a mean by: docs/numerics.md, cases 12 and 13.
+pub const ROUNDING_BIAS: f64 = 2e-6;
+
+/// What rounding may move samples by, root of the mean square over those that take the same path.
+pub const ROUNDING_RMS: f64 = 5e-5;
+
+/// A sample that differs by more has taken another path.
+pub const PARTED: f64 = 1e-3;
+
+/// The share of samples that rounding may send another way.
+pub const PARTED_SHARE: f64 = 1e-3;
+
+/// Where the noise of the difference is known from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Evidence {
+    /// Both films have halves.
+    Halves,
+    /// The spread of the differences within each block.
+    Spread,
+}
+
+/// The same samples of two backends, one by one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PairedSamples {
+    /// Samples over all pixels.
+    pub count: u64,
+    /// Those of them with a channel that differs by more than [`PARTED`].
+    pub parted: u64,
+    /// Root of the mean square difference of the others.
+    pub rms: f64,
+    /// Mean difference of the others.
+    pub bias: f64,
+}
+
+impl PairedSamples {
+    /// Share of the samples that took another path.
+    pub fn parted_share(&self) -> f64 {
+        self.parted as f64 / self.count.max(1) as f64
+    }
+}
+
+/// Sums up [`PairedSamples`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PairedSums {
+    count: u64,
+    parted: u64,
+    sum: f64,
+    squares: f64,
+}
+
+impl PairedSums {
+    /// Adds a sample of every pixel as two backends have it.
+    pub fn add(&mut self, a: &Film, b: &Film) {
+        for pixel in 0..a.width() as usize * a.height() as usize {
+            let (a, b) = (a.pixel_sum(pixel).radiance(), b.pixel_sum(pixel).radiance());
+            let difference = [0, 1, 2].map(|channel| a[channel] - b[channel]);
+            self.count += 1;
+            if difference.iter().any(|x| x.abs() > PARTED) {
+                self.parted += 1;
+            } else {
+                self.sum += difference.iter().sum::<f64>();
+                self.squares += difference.iter().map(|x| x * x).sum::<f64>();
+            }
+        }
+    }
+
+    /// The figures.
+    pub fn finish(&self) -> PairedSamples {
+        let values = (3 * (self.count - self.parted)).max(1) as f64;
+        PairedSamples {
+            count: self.count,
+            parted: self.parted,
+            rms: (self.squares / values).sqrt(),
+            bias: self.sum / values,
+        }
+    }
+}
+
+/// What two pictures differ by, and what of it is noise.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Whether all pixels are equal to the bit.
+    pub is_same: bool,
+    /// Root of the mean square difference over pixels and channels.
+    pub rms: f64,
+    /// Mean difference, second less first.
+    pub bias: f64,
+    /// Its deviation, of noise and rounding, where the noise is known.
+    pub bias_deviation: Option<f64>,
+    /// Root of the mean square that the noise of both pictures would give if they had none in common.
+    pub noise: Option<f64>,
+    /// Where the noise is known from.
+    pub evidence: Evidence,
+    /// Channels of pixels that could not be compared.
+    pub left_out: usize,
+    /// The blocks.
+    pub test: BlockTest,
+    /// Sample by sample, where backends rendered both.
+    pub paired: Option<PairedSamples>,
+    /// Why they are not equal; empty if they are.
+    pub reasons: Vec<String>,
+    /// What the reader should know.
+    pub notes: Vec<String>,
+}
+
+/// Compares two pictures of one size.
+pub fn compare(a: &Side, b: &Side, paired: Option<PairedSamples>) -> Comparison {
+    let limit = a.limit.min(b.limit);
+    let known = |x: f64| if x < limit { x } else { f64::NAN };
+    let difference: Vec<[f64; 3]> =
+        a.pixels.iter().zip(&b.pixels).map(|(a, b)| [0, 1, 2].map(|i| known(b[i]) - known(a[i]))).collect();
+    let halves = a.film.as_ref().and_then(two_halves).zip(b.film.as_ref().and_then(two_halves));
+    let variances = halves.as_ref().map(|(a, b)| variances(a, b));
+    let steps = added(a.steps.as_ref(), b.steps.as_ref());
+    let evidence = if variances.is_some() { Evidence::Halves } else { Evidence::Spread };
+    let test = BlockTest::of(&Differences {
+        width: a.width,
+        values: &difference,
+        noise: variances.as_ref().map_or(Noise::Spread, |v| Noise::Variances(&v.of_difference)),
+        steps: steps.as_deref(),
+        tolerance: ROUNDING_BIAS,
+        rare: variances.as_ref().map_or(0.0, |v| v.rare),
+    });
+    let finite = || difference.iter().flatten().copied().filter(|x| x.is_finite());
+    let count = finite().count();
+    let mean = |sum: f64| sum / count.max(1) as f64;
+    let mut comparison = Comparison {
+        is_same: count > 0 && steps.is_none() && finite().all(|x| x == 0.0),
+        rms: mean(finite().map(|x| x * x).sum()).sqrt(),
+        bias: mean(finite().sum()),
+        bias_deviation: variances.as_ref().map(|v| v.of_mean.hypot(ROUNDING_BIAS)),
+        noise: variances.map(|v| v.of_both),
+        evidence,
+        left_out: 3 * difference.len() - count,
+        test,
+        paired,
+        reasons: Vec::new(),
+        notes: Vec::new(),
+    };
+    judge(&mut comparison, count);
+    comparison
+}
+
+fn judge(comparison: &mut Comparison, compared: usize) {
+    let Comparison { test, reasons, notes, .. } = comparison;
+    if compared == 0 {
+        reasons.push("no pixel could be compared".to_owned());
+    }
+    if test.largest_excess() > SUM_DEVIATIONS {
+        reasons.push(format!(
+            "the sum of z^2 over the blocks is {:.1} deviations above that of noise, which stays below {SUM_DEVIATIONS:.0}",
+            test.largest_excess()
+        ));
+    }
+    if test.largest > test.largest_limit {
+        reasons.push(format!(
+            "a block is {:.1} deviations off, but noise gives at most {:.1}",
+            test.largest, test.largest_limit
+        ));
+    }
+    if let Some(deviation) = comparison.bias_deviation
+        && comparison.bias.abs() > SUM_DEVIATIONS * deviation
+    {
+        let times = comparison.bias.abs() / deviation;
+        reasons.push(format!(
+            "the mean is {times:.1} deviations off, but noise gives at most {SUM_DEVIATIONS:.0}"
+        ));
+    }
+    if let Some(paired) = &comparison.paired {
+        if paired.rms > ROUNDING_RMS {
+            reasons.push(format!("samples on the same path differ by {:.1e} RMS, but rounding gives at most {ROUNDING_RMS:.0e}", paired.rms));
+        }
+        if paired.parted_share() > PARTED_SHARE {
+            reasons.push(format!(
+                "{:.1e} of the samples take another path, but rounding sends at most {PARTED_SHARE:.0e}",
+                paired.parted_share()
+            ));
+        }
+    }
+    if comparison.evidence == Evidence::Spread && !comparison.is_same {
+        notes.push(
+            "the noise is taken from the spread of the differences within each block, so that differences finer \
+             than 8 pixels pass for noise; films with two halves (--checkpoint) are compared more sharply"
+                .to_owned(),
+        );
+    }
+    if test.is_too_near() && comparison.paired.is_none() {
+        notes.push("the blocks are nearer to each other than the noise of the halves allows: do the halves belong to one picture?".to_owned());
+    }
+    if comparison.left_out > 0 {
+        let text = "are left out, with their blocks: they are at the end of a picture's whole numbers, or no numbers";
+        notes.push(format!("{} channels of pixels {text}", comparison.left_out));
+    }
+}
+
+struct Halves<'a> {
+    film: &'a Film,
+    scale: [f64; 2],
+}
+
+fn two_halves(film: &Film) -> Option<Halves<'_>> {
+    let counts = [0, 1].map(|half| if half < film.halves().len() { film.half_sample_count(half) } else { 0 });
+    let scale = counts.map(|count| 1.0 / count as f64);
+    counts.iter().all(|count| *count > 0).then_some(Halves { film, scale })
+}
+
+impl Halves<'_> {
+    /// Half the difference of the halves' means: its square estimates the variance of their mean.
+    fn deviation(&self, pixel: usize) -> [f64; 3] {
+        let mean = |half: usize| self.film.halves()[half][pixel].radiance().map(|sum| sum * self.scale[half]);
+        let (a, b) = (mean(0), mean(1));
+        [0, 1, 2].map(|channel| 0.5 * (a[channel] - b[channel]))
+    }
+}
+
+struct Variances {
+    /// Of each pixel's difference. What the pictures' noise has in common drops out.
+    of_difference: Vec<[f64; 3]>,
+    /// Root of the mean of both pictures' variances, added.
+    of_both: f64,
+    /// Deviation of the mean difference over all pixels and channels.
+    of_mean: f64,
+    /// What two samples of radiance 1, one in each half, bring to a pixel.
+    rare: f64,
+}
+
+fn variances(a: &Halves, b: &Halves) -> Variances {
+    let count = a.film.width() as usize * a.film.height() as usize;
+    let (mut both, mut of_mean) = (0.0, 0.0);
+    let of_difference = (0..count)
+        .map(|pixel| {
+            let (a, b) = (a.deviation(pixel), b.deviation(pixel));
+            both += a.iter().chain(&b).map(|x| x * x).sum::<f64>();
+            let deviation = [0, 1, 2].map(|channel| b[channel] - a[channel]);
+            // Channels of a pixel share their noise.
+            of_mean += (deviation.iter().sum::<f64>() / 3.0).powi(2);
+            deviation.map(|x| x * x)
+        })
+        .collect();
+    // As in a block, both halves may hold the same rare path.
+    let pair = |film: &Film| std::f64::consts::SQRT_2 / film.sample_count() as f64;
+    let rare = pair(a.film).hypot(pair(b.film));
+    Variances {
+        of_difference,
+        of_mean: of_mean.sqrt().hypot(rare) / count as f64,
+        of_both: (both / (3 * count) as f64).sqrt(),
+        rare,
+    }
+}
+
+fn added(a: Option<&Vec<[f64; 3]>>, b: Option<&Vec<[f64; 3]>>) -> Option<Vec<[f64; 3]>> {
+    match (a, b) {
+        (Some(a), Some(b)) => {
+            Some(a.iter().zip(b).map(|(a, b)| [0, 1, 2].map(|i| a[i].hypot(b[i]))).collect())
+        }
+        (one, other) => one.or(other).cloned(),
+    }
+}
+
+impl Comparison {
+    /// Whether nothing but noise and rounding tells them apart.
+    pub fn is_equal(&self) -> bool {
+        self.reasons.is_empty()
+    }
+
+    /// How many times its noise the difference is: 1 for pictures that are alike and share no random numbers. Of
+    /// pixels where the noise of both is known, else of blocks.
+    pub fn times_noise(&self) -> f64 {
+        match self.noise {
+            Some(noise) if noise > 0.0 => self.rms / noise,
+            Some(_) if self.rms == 0.0 => 0.0,
+            Some(_) => f64::INFINITY,
+            None => self.test.ratio(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{PixelSum, fixed_point};
+    use crate::sampling::pcg4d;
+
+    /// Two samples a pixel: noise that depends on pixel and half, and an offset.
+    fn side(seed: u32, offset: f64) -> Side {
+        let mut film = Film::new(80, 48, 2);
+        for half in 0..2_u32 {
+            for pixel in 0..80 * 48 {
+                let noise = f64::from(pcg4d([pixel, half, seed, 5])[0]) / 4_294_967_296.0;
+                let sum: PixelSum = fixed_point([0.5 + 0.2 * noise + offset; 3]).unwrap();
+                film.halves_mut()[half as usize][pixel as usize] = sum;
+            }
+        }
+        film.record(0..2, 0).unwrap();
+        Side::of_film(String::new(), String::new(), film)
+    }
+
+    #[test]
+    fn noise_is_equal_and_an_offset_that_noise_hides_is_not_once_samples_are_the_same() {
+        let noise = compare(&side(1, 0.0), &side(2, 0.0), None);
+        assert!(noise.is_equal(), "{:?}", noise.reasons);
+        assert!((noise.times_noise() - 1.0).abs() < 0.1, "{}", noise.times_noise());
+        assert!(compare(&side(1, 0.0), &side(2, 2e-3), None).is_equal());
+        let same = compare(&side(1, 0.0), &side(1, 2e-3), None);
+        assert!(!same.is_equal() && same.times_noise() < 0.1, "{same:?}");
+        assert!(compare(&side(1, 0.0), &side(1, 1e-6), None).is_equal());
+        assert!(compare(&side(1, 0.0), &side(1, 0.0), None).is_same);
+    }
+
+    #[test]
+    fn paired_samples_tell_other_paths_from_rounding() {
+        let (a, b) = (side(1, 0.0), side(1, 1e-5));
+        let mut sums = PairedSums::default();
+        let (film_a, film_b) = (a.film.as_ref().unwrap(), b.film.as_ref().unwrap());
+        sums.add(film_a, film_b);
+        let found = sums.finish();
+        assert_eq!((found.count, found.parted), (80 * 48, 0));
+        // A film of two samples has their sum.
+        assert!((found.rms - 2e-5).abs() < 1e-6, "{found:?}");
+        let other = side(2, 0.0);
+        sums.add(film_a, other.film.as_ref().unwrap());
+        assert!(sums.finish().parted_share() > 0.4);
+    }
+}

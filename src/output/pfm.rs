@@ -1,0 +1,97 @@
+//! PFM: linear float RGB or grey, bottom row first, as other renderers write it.
+//!
+//! Source: Paul Debevec, "PFM Portable FloatMap Image Format".
+
+use std::io::{self, BufRead, Read};
+
+/// Longest word of the header, bytes.
+const WORD_LIMIT: usize = 32;
+
+/// Width, height and linear RGB, top row first. Grey becomes three equal channels.
+pub(super) fn read(mut reader: impl BufRead) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
+    let channels = match word(&mut reader)?.as_str() {
+        "PF" => 3,
+        "Pf" => 1,
+        other => return Err(invalid(format!("it begins with {other:?} where a PFM has PF or Pf"))),
+    };
+    let mut side = |what: &str| -> io::Result<u32> {
+        let text = word(&mut reader)?;
+        text.parse().map_err(|_| invalid(format!("its {what} is {text:?}")))
+    };
+    let (width, height) = (side("width")?, side("height")?);
+    let text = word(&mut reader)?;
+    let scale: f32 = text.parse().map_err(|_| invalid(format!("its scale is {text:?}")))?;
+    let count = super::read::pixel_count(width, height)? * channels;
+    // Read what is there before room is made for what the header promises.
+    let mut bytes = Vec::new();
+    reader.take(4 * count as u64).read_to_end(&mut bytes)?;
+    if bytes.len() != 4 * count {
+        return Err(invalid(format!("it ends after {} of {} bytes of pixels", bytes.len(), 4 * count)));
+    }
+    let (words, _) = bytes.as_chunks::<4>();
+    // The scale's sign tells the order of bytes; its size, a unit that renderers leave at 1, is not applied.
+    let value =
+        |word: &[u8; 4]| if scale < 0.0 { f32::from_le_bytes(*word) } else { f32::from_be_bytes(*word) };
+    let rows = words.chunks_exact(width as usize * channels).rev();
+    let pixels = rows
+        .flat_map(|row| row.chunks_exact(channels))
+        .map(|pixel| [0, 1, 2].map(|channel: usize| value(&pixel[channel.min(channels - 1)])))
+        .collect();
+    Ok((width, height, pixels))
+}
+
+/// The next word of the header and the one white space after it.
+fn word(reader: &mut impl BufRead) -> io::Result<String> {
+    let mut text = String::new();
+    loop {
+        let mut byte = [0];
+        reader.read_exact(&mut byte)?;
+        match byte[0] {
+            space if space.is_ascii_whitespace() && text.is_empty() => {}
+            space if space.is_ascii_whitespace() => return Ok(text),
+            other if text.len() < WORD_LIMIT && other.is_ascii_graphic() => text.push(char::from(other)),
+            _ => return Err(invalid("its header is not that of a PFM".to_owned())),
+        }
+    }
+}
+
+fn invalid(reason: String) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, reason)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(header: &str, values: &[f32], little: bool) -> Vec<u8> {
+        let bytes = values.iter().flat_map(|x| if little { x.to_le_bytes() } else { x.to_be_bytes() });
+        header.bytes().chain(bytes).collect()
+    }
+
+    #[test]
+    fn rows_are_turned_over_and_both_orders_of_bytes_are_read() {
+        let values: Vec<f32> = (0..12).map(|i| i as f32).collect();
+        let expected = vec![[6.0, 7.0, 8.0], [9.0, 10.0, 11.0], [0.0, 1.0, 2.0], [3.0, 4.0, 5.0]];
+        for (header, little) in [("PF\n2 2\n-1.0\n", true), ("PF 2 2 1\n", false)] {
+            let found = read(file(header, &values, little).as_slice()).unwrap();
+            assert_eq!(found, (2, 2, expected.clone()));
+        }
+        let grey = read(file("Pf\n1 2\n-1\n", &[0.25, 0.5], true).as_slice()).unwrap();
+        assert_eq!(grey, (1, 2, vec![[0.5; 3], [0.25; 3]]));
+    }
+
+    #[test]
+    fn what_is_no_pfm_is_refused_in_words() {
+        let cases: [(&[u8], &str); 5] = [
+            (b"P6\n1 1\n255\n", "\"P6\""),
+            (b"PF\nx 1\n-1\n", "width"),
+            (b"PF\n0 1\n-1\n", "0x1"),
+            (b"PF\n99999 99999\n-1\n", "99999x99999"),
+            (b"PF\n2 1\n-1\n1234", "4 of 24 bytes"),
+        ];
+        for (bytes, part) in cases {
+            let message = read(bytes).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Pictures of any program, as linear radiance: PFM, EXR, PNG and binary PPM.
+
+use super::OutputError;
+use super::pfm;
+use crate::film::checkpoint;
+use crate::stages::Transfer;
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek};
+use std::path::Path;
+
+/// What numbers of 8 or 16 bits stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Encoding {
+    /// As Weekender and the book write them: the transfer, then `floor(256 v)`.
+    Book(Transfer),
+    /// The curve of sRGB, rounded, as most other programs write pictures.
+    Srgb,
+}
+
+/// A picture from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReadPicture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Linear RGB, row by row from the top; NaN where an 8-bit channel is at its end and tells only a limit.
+    pub pixels: Vec<[f64; 3]>,
+    /// By how much a channel can be off for being a whole number, to either side, linear; `None` in float files.
+    pub steps: Option<Vec<[f64; 3]>>,
+    /// Channels at or above this, linear, are NaN; infinite in float files.
+    pub limit: f64,
+}
+
+/// Most pixels of a picture that is read.
+const PIXEL_LIMIT: u64 = 1 << 28;
+
+/// Pixels of a picture of this size.
+pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
+    let count = u64::from(width) * u64::from(height);
+    if !(1..=PIXEL_LIMIT).contains(&count) {
+        let reason = format!("it has {width}x{height} pixels, where 1 to {PIXEL_LIMIT} can be read");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+    }
+    Ok(count as usize)
+}
+
+/// Reads a picture. What the file is shows in its first bytes; its name does not matter. `encoding` is that of
+/// whole numbers.
+///
+/// # Errors
+/// [`OutputError::Read`].
+pub fn read_picture(path: &Path, encoding: Encoding) -> Result<ReadPicture, OutputError> {
+    let read = || {
+        let mut reader = BufReader::new(File::open(path)?);
+        let mut start = Vec::new();
+        reader.by_ref().take(4).read_to_end(&mut start)?;
+        reader.rewind()?;
+        match start.as_slice() {
+            [b'P', b'F' | b'f', ..] => pfm::read(reader).map(float),
+            start if start.starts_with(&checkpoint::MAGIC) => read_exr(reader).map(float),
+            [0x89, b'P', b'N', b'G', ..] => read_whole(reader, image::ImageFormat::Png, encoding),
+            [b'P', b'2'..=b'6', ..] => read_whole(reader, image::ImageFormat::Pnm, encoding),
+            _ => Err(invalid("it is no PFM, EXR, PNG or PPM")),
+        }
+    };
+    read().map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
+}
+
+fn invalid(reason: impl ToString) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, reason.to_string())
+}
+
+fn float((width, height, pixels): (u32, u32, Vec<[f32; 3]>)) -> ReadPicture {
+    let pixels = pixels.into_iter().map(|pixel| pixel.map(f64::from)).collect();
+    ReadPicture { width, height, pixels, steps: None, limit: f64::INFINITY }
+}
+
+fn read_exr(reader: BufReader<File>) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
+    use exr::prelude::*;
+    type Pixels = (usize, Vec<[f32; 3]>);
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .rgb_channels(
+            |size: Vec2<usize>, _: &RgbChannels| (size.x(), vec![[0.0_f32; 3]; size.area()]),
+            |(width, pixels): &mut Pixels, at: Vec2<usize>, (r, g, b): (f32, f32, f32)| {
+                pixels[at.y() * *width + at.x()] = [r, g, b];
+            },
+        )
+        .first_valid_layer()
+        .all_attributes()
+        .non_parallel()
+        .from_buffered(reader)
+        .map_err(invalid)?;
+    let size = image.layer_data.size;
+    let (Ok(width), Ok(height)) = (u32::try_from(size.x()), u32::try_from(size.y())) else {
+        return Err(invalid(format!("a size of {}x{}", size.x(), size.y())));
+    };
+    pixel_count(width, height)?;
+    Ok((width, height, image.layer_data.channel_data.pixels.1))
+}
+
+fn read_whole(
+    reader: BufReader<File>,
+    format: image::ImageFormat,
+    encoding: Encoding,
+) -> io::Result<ReadPicture> {
+    let mut reader = image::ImageReader::with_format(reader, format);
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(8 * PIXEL_LIMIT);
+    reader.limits(limits);
+    let image = reader.decode().map_err(invalid)?;
+    let (width, height) = (image.width(), image.height());
+    pixel_count(width, height)?;
+    let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
+    let (levels, values): (u32, Vec<u16>) = if is_deep {
+        (1 << 16, image.to_rgb16().into_raw())
+    } else {
+        (1 << 8, image.to_rgb8().into_raw().into_iter().map(u16::from).collect())
+    };
+    let (triples, _) = values.as_chunks::<3>();
+    let intervals = triples.iter().enumerate().map(|(index, triple)| {
+        let row = index / width as usize;
+        triple.map(|value| encoding.interval(value, levels, row, height as usize))
+    });
+    let (pixels, steps) = intervals
+        .map(|pixel| {
+            (pixel.map(|[low, high]| 0.5 * (low + high)), pixel.map(|[low, high]| 0.5 * (high - low)))
+        })
+        .unzip();
+    let [_, limit] = encoding.interval((levels - 2) as u16, levels, height as usize - 1, height as usize);
+    Ok(ReadPicture { width, height, pixels, steps: Some(steps), limit })
+}
+
+impl Encoding {
+    /// The linear values that become `value` of `levels`; NaN at the upper end, where all brighter ones are, too.
+    fn interval(self, value: u16, levels: u32, row: usize, height: usize) -> [f64; 2] {
+        if u32::from(value) + 1 == levels {
+            return [f64::NAN; 2];
+        }
+        let (value, levels) = (f64::from(value), f64::from(levels));
+        match self {
+            Encoding::Book(transfer) => {
+                let is_gamma = transfer.is_gamma(row, height);
+                [value, value + 1.0].map(|end| {
+                    let end = end / levels;
+                    if is_gamma { end * end } else { end }
+                })
+            }
+            Encoding::Srgb => {
+                [value - 0.5, value + 0.5].map(|end| srgb_to_linear(end.max(0.0) / (levels - 1.0)))
+            }
+        }
+    }
+}
+
+/// IEC 61966-2-1.
+fn srgb_to_linear(v: f64) -> f64 {
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::to_byte;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_byte_stands_for_the_values_that_become_it(x in 0.0..1.2_f64) {
+            for transfer in [Transfer::Linear, Transfer::Gamma2] {
+                let byte = to_byte(x, transfer, 0, 1);
+                let [low, high] = Encoding::Book(transfer).interval(byte.into(), 256, 0, 1);
+                if byte == 255 {
+                    prop_assert!(low.is_nan());
+                } else {
+                    prop_assert!(low <= x && x < high, "{x}: {low} to {high}");
+                }
+            }
+        }
+
+        #[test]
+        fn srgb_is_read_within_its_steps(x in 0.0..0.99_f64) {
+            let v = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+            let byte = (255.0 * v).round() as u16;
+            if byte < 255 {
+                let [low, high] = Encoding::Srgb.interval(byte, 256, 0, 1);
+                prop_assert!(low - 1e-9 <= x && x <= high + 1e-9, "{x}: {low} to {high}");
+            }
+        }
+    }
+}

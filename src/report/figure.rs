@@ -1,0 +1,99 @@
+//! The plot.
+
+use super::data::Data;
+use super::summary::{CurveSummary, TARGETS};
+use crate::chart::{Axis, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
+
+/// Error against seconds, a chart for each scene.
+pub fn figure(data: &Data, curves: &[CurveSummary]) -> Figure {
+    let mut scenes: Vec<&str> = Vec::new();
+    for curve in curves {
+        if !scenes.contains(&curve.curve.scene.as_str()) {
+            scenes.push(&curve.curve.scene);
+        }
+    }
+    let columns = if scenes.len() > 1 { 2 } else { 1 };
+    let rows = scenes.len().div_ceil(columns).max(1) as u32;
+    let settings = &data.settings;
+    let about = format!(
+        "lower and more to the left is better; each mark doubles the samples; bars span {} pictures; {}",
+        settings.seeds, settings.software
+    );
+    Figure {
+        title: "How fast a picture gets better".to_owned(),
+        about,
+        size: [560 * columns as u32, 90 + 470 * rows],
+        columns,
+        panels: scenes.into_iter().map(|scene| Panel::Lines(chart(scene, data, curves))).collect(),
+    }
+}
+
+fn chart(scene: &str, data: &Data, curves: &[CurveSummary]) -> LineChart {
+    let of_scene: Vec<&CurveSummary> = curves.iter().filter(|c| c.curve.scene == scene).collect();
+    let points = || of_scene.iter().flat_map(|c| &c.points);
+    let least = |of: fn(&super::summary::CurvePoint) -> f64| points().map(of).fold(f64::INFINITY, f64::min);
+    let most = |of: fn(&super::summary::CurvePoint) -> f64| points().map(of).fold(0.0, f64::max);
+    let times = [least(|p| p.wall_seconds), most(|p| p.wall_seconds)];
+    let errors = [least(|p| p.rmse), most(|p| p.rmse)];
+    let bottom = 0.7 * errors[0];
+    let mut series = guides(times, errors, bottom, &of_scene);
+    series.extend(floor(scene, data, times, bottom));
+    series.extend(of_scene.iter().map(|curve| measured(curve, bottom)));
+    let axis = |label: &str, limits: [f64; 2]| {
+        // A chart without points has no limits of its own.
+        let limits = (limits[0] > 0.0 && limits[0] < limits[1]).then_some(limits);
+        Axis { limits, ..Axis::new(label, Scale::Log) }
+    };
+    LineChart {
+        title: scene.to_owned(),
+        x: axis("seconds of rendering", [0.8 * times[0], 1.25 * times[1]]),
+        y: axis("error (RMSE, white is 1)", [bottom, 1.4 * errors[1]]),
+        series,
+        legend: Some(Corner::LowerLeft),
+    }
+}
+
+fn measured(curve: &CurveSummary, bottom: f64) -> Series {
+    let points = curve.points.iter().map(|p| Point {
+        x: p.wall_seconds,
+        y: p.rmse,
+        spread: Some(p.range.map(|end| end.max(bottom))),
+    });
+    Series {
+        name: format!("{}, {}", curve.curve.backend, curve.curve.sampler),
+        points: points.collect(),
+        look: Look::Measured,
+    }
+}
+
+fn line(name: String, points: &[[f64; 2]]) -> Series {
+    let points = points.iter().map(|[x, y]| Point { x: *x, y: *y, spread: None }).collect();
+    Series { name, points, look: Look::Guide }
+}
+
+/// The slope of independent samples, the target, and when each curve reaches it.
+fn guides(times: [f64; 2], errors: [f64; 2], bottom: f64, curves: &[&CurveSummary]) -> Vec<Series> {
+    let mut guides = Vec::new();
+    // From the upper left corner down, as far as the chart goes.
+    let end = times[1].min(times[0] * (errors[1] / bottom).powi(2));
+    let at = |time: f64| errors[1] * (times[0] / time).sqrt();
+    guides.push(line(
+        "half the error for 4 x the time".to_owned(),
+        &[[times[0], at(times[0])], [end, at(end)]],
+    ));
+    let target = TARGETS[0];
+    if target > bottom && target < errors[1] {
+        guides.push(line(format!("target: {target}"), &[[times[0], target], [times[1], target]]));
+        for crossing in curves.iter().filter_map(|c| c.times[0]).filter(|c| !c.is_extrapolated) {
+            guides.push(line(String::new(), &[[crossing.time, target], [crossing.time, bottom]]));
+        }
+    }
+    guides
+}
+
+/// Where rounding would stop the error from falling, if the chart reaches so low.
+fn floor(scene: &str, data: &Data, times: [f64; 2], bottom: f64) -> Option<Series> {
+    let of_scene = data.rounding.iter().filter(|row| row.scene == scene);
+    let floor = of_scene.filter_map(|row| row.floor).fold(0.0, f64::max);
+    (floor > bottom).then(|| line("rounding".to_owned(), &[[times[0], floor], [times[1], floor]]))
+}

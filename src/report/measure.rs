@@ -1,0 +1,153 @@
+//! Pictures that grow, and what they are off by.
+
+use super::data::{Curve, Measured, Rounding, Run};
+use super::reference::Reference;
+use crate::film::Film;
+use crate::render::{RenderError, RenderJob, Renderer};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// How far a picture grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Seconds of tracing.
+    pub seconds: f64,
+    /// Samples per pixel.
+    pub samples: u64,
+}
+
+/// Renders 1, 2, 4 ... samples and measures each. The last step is the last that should end within the limits;
+/// two samples are always taken. `None` if `go_on` said no.
+///
+/// # Errors
+/// [`RenderError`].
+pub fn run(
+    curve: &Curve,
+    job: &RenderJob,
+    renderer: &mut dyn Renderer,
+    reference: &Reference,
+    limits: Limits,
+    go_on: impl Fn() -> bool,
+) -> Result<Option<Run>, RenderError> {
+    let never = AtomicBool::new(false);
+    let begin = Instant::now();
+    renderer.prepare(job, &never)?;
+    let prepare_seconds = begin.elapsed().as_secs_f64();
+    // What is first touched takes longer: caches, threads and the system's memory are warmed outside the clock.
+    renderer.accumulate(job, 0..1, &mut job.new_film(), &never)?;
+    let info = renderer.info();
+    let mut film = job.new_film();
+    let (mut trace, mut wall) = (Duration::ZERO, Duration::ZERO);
+    let (mut points, mut from, mut rejected) = (Vec::new(), 0, 0);
+    let mut to = 1;
+    while to <= limits.samples.max(2) {
+        if !go_on() {
+            return Ok(None);
+        }
+        let begin = Instant::now();
+        let stats = renderer.accumulate(job, from..to, &mut film, &never)?;
+        wall += begin.elapsed();
+        trace += stats.trace;
+        rejected += stats.rejected;
+        let errors = reference.errors(&film);
+        points.push(Measured {
+            samples: to,
+            trace_seconds: trace.as_secs_f64(),
+            wall_seconds: wall.as_secs_f64(),
+            mse: errors.mse,
+            rel_mse: errors.rel_mse,
+            flip: errors.flip,
+            mse_estimate: film.error().map(|error| error.rmse.powi(2)),
+            rejected,
+        });
+        // The next step takes as long as all before it.
+        if to >= 2 && 2.0 * wall.as_secs_f64() > limits.seconds {
+            break;
+        }
+        (from, to) = (to, 2 * to);
+    }
+    Ok(Some(Run {
+        curve: curve.clone(),
+        seed: job.settings().seed,
+        about: format!("{} {}, {} lanes, {} threads", info.name, info.device, info.lanes, info.threads),
+        prepare_seconds,
+        points,
+    }))
+}
+
+/// Compares two films of the same samples, with two halves.
+///
+/// A difference is the systematic one of rounding and the chance one of paths that rounding sent another way. The
+/// second is another in each half, so the mean product of the halves' differences estimates the square of the
+/// first.
+pub fn rounding(scene: &str, backend: &str, film: &Film, exact: &Film) -> Rounding {
+    let scale = [0, 1].map(|half| 1.0 / film.half_sample_count(half) as f64);
+    let (mut sum, mut squares, mut products, mut product_squares) = (0.0, 0.0, 0.0, 0.0);
+    let pixels = film.halves()[0].len();
+    for pixel in 0..pixels {
+        let difference = |half: usize| {
+            let (x, y) = (film.halves()[half][pixel].radiance(), exact.halves()[half][pixel].radiance());
+            [0, 1, 2].map(|channel| (x[channel] - y[channel]) * scale[half])
+        };
+        let (a, b) = (difference(0), difference(1));
+        let mut product = 0.0;
+        for (a, b) in a.into_iter().zip(b) {
+            sum += 0.5 * (a + b);
+            squares += (0.5 * (a + b)).powi(2);
+            product += a * b;
+        }
+        products += product;
+        // Channels of a pixel are much alike: only pixels count as independent.
+        product_squares += product * product;
+    }
+    let values = (3 * pixels) as f64;
+    let floor_square = products / values;
+    let deviation = product_squares.sqrt() / values;
+    Rounding {
+        scene: scene.to_owned(),
+        backend: backend.to_owned(),
+        samples: film.sample_count(),
+        bias: sum / values,
+        rms: (squares / values).sqrt(),
+        floor: (floor_square > 2.0 * deviation).then(|| floor_square.sqrt()),
+        floor_limit: (floor_square.max(0.0) + 2.0 * deviation).sqrt(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::{PixelSum, fixed_point};
+    use crate::sampling::pcg4d;
+
+    /// A film of two samples a pixel: `base`, plus in each half what `of` says.
+    fn film(of: impl Fn(u32, u32) -> f64) -> Film {
+        let mut film = Film::new(64, 64, 2);
+        for half in 0..2 {
+            for pixel in 0..64 * 64 {
+                let value = [0.5 + of(pixel, half); 3];
+                let sum: PixelSum = fixed_point(value).unwrap();
+                film.halves_mut()[half as usize][pixel as usize] = sum;
+            }
+        }
+        film.record(0..2, 0).unwrap();
+        film
+    }
+
+    /// Rare and large, as of paths that took another way.
+    fn chance(pixel: u32, half: u32) -> f64 {
+        let [a, b, ..] = pcg4d([pixel, half, 3, 9]);
+        if !a.is_multiple_of(50) { 0.0 } else { f64::from(b) / 4_294_967_296.0 - 0.5 }
+    }
+
+    #[test]
+    fn a_systematic_difference_is_told_from_one_of_chance() {
+        let exact = film(|_, _| 0.0);
+        let found = rounding("s", "b", &film(|_, _| 1e-3), &exact);
+        assert!((found.floor.unwrap() - 1e-3).abs() < 1e-6 && (found.bias - 1e-3).abs() < 1e-6, "{found:?}");
+        let found = rounding("s", "b", &film(chance), &exact);
+        assert!(found.floor.is_none() && found.floor_limit < found.rms, "{found:?}");
+        let found = rounding("s", "b", &film(|p, h| chance(p, h) + 1e-2), &exact);
+        assert!((found.floor.unwrap() - 1e-2).abs() < 4e-3, "{found:?}");
+    }
+}

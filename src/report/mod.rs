@@ -1,0 +1,269 @@
+//! `weekender report`: error against time, for scenes, backends and samplers.
+
+mod data;
+mod figure;
+mod measure;
+mod progress;
+mod reference;
+mod summary;
+mod table;
+
+use crate::backends;
+use crate::chart;
+use crate::cli::{ReferenceChoice, ReportOptions};
+use crate::failure::{Failure, INTERRUPTED};
+use crate::film::{Film, check_writable, replace_file};
+use crate::interrupt::Interrupt;
+use crate::recipe::Recipe;
+use crate::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
+use anyhow::{Context, Result};
+use data::{Curve, Data, SCHEMA, Settings};
+use measure::Limits;
+use progress::Progress;
+use reference::Reference;
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+
+/// Samples per pixel of the films that tell rounding.
+const ROUNDING_SAMPLES: u64 = 256;
+
+/// Seconds that a reference and a scene's rounding are expected to take, for the bar before they are known.
+const EXPECTED_SECONDS: f64 = 40.0;
+
+/// Measures, and writes the report into its directory. What an earlier, interrupted report of the same settings has
+/// measured there is not measured again.
+///
+/// # Errors
+/// [`Failure::Input`] before anything is rendered, [`Failure::Run`] later.
+pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
+    let mut report = Report::open(options).map_err(Failure::Input)?;
+    let outcome = report.measure();
+    report.progress.clear();
+    // What has been measured is kept, whatever happened.
+    let written = if report.data.runs.is_empty() { Ok(()) } else { report.write() };
+    outcome.and(written).map_err(Failure::Run)?;
+    if report.interrupt.is_set() {
+        eprintln!("interrupted; the same command goes on from here");
+        return Ok(ExitCode::from(INTERRUPTED));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+struct Report<'a> {
+    options: &'a ReportOptions,
+    data: Data,
+    renderers: BTreeMap<String, Box<dyn Renderer>>,
+    interrupt: Interrupt,
+    progress: Progress,
+}
+
+impl<'a> Report<'a> {
+    /// Finds out what would fail later, and reads what is there.
+    fn open(options: &'a ReportOptions) -> Result<Self> {
+        let out = &options.out;
+        std::fs::create_dir_all(out)
+            .with_context(|| format!("cannot make the directory {}; choose another --out", out.display()))?;
+        check_writable(&out.join("report.json"))?;
+        let mut renderers = BTreeMap::new();
+        for (name, choice) in &options.backends {
+            let renderer =
+                backends::create(choice).with_context(|| format!("the backend {name} cannot be had"))?;
+            renderers.insert(name.clone(), renderer);
+        }
+        if let ReferenceChoice::File(path) = &options.reference {
+            for recipe in &options.scenes {
+                reference::read(path, recipe)?;
+            }
+        }
+        let settings = settings(options);
+        let data = resumed(&out.join("report.json"), &settings).unwrap_or_else(|| Data {
+            schema: SCHEMA,
+            settings,
+            references: Vec::new(),
+            runs: Vec::new(),
+            rounding: Vec::new(),
+        });
+        let curves = options.scenes.len() * options.backends.len() * options.samplers.len();
+        let total = curves as f64 * options.time_limit + 2.0 * EXPECTED_SECONDS * options.scenes.len() as f64;
+        Ok(Report {
+            options,
+            data,
+            renderers,
+            interrupt: Interrupt::install()?,
+            progress: Progress::new(options.progress, total),
+        })
+    }
+
+    /// Measures what is missing; less if interrupted.
+    fn measure(&mut self) -> Result<()> {
+        let mut references = Vec::new();
+        for recipe in &self.options.scenes {
+            match self.reference(recipe)? {
+                Some(reference) => references.push(reference),
+                None => return Ok(()),
+            }
+        }
+        self.data.references = references.iter().map(|reference| reference.used.clone()).collect();
+        // Seeds outside, curves inside: what else the machine does is shared by all curves.
+        for seed in 0..self.options.seeds {
+            for (recipe, reference) in self.options.scenes.iter().zip(&references) {
+                for (backend, _) in &self.options.backends {
+                    for sampler in &self.options.samplers {
+                        self.run(recipe, reference, backend, *sampler, seed)?;
+                        if self.interrupt.is_set() {
+                            return Ok(());
+                        }
+                    }
+                }
+            }
+        }
+        for recipe in &self.options.scenes {
+            self.rounding(recipe)?;
+        }
+        Ok(())
+    }
+
+    fn reference(&mut self, recipe: &Recipe) -> Result<Option<Reference>> {
+        let (interrupt, progress) = (&self.interrupt, &mut self.progress);
+        let reference = match &self.options.reference {
+            ReferenceChoice::File(path) => Some(reference::read(path, recipe)?),
+            ReferenceChoice::Make { choice, samples, .. } => {
+                let path = self.options.out.join(format!("reference-{}.exr", plain(&recipe.name)));
+                let what = format!("reference of {}", recipe.name);
+                reference::make(&path, recipe, choice, *samples, |share| {
+                    progress.at(&what, share * EXPECTED_SECONDS);
+                    !interrupt.is_set()
+                })?
+            }
+        };
+        self.progress.finished(EXPECTED_SECONDS);
+        Ok(reference)
+    }
+
+    fn run(
+        &mut self,
+        recipe: &Recipe,
+        reference: &Reference,
+        backend: &str,
+        sampler: SamplerKind,
+        seed: u32,
+    ) -> Result<()> {
+        let curve = Curve {
+            scene: recipe.name.clone(),
+            backend: backend.to_owned(),
+            sampler: sampler.name().to_owned(),
+        };
+        let seconds = self.options.time_limit / f64::from(self.options.seeds);
+        self.progress.at(&format!("{}, {backend}, {}, seed {seed}", curve.scene, curve.sampler), 0.0);
+        if !self.data.runs.iter().any(|run| run.curve == curve && run.seed == seed) {
+            let job = job(recipe, sampler, seed)?;
+            let limits = Limits { seconds, samples: self.options.max_samples };
+            let interrupt = &self.interrupt;
+            let Some(renderer) = self.renderers.get_mut(backend) else { return Ok(()) };
+            let run =
+                measure::run(&curve, &job, renderer.as_mut(), reference, limits, || !interrupt.is_set())?;
+            if let Some(run) = run {
+                self.data.runs.push(run);
+                self.write_json()?;
+            }
+        }
+        self.progress.finished(seconds);
+        Ok(())
+    }
+
+    /// The same samples in `f64` and on every other backend.
+    fn rounding(&mut self, recipe: &Recipe) -> Result<()> {
+        let is_there = |data: &Data, backend: &str| {
+            data.rounding.iter().any(|row| row.scene == recipe.name && row.backend == backend)
+        };
+        let missing: Vec<String> = self
+            .renderers
+            .keys()
+            .filter(|name| name.as_str() != "reference" && !is_there(&self.data, name))
+            .cloned()
+            .collect();
+        if missing.is_empty() || self.interrupt.is_set() {
+            return Ok(());
+        }
+        self.progress.at(&format!("rounding of {}", recipe.name), 0.0);
+        let job = job(recipe, SamplerKind::Sobol, 0)?;
+        let samples = self.options.max_samples.clamp(2, ROUNDING_SAMPLES);
+        let mut exact = backends::create(&backends::BackendChoice::Reference { threads: None })?;
+        let exact = film(exact.as_mut(), &job, samples)?;
+        for name in missing {
+            let Some(renderer) = self.renderers.get_mut(&name) else { continue };
+            let film = film(renderer.as_mut(), &job, samples)?;
+            self.data.rounding.push(measure::rounding(&recipe.name, &name, &film, &exact));
+        }
+        self.progress.finished(EXPECTED_SECONDS);
+        self.write_json()
+    }
+
+    fn write_json(&self) -> Result<()> {
+        let mut text = serde_json::to_string_pretty(&self.data).context("cannot make JSON of the report")?;
+        text.push('\n');
+        write_text(&self.options.out.join("report.json"), &text)
+    }
+
+    fn write(&self) -> Result<()> {
+        let out = &self.options.out;
+        self.write_json()?;
+        let curves = summary::summaries(&self.data);
+        write_text(&out.join("report.csv"), &table::csv(&self.data))?;
+        write_text(&out.join("report.md"), &table::markdown(&self.data, &curves, &self.options.command))?;
+        let figure = figure::figure(&self.data, &curves);
+        for name in ["error-vs-time.png", "error-vs-time.svg"] {
+            chart::save(&out.join(name), &figure)?;
+        }
+        println!(
+            "wrote report.md, report.csv, report.json, error-vs-time.png and .svg into {}",
+            out.display()
+        );
+        Ok(())
+    }
+}
+
+fn settings(options: &ReportOptions) -> Settings {
+    let (reference, reference_samples) = match &options.reference {
+        ReferenceChoice::File(path) => (path.display().to_string(), 0),
+        ReferenceChoice::Make { name, samples, .. } => (name.clone(), *samples),
+    };
+    Settings {
+        software: concat!("Weekender ", env!("CARGO_PKG_VERSION")).to_owned(),
+        size: options.size,
+        seeds: options.seeds,
+        time_limit: options.time_limit,
+        max_samples: options.max_samples,
+        reference_samples,
+        reference,
+    }
+}
+
+/// What is in `path`, if it was measured with the same settings.
+fn resumed(path: &Path, settings: &Settings) -> Option<Data> {
+    let data: Data = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
+    (data.schema == SCHEMA && data.settings == *settings).then_some(data)
+}
+
+fn job(recipe: &Recipe, sampler: SamplerKind, seed: u32) -> Result<RenderJob> {
+    let settings = RenderSettings { sampler, seed, estimate_error: true, ..recipe.settings };
+    Ok(Recipe { settings, ..recipe.clone() }.job()?)
+}
+
+fn film(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Result<Film> {
+    let mut film = job.new_film();
+    renderer.accumulate(job, 0..samples, &mut film, &AtomicBool::new(false))?;
+    Ok(film)
+}
+
+/// A name that every file system takes.
+fn plain(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
+}
+
+fn write_text(path: &Path, text: &str) -> Result<()> {
+    Ok(replace_file(path, |writer| writer.write_all(text.as_bytes()))?)
+}

@@ -1,0 +1,185 @@
+//! The pictures that errors are measured against, and the errors.
+
+use super::data::ReferenceUsed;
+use crate::backends::{self, BackendChoice};
+use crate::film::{Description, Film, checkpoint, key};
+use crate::progressive::PassSizer;
+use crate::recipe::{Recipe, file};
+use crate::render::{RenderJob, RenderSettings, SamplerKind};
+use crate::stages::Transfer;
+use crate::statistics::flip::Appearance;
+use anyhow::{Context, Result, bail};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// No picture of a report has this seed, so that none shares numbers with its reference.
+const SEED: u32 = 0x5EED_0000;
+
+/// A picture that errors are measured against.
+pub struct Reference {
+    /// What the report says of it.
+    pub used: ReferenceUsed,
+    means: Vec<[f64; 3]>,
+    appearance: Appearance,
+    transfer: Transfer,
+    width: u32,
+    height: u32,
+}
+
+/// What a picture is off by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// See [`super::data::Measured::mse`].
+    pub mse: f64,
+    /// See [`super::data::Measured::rel_mse`].
+    pub rel_mse: f64,
+    /// See [`super::data::Measured::flip`].
+    pub flip: f64,
+}
+
+impl Reference {
+    /// Takes a film as the reference of the scene `scene`.
+    ///
+    /// # Errors
+    /// A film that does not tell its own error.
+    pub fn of_film(scene: &str, about: &str, film: &Film, transfer: Transfer) -> Result<Self> {
+        let Some(own) = film.error() else {
+            bail!(
+                "the reference of {scene} has one half and does not tell its own error; render it with --estimate-error on"
+            );
+        };
+        let means: Vec<[f64; 3]> = (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect();
+        let (width, height) = (film.width(), film.height());
+        Ok(Reference {
+            appearance: appearance(&means, transfer, width, height),
+            means,
+            transfer,
+            width,
+            height,
+            used: ReferenceUsed {
+                scene: scene.to_owned(),
+                about: about.to_owned(),
+                samples: film.sample_count(),
+                mse: own.rmse.powi(2),
+                rel_mse: own.rel_mse,
+            },
+        })
+    }
+
+    /// The errors of a film of the same size.
+    pub fn errors(&self, film: &Film) -> Errors {
+        let means: Vec<[f64; 3]> = (0..self.means.len()).map(|pixel| film.mean(pixel)).collect();
+        let (mut squares, mut relative) = (0.0, 0.0);
+        for (x, expected) in means.iter().flatten().zip(self.means.iter().flatten()) {
+            let square = (x - expected).powi(2);
+            squares += square;
+            relative += square / (expected * expected + 1e-2);
+        }
+        let count = (3 * means.len()) as f64;
+        let shown = appearance(&means, self.transfer, self.width, self.height);
+        Errors {
+            mse: squares / count - self.used.mse,
+            rel_mse: relative / count - self.used.rel_mse,
+            flip: self.appearance.difference(&shown),
+        }
+    }
+}
+
+/// As a screen shows it.
+fn appearance(means: &[[f64; 3]], transfer: Transfer, width: u32, height: u32) -> Appearance {
+    let shown: Vec<[f64; 3]> = means
+        .iter()
+        .enumerate()
+        .map(|(pixel, linear)| {
+            let is_gamma = transfer.is_gamma(pixel / width as usize, height as usize);
+            linear.map(|x| if is_gamma { x.max(0.0).sqrt().min(1.0) } else { x.clamp(0.0, 1.0) })
+        })
+        .collect();
+    Appearance::of(width as usize, &shown)
+}
+
+/// The recipe of a scene's reference.
+pub fn recipe_of(recipe: &Recipe) -> Recipe {
+    let settings =
+        RenderSettings { seed: SEED, sampler: SamplerKind::Sobol, estimate_error: true, ..recipe.settings };
+    Recipe { settings, ..recipe.clone() }
+}
+
+/// Reads a film that somebody made of the scene.
+///
+/// # Errors
+/// A film of another picture.
+pub fn read(path: &Path, recipe: &Recipe) -> Result<Reference> {
+    let read = checkpoint::load(path)?;
+    let theirs = file::parse(read.description.recipe(), &path.display().to_string())?.job()?;
+    let mine = recipe_of(recipe).job()?;
+    let is_same = theirs.scene() == mine.scene()
+        && theirs.camera() == mine.camera()
+        && theirs.rules() == mine.rules()
+        && theirs.settings().max_depth == mine.settings().max_depth
+        && (read.film.width(), read.film.height()) == (mine.settings().width, mine.settings().height);
+    if !is_same {
+        bail!(
+            "{} shows another picture than {} at {}x{}; name that scene and its --size, or leave --reference out",
+            path.display(),
+            recipe.name,
+            recipe.settings.width,
+            recipe.settings.height
+        );
+    }
+    let about = read.description.get(key::BACKEND).unwrap_or("unknown").to_owned();
+    Reference::of_film(&recipe.name, &about, &read.film, recipe.rules.transfer)
+}
+
+/// What a pass of a reference takes: progress is shown and Ctrl-C is seen between passes.
+const PASS: Duration = Duration::from_millis(500);
+
+/// Makes the reference, or goes on with the part of it that is kept in `path`. `None` if `go_on`, which is told the
+/// share that is done, said no; what is done is kept.
+///
+/// # Errors
+/// If the backend fails or the film cannot be kept.
+pub fn make(
+    path: &Path,
+    recipe: &Recipe,
+    choice: &BackendChoice,
+    samples: u64,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<Option<Reference>> {
+    let recipe = recipe_of(recipe);
+    let job = recipe.job()?;
+    let mut renderer = backends::create(choice)?;
+    let info = renderer.info();
+    let about = format!("{} {}", info.name, info.device);
+    let mut film = kept(path, &job, &about).unwrap_or_else(|| job.new_film());
+    let mut sizer = PassSizer::new(job.settings().half_count());
+    let before = film.sample_count();
+    while let Some(pass) = sizer.next(film.samples(), 0..samples, None) {
+        if !go_on(film.sample_count() as f64 / samples as f64) {
+            break;
+        }
+        let begin = Instant::now();
+        let count = pass.end - pass.start;
+        renderer.accumulate(&job, pass, &mut film, &AtomicBool::new(false))?;
+        sizer.measured(count, begin.elapsed(), PASS);
+    }
+    if film.sample_count() > before {
+        let mut description = Description::new(&file::to_toml(&recipe));
+        description.set(key::SCENE, &recipe.name);
+        description.set(key::SAMPLES, film.sample_count());
+        description.set(key::BACKEND, &about);
+        checkpoint::save(path, &film, &description).context("cannot keep the reference")?;
+    }
+    if film.sample_count() < samples {
+        return Ok(None);
+    }
+    Reference::of_film(&recipe.name, &about, &film, recipe.rules.transfer).map(Some)
+}
+
+/// The film in `path`, if it is one of this job by this backend.
+fn kept(path: &Path, job: &RenderJob, about: &str) -> Option<Film> {
+    let read = checkpoint::load(path).ok()?;
+    let theirs = file::parse(read.description.recipe(), "the kept reference").ok()?.job().ok()?;
+    (theirs == *job && read.description.get(key::BACKEND) == Some(about)).then_some(read.film)
+}

@@ -1,0 +1,235 @@
+//! Runs of one curve taken together, and curves held against each other.
+
+use super::data::{Curve, Data, Measured, Run};
+use crate::statistics::fit::{Crossing, Point, PowerLaw, time_to};
+use std::collections::BTreeMap;
+
+/// Errors that times are told for.
+pub const TARGETS: [f64; 2] = [0.01, 0.001];
+
+/// The slope is fitted to points of at least this many samples: smaller pictures are done before all threads are.
+const SLOPE_FROM_SAMPLES: u64 = 16;
+
+/// A curve's pictures at one number of samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Pictures.
+    pub seeds: usize,
+    /// Median seconds of tracing.
+    pub trace_seconds: f64,
+    /// Median seconds with adding to the film.
+    pub wall_seconds: f64,
+    /// Root of the mean squared error over all pictures.
+    pub rmse: f64,
+    /// Least and greatest RMSE of a picture.
+    pub range: [f64; 2],
+    /// Mean relative squared error.
+    pub rel_mse: f64,
+    /// Mean FLIP.
+    pub flip: f64,
+    /// Root of the mean estimated squared error over that of the true one; `None` where there is no estimate.
+    pub estimate_ratio: Option<f64>,
+}
+
+/// A line of the plot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurveSummary {
+    /// Which.
+    pub curve: Curve,
+    /// The backend in full.
+    pub about: String,
+    /// In the order of samples.
+    pub points: Vec<CurvePoint>,
+    /// By which power of the seconds the RMSE falls, with its deviation.
+    pub slope: Option<[f64; 2]>,
+    /// `1 / (MSE seconds)` at the last point.
+    pub efficiency: f64,
+    /// Seconds to each of [`TARGETS`].
+    pub times: [Option<Crossing>; 2],
+}
+
+impl CurveSummary {
+    fn of(curve: &Curve, runs: &[&Run]) -> Self {
+        let mut by_samples: BTreeMap<u64, Vec<&Measured>> = BTreeMap::new();
+        for point in runs.iter().flat_map(|run| &run.points) {
+            by_samples.entry(point.samples).or_default().push(point);
+        }
+        // Where a noisy machine cut some runs short, the few that got farther are not all of the curve.
+        by_samples.retain(|_, points| 2 * points.len() > runs.len());
+        let points: Vec<CurvePoint> =
+            by_samples.into_iter().map(|(samples, points)| curve_point(samples, &points)).collect();
+        let errors: Vec<Point> =
+            points.iter().map(|p| Point { time: p.wall_seconds, error: p.rmse }).collect();
+        let first = points.iter().position(|p| p.samples >= SLOPE_FROM_SAMPLES).unwrap_or(0);
+        CurveSummary {
+            curve: curve.clone(),
+            about: runs.first().map_or_else(String::new, |run| run.about.clone()),
+            slope: PowerLaw::through(&errors[first..]).map(|law| [law.slope, law.slope_deviation]),
+            efficiency: points.last().map_or(f64::NAN, |p| 1.0 / (p.rmse * p.rmse * p.wall_seconds)),
+            times: TARGETS.map(|target| time_to(&errors, target)),
+            points,
+        }
+    }
+}
+
+fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
+    let count = points.len() as f64;
+    let mean = |of: fn(&Measured) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / count;
+    let mse = mean(|p| p.mse).max(f64::MIN_POSITIVE);
+    let estimates: Option<Vec<f64>> = points.iter().map(|p| p.mse_estimate).collect();
+    let roots = || points.iter().map(|p| p.mse.max(0.0).sqrt());
+    CurvePoint {
+        samples,
+        seeds: points.len(),
+        trace_seconds: median(points.iter().map(|p| p.trace_seconds)),
+        wall_seconds: median(points.iter().map(|p| p.wall_seconds)),
+        rmse: mse.sqrt(),
+        range: [roots().fold(f64::INFINITY, f64::min), roots().fold(0.0, f64::max)],
+        rel_mse: mean(|p| p.rel_mse),
+        flip: mean(|p| p.flip),
+        estimate_ratio: estimates.map(|all| (all.iter().sum::<f64>() / count / mse).sqrt()),
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => f64::NAN,
+        count if !count.is_multiple_of(2) => values[middle],
+        _ => 0.5 * (values[middle - 1] + values[middle]),
+    }
+}
+
+/// All curves that have a run, in the order of their first.
+pub fn summaries(data: &Data) -> Vec<CurveSummary> {
+    let mut curves: Vec<&Curve> = Vec::new();
+    for run in &data.runs {
+        if !curves.contains(&&run.curve) {
+            curves.push(&run.curve);
+        }
+    }
+    curves
+        .into_iter()
+        .map(|curve| {
+            let runs: Vec<&Run> = data.runs.iter().filter(|run| run.curve == *curve).collect();
+            CurveSummary::of(curve, &runs)
+        })
+        .collect()
+}
+
+/// How two samplers compare on one backend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SamplerRatio {
+    /// The scene.
+    pub scene: String,
+    /// The backend.
+    pub backend: String,
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Squared error of independent samples over that of Sobol points.
+    pub at_equal_samples: f64,
+    /// The same over their seconds: how much longer independent samples take.
+    pub at_equal_time: f64,
+}
+
+/// Holds `sobol` against `independent` at every number of samples that both have.
+pub fn sampler_ratios(curves: &[CurveSummary]) -> Vec<SamplerRatio> {
+    let mut ratios = Vec::new();
+    for sobol in curves.iter().filter(|c| c.curve.sampler == "sobol") {
+        let other = curves.iter().find(|c| {
+            c.curve.sampler == "independent"
+                && (&c.curve.scene, &c.curve.backend) == (&sobol.curve.scene, &sobol.curve.backend)
+        });
+        let Some(independent) = other else { continue };
+        for point in &sobol.points {
+            let Some(other) = independent.points.iter().find(|p| p.samples == point.samples) else {
+                continue;
+            };
+            let at_equal_samples = (other.rmse / point.rmse).powi(2);
+            ratios.push(SamplerRatio {
+                scene: sobol.curve.scene.clone(),
+                backend: sobol.curve.backend.clone(),
+                samples: point.samples,
+                at_equal_samples,
+                at_equal_time: at_equal_samples * other.wall_seconds / point.wall_seconds,
+            });
+        }
+    }
+    ratios
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A curve whose squared error is `mse / samples`, at `seconds` a sample.
+    pub fn runs(backend: &str, sampler: &str, mse: f64, seconds: f64) -> Vec<Run> {
+        let curve = Curve { scene: "s".to_owned(), backend: backend.to_owned(), sampler: sampler.to_owned() };
+        (0..4)
+            .map(|seed| Run {
+                curve: curve.clone(),
+                seed,
+                about: backend.to_owned(),
+                prepare_seconds: 0.0,
+                points: (0..9)
+                    .map(|power| {
+                        let samples = 1_u64 << power;
+                        // Two seeds are better than the mean and two worse.
+                        let mse = mse / samples as f64 * if seed < 2 { 0.5 } else { 1.5 };
+                        let seconds = seconds * samples as f64;
+                        Measured {
+                            samples,
+                            trace_seconds: seconds,
+                            wall_seconds: seconds,
+                            mse,
+                            rel_mse: 2.0 * mse,
+                            flip: 0.1,
+                            mse_estimate: (samples > 1).then_some(1.21 * mse),
+                            rejected: 0,
+                        }
+                    })
+                    .collect(),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_curve_has_its_slope_its_times_and_its_spread() {
+        let data_runs = runs("cpu", "sobol", 0.04, 0.01);
+        let all: Vec<&Run> = data_runs.iter().collect();
+        let found = CurveSummary::of(&data_runs[0].curve, &all);
+        let last = found.points.last().unwrap();
+        assert!((last.rmse - 0.2 / 16.0).abs() < 1e-12 && last.seeds == 4, "{last:?}");
+        assert!(last.range[0] < last.rmse && last.rmse < last.range[1]);
+        assert!((last.estimate_ratio.unwrap() - 1.1).abs() < 1e-9);
+        assert_eq!(found.points[0].estimate_ratio, None);
+        assert!((found.slope.unwrap()[0] + 0.5).abs() < 1e-9);
+        let [first, second] = found.times.map(Option::unwrap);
+        assert!((first.time - 4.0).abs() < 1e-6 && first.is_extrapolated, "{first:?}");
+        assert!((second.time - 400.0).abs() < 1e-4 && second.is_extrapolated);
+        assert!((found.efficiency - 2500.0).abs() < 1e-6, "{}", found.efficiency);
+    }
+
+    #[test]
+    fn samplers_are_compared_at_equal_samples_and_at_equal_time() {
+        let all = [runs("cpu", "sobol", 0.01, 0.012), runs("cpu", "independent", 0.04, 0.01)].concat();
+        let of = |sampler: &str| {
+            let some: Vec<&Run> = all.iter().filter(|run| run.curve.sampler == sampler).collect();
+            CurveSummary::of(&some[0].curve, &some)
+        };
+        let ratios = sampler_ratios(&[of("sobol"), of("independent")]);
+        assert_eq!(ratios.len(), 9);
+        assert!(ratios.iter().all(|r| (r.at_equal_samples - 4.0).abs() < 1e-9));
+        assert!(ratios.iter().all(|r| (r.at_equal_time - 4.0 / 1.2).abs() < 1e-9));
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(median([3.0, 1.0, 2.0].into_iter()), 2.0);
+        assert_eq!(median([4.0, 1.0, 2.0, 3.0].into_iter()), 2.5);
+    }
+}

@@ -1,0 +1,257 @@
+//! `report.md` and `report.csv`.
+
+use super::data::{Data, Measured};
+use super::summary::{CurvePoint, CurveSummary, TARGETS, sampler_ratios};
+use crate::statistics::fit::Crossing;
+use std::fmt::Write;
+
+/// The backends that others are held against, where they are there.
+const BASES: [&str; 2] = ["c89", "scalar"];
+
+/// Every measurement, a line for each picture and number of samples.
+pub fn csv(data: &Data) -> String {
+    let mut text = String::from(
+        "scene,backend,sampler,seed,samples,trace_seconds,wall_seconds,mse,rel_mse,flip,mse_estimate,rejected\n",
+    );
+    for run in &data.runs {
+        for point in &run.points {
+            let Measured { samples, trace_seconds, wall_seconds, mse, rel_mse, flip, rejected, .. } = point;
+            let estimate = point.mse_estimate.map_or_else(String::new, |mse| mse.to_string());
+            let curve = &run.curve;
+            // Names of scenes may be those of files.
+            let scene = curve.scene.replace([',', '"', '\n'], "_");
+            let _ = writeln!(
+                text,
+                "{scene},{},{},{},{samples},{trace_seconds},{wall_seconds},{mse},{rel_mse},{flip},{estimate},{rejected}",
+                curve.backend, curve.sampler, run.seed
+            );
+        }
+    }
+    text
+}
+
+/// The report for readers. `command` is what made it.
+pub fn markdown(data: &Data, curves: &[CurveSummary], command: &str) -> String {
+    let mut text = String::from("# Error against time\n\n");
+    let settings = &data.settings;
+    let _ = writeln!(
+        text,
+        "How far pictures are from what they approach, and how long that takes. Made by\n\n    {command}\n\n\
+         with {}: {} pictures a curve, which differ in their random numbers alone, {} s of tracing for all of \
+         them, at most {} samples per pixel.\n\n![Error against time](error-vs-time.png)\n",
+        settings.software, settings.seeds, settings.time_limit, settings.max_samples
+    );
+    text.push_str(HOW_TO_READ);
+    for scene in scenes(curves) {
+        let of_scene: Vec<&CurveSummary> = curves.iter().filter(|c| c.curve.scene == scene).collect();
+        let _ = writeln!(text, "\n## {scene}\n");
+        if let Some(reference) = data.references.iter().find(|r| r.scene == scene) {
+            let _ = writeln!(
+                text,
+                "The reference has {} samples per pixel by {}, and an RMSE of its own of {:.1e}, which has been \
+                 subtracted.\n",
+                reference.samples,
+                reference.about,
+                reference.mse.sqrt()
+            );
+        }
+        overview(&mut text, &of_scene);
+        for curve in &of_scene {
+            points(&mut text, curve);
+        }
+    }
+    samplers(&mut text, curves);
+    calibration(&mut text, curves);
+    rounding(&mut text, data, curves);
+    text
+}
+
+const HOW_TO_READ: &str = "\
+**Reading it.** *RMSE* is the root of the mean squared difference from the reference over pixels and channels, in
+linear radiance, where white is 1: at .05 a picture is grainy, at .01 nearly clean, at .001 no screen shows what is
+left. *relMSE* weighs errors in the dark more; *FLIP* is how different the shown pictures look to someone who
+switches between them, 0 to 1. The *slope* is by which power of the seconds the RMSE falls: -.5 means that half the
+error costs four times the time. *Efficiency* is 1/(RMSE^2 seconds) at the last point: twice as much is the same picture in half
+the time. Times with ~ lie beyond what was measured. Seconds are medians over the pictures, errors means.
+";
+
+fn scenes(curves: &[CurveSummary]) -> Vec<&str> {
+    let mut scenes: Vec<&str> = Vec::new();
+    for curve in curves {
+        if !scenes.contains(&curve.curve.scene.as_str()) {
+            scenes.push(&curve.curve.scene);
+        }
+    }
+    scenes
+}
+
+/// One row a curve.
+fn overview(text: &mut String, curves: &[&CurveSummary]) {
+    let bases: Vec<&str> =
+        BASES.into_iter().filter(|base| curves.iter().any(|c| c.curve.backend == *base)).collect();
+    let mut head = format!(
+        "| backend | sampler | slope | efficiency | to RMSE {} | to RMSE {} |",
+        TARGETS[0], TARGETS[1]
+    );
+    for base in &bases {
+        let _ = write!(head, " times {base} |");
+    }
+    let _ = writeln!(text, "{head}\n|{}", " --- |".repeat(6 + bases.len()));
+    for curve in curves {
+        let slope =
+            curve.slope.map_or("-".to_owned(), |[slope, deviation]| format!("{slope:.2} ± {deviation:.2}"));
+        let [coarse, fine] = curve.times.map(crossing);
+        let _ = write!(
+            text,
+            "| {} | {} | {slope} | {} | {coarse} | {fine} |",
+            curve.curve.backend,
+            curve.curve.sampler,
+            number(curve.efficiency)
+        );
+        for base in &bases {
+            let _ = write!(text, " {} |", ratio(curve, curves, base));
+        }
+        text.push('\n');
+    }
+    if !bases.is_empty() {
+        text.push_str(
+            "\n*times X*: how many times as long X takes to an RMSE of .01, with its own best sampler.\n",
+        );
+    }
+}
+
+/// How many times as long `base` takes to the first target.
+fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
+    let of_base = curves.iter().filter(|c| c.curve.backend == base).filter_map(|c| c.times[0]);
+    let best = of_base.min_by(|a, b| a.time.total_cmp(&b.time));
+    match (best, curve.times[0]) {
+        (Some(base), Some(mine)) => {
+            let mark = if base.is_extrapolated || mine.is_extrapolated { "~" } else { "" };
+            format!("{mark}{:.2}", base.time / mine.time)
+        }
+        _ => "-".to_owned(),
+    }
+}
+
+fn crossing(crossing: Option<Crossing>) -> String {
+    crossing.map_or("-".to_owned(), |c| {
+        format!("{}{} s", if c.is_extrapolated { "~" } else { "" }, number(c.time))
+    })
+}
+
+/// One row a number of samples.
+fn points(text: &mut String, curve: &CurveSummary) {
+    let _ = writeln!(
+        text,
+        "\n### {}: {}, {}\n\n{}\n\n| samples | trace s | wall s | RMSE | least to greatest | relMSE | FLIP | estimate / actual |\n|{}",
+        curve.curve.scene,
+        curve.curve.backend,
+        curve.curve.sampler,
+        curve.about,
+        " ---: |".repeat(8)
+    );
+    for point in &curve.points {
+        let CurvePoint {
+            samples, trace_seconds, wall_seconds, rmse, range: [low, high], rel_mse, flip, ..
+        } = point;
+        let estimate = point.estimate_ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.3}"));
+        let _ = writeln!(
+            text,
+            "| {samples} | {trace_seconds:.4} | {wall_seconds:.4} | {rmse:.2e} | {low:.2e} to {high:.2e} | {rel_mse:.2e} | {flip:.4} | {estimate} |"
+        );
+    }
+}
+
+fn samplers(text: &mut String, curves: &[CurveSummary]) {
+    let ratios = sampler_ratios(curves);
+    if ratios.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n## Sobol points against independent samples\n\nHow many times as large the squared error of \
+         independent samples is. Sobol points are best at powers of two.\n\n\
+         | scene | backend | samples | at equal samples | at equal time |\n| --- | --- | ---: | ---: | ---: |\n",
+    );
+    for ratio in ratios.iter().filter(|ratio| ratio.samples >= 4) {
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {:.2} | {:.2} |",
+            ratio.scene, ratio.backend, ratio.samples, ratio.at_equal_samples, ratio.at_equal_time
+        );
+    }
+}
+
+fn calibration(text: &mut String, curves: &[CurveSummary]) {
+    text.push_str(
+        "\n## Is the estimate true?\n\nThe RMSE that a picture's two halves estimate without a reference, over the \
+         actual one.\n\n| scene | backend | sampler | samples | estimate / actual |\n| --- | --- | --- | ---: | ---: |\n",
+    );
+    for curve in curves {
+        for point in curve.points.iter().filter(|p| p.samples >= 16) {
+            if let Some(ratio) = point.estimate_ratio {
+                let Curve { scene, backend, sampler } = &curve.curve;
+                let _ =
+                    writeln!(text, "| {scene} | {backend} | {sampler} | {} | {ratio:.3} |", point.samples);
+            }
+        }
+    }
+}
+
+use super::data::Curve;
+
+fn rounding(text: &mut String, data: &Data, curves: &[CurveSummary]) {
+    if data.rounding.is_empty() {
+        return;
+    }
+    text.push_str(
+        "\n## What rounding costs\n\nThe same samples in double precision and on each backend. *Difference* is that of \
+         the pictures: nearly all of it are paths that rounding sent another way, which are as good as those in their \
+         place, and it falls with more samples as noise does. The *floor* is what stays however many are taken; \
+         until the noise is as low, more samples help.\n\n\
+         | scene | backend | samples | mean difference | RMS difference | floor | samples until noise is as low |\n\
+         | --- | --- | ---: | ---: | ---: | ---: | ---: |\n",
+    );
+    for row in &data.rounding {
+        let floor = row.floor.map_or(format!("< {:.1e}", row.floor_limit), |floor| format!("{floor:.1e}"));
+        let best = curves
+            .iter()
+            .filter(|c| (&c.curve.scene, &c.curve.backend) == (&row.scene, &row.backend))
+            .filter_map(|c| samples_to(c, row.floor.unwrap_or(row.floor_limit)))
+            .reduce(f64::min);
+        let more = if row.floor.is_some() { "" } else { "> " };
+        let samples = best.map_or("-".to_owned(), |samples| format!("~{more}{samples:.0e}"));
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {:+.1e} | {:.1e} | {floor} | {samples} |",
+            row.scene, row.backend, row.samples, row.bias, row.rms
+        );
+    }
+}
+
+/// Samples at which a curve's error would be `error`.
+fn samples_to(curve: &CurveSummary, error: f64) -> Option<f64> {
+    use crate::statistics::fit::{Point, time_to};
+    let points: Vec<Point> =
+        curve.points.iter().map(|p| Point { time: p.samples as f64, error: p.rmse }).collect();
+    time_to(&points, error).map(|crossing| crossing.time)
+}
+
+/// Three digits that count.
+fn number(x: f64) -> String {
+    match x.abs() {
+        size if !size.is_finite() => "-".to_owned(),
+        size if !(1e-3..1e5).contains(&size) => format!("{x:.2e}"),
+        size => format!("{x:.*}", (2 - size.log10().floor() as i32).max(0) as usize),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_three_digits() {
+        let found = [1234.5, 12.34, 1.234, 0.1234, 0.001_234, 1.234e-5, 1.234e7].map(number);
+        assert_eq!(found, ["1234", "12.3", "1.23", "0.123", "0.00123", "1.23e-5", "1.23e7"]);
+    }
+}

@@ -1,0 +1,206 @@
+//! Error against time, on scales of powers: slopes, times to a target, predictions.
+
+/// An error at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Seconds, or samples, above 0.
+    pub time: f64,
+    /// RMSE, above 0.
+    pub error: f64,
+}
+
+/// The least-squares line through points whose logarithms are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerLaw {
+    /// By which power of the time the error changes: -1/2 for independent samples.
+    pub slope: f64,
+    /// Deviation of the slope, from the points' distances to the line; 0 with two points.
+    pub slope_deviation: f64,
+    /// Deviation of the logarithm of a point's error about the line; 0 with two points.
+    pub scatter: f64,
+    mean_log_time: f64,
+    mean_log_error: f64,
+}
+
+impl PowerLaw {
+    /// Fits the points; `None` where fewer than two times are there.
+    pub fn through(points: &[Point]) -> Option<Self> {
+        let logs = || points.iter().map(|p| (p.time.ln(), p.error.ln()));
+        let count = points.len() as f64;
+        let mean = |of: fn((f64, f64)) -> f64| logs().map(of).sum::<f64>() / count;
+        let (mean_log_time, mean_log_error) = (mean(|p| p.0), mean(|p| p.1));
+        let spread: f64 = logs().map(|(t, _)| (t - mean_log_time).powi(2)).sum();
+        let both: f64 = logs().map(|(t, e)| (t - mean_log_time) * (e - mean_log_error)).sum();
+        if points.len() < 2 || spread.is_nan() || spread <= 0.0 {
+            return None;
+        }
+        let slope = both / spread;
+        let squares: f64 =
+            logs().map(|(t, e)| (e - mean_log_error - slope * (t - mean_log_time)).powi(2)).sum();
+        let scatter = if points.len() > 2 { (squares / (count - 2.0)).sqrt() } else { 0.0 };
+        Some(PowerLaw {
+            slope,
+            slope_deviation: scatter / spread.sqrt(),
+            scatter,
+            mean_log_time,
+            mean_log_error,
+        })
+    }
+
+    /// The error at a time.
+    pub fn error_at(&self, time: f64) -> f64 {
+        (self.mean_log_error + self.slope * (time.ln() - self.mean_log_time)).exp()
+    }
+}
+
+/// When a target is reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// As the points' times.
+    pub time: f64,
+    /// Whether it lies beyond the points.
+    pub is_extrapolated: bool,
+}
+
+/// When points, in the order of time, fall to the target for good: between two of them by a straight line through
+/// their logarithms, else beyond the last with the slope of the last [`TAIL`] points. `None` where they do not
+/// fall, or where the first is below the target: when it was reached is then not known.
+pub fn time_to(points: &[Point], target: f64) -> Option<Crossing> {
+    let last_above = points.iter().rposition(|point| point.error > target)?;
+    let above = points[last_above];
+    if let Some(below) = points.get(last_above + 1) {
+        let share = (above.error / target).ln() / (above.error / below.error).ln();
+        let time = above.time * (below.time / above.time).powf(share);
+        return Some(Crossing { time, is_extrapolated: false });
+    }
+    let law = PowerLaw::through(&points[points.len().saturating_sub(TAIL)..])?;
+    // The error falls from where it is, not from where the line is.
+    let time = above.time * (target / above.error).powf(1.0 / law.slope);
+    (law.slope < 0.0).then_some(Crossing { time, is_extrapolated: true })
+}
+
+/// Points that tell how a curve goes on.
+pub const TAIL: usize = 4;
+
+/// When a target will be reached, from the estimates so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prediction {
+    /// The likeliest time.
+    pub time: f64,
+    /// Least and greatest time within two deviations.
+    pub range: [f64; 2],
+}
+
+/// Slopes between which a path tracer's error is taken to fall: that of independent samples, and the best that
+/// was measured with Sobol points on smooth scenes.
+const SLOPES: [f64; 2] = [-0.5, -0.75];
+
+/// How uncertain the slope is before a point is seen.
+const PRIOR_SLOPE_DEVIATION: f64 = 0.08;
+
+/// The least that the logarithm of an estimate is uncertain by: that of two halves over some thousand pixels.
+const LEAST_SCATTER: f64 = 0.02;
+
+/// Predicts when the error, `now` at the time `now.time`, falls to the target. `history` are earlier estimates, the
+/// oldest first, of which the last [`TAIL`] count.
+///
+/// The slope is that of the history and `now`, weighed against the slope of independent samples by their
+/// deviations. `None` where the target has been reached.
+pub fn predict(history: &[Point], now: Point, target: f64) -> Option<Prediction> {
+    if now.error <= target || target <= 0.0 || now.time <= 0.0 {
+        return None;
+    }
+    let mut points: Vec<Point> = history
+        .iter()
+        .copied()
+        .filter(|p| p.time > 0.0 && p.error > 0.0 && p.time < 0.9 * now.time)
+        .collect();
+    points.push(now);
+    let tail = &points[points.len().saturating_sub(TAIL)..];
+    let (mut slope, mut slope_deviation, mut scatter) = (SLOPES[0], PRIOR_SLOPE_DEVIATION, LEAST_SCATTER);
+    if let Some(law) = PowerLaw::through(tail).filter(|_| tail.len() > 2) {
+        scatter = law.scatter.max(LEAST_SCATTER);
+        let deviation = law.slope_deviation * scatter / law.scatter.max(f64::MIN_POSITIVE);
+        let (prior, measured) = (PRIOR_SLOPE_DEVIATION.powi(-2), deviation.powi(-2));
+        slope = (slope * prior + law.slope * measured) / (prior + measured);
+        slope_deviation = (prior + measured).sqrt().recip();
+    }
+    slope = slope.clamp(SLOPES[1], SLOPES[0] + PRIOR_SLOPE_DEVIATION);
+    let fall = (now.error / target).ln();
+    let log_factor = fall / -slope;
+    // d(fall / slope): the estimate's own uncertainty, and the slope's.
+    let deviation = ((scatter / slope).powi(2) + (log_factor * slope_deviation / slope).powi(2)).sqrt();
+    let at = |log: f64| now.time * log.max(0.0).exp();
+    Some(Prediction {
+        time: at(log_factor),
+        range: [at(log_factor - 2.0 * deviation), at(log_factor + 2.0 * deviation)],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn curve(slope: f64, count: u32) -> Vec<Point> {
+        (0..count).map(|i| f64::from(1 << i)).map(|t| Point { time: t, error: 0.1 * t.powf(slope) }).collect()
+    }
+
+    #[test]
+    fn too_few_points_have_no_line() {
+        assert_eq!(PowerLaw::through(&[]), None);
+        let point = Point { time: 1.0, error: 1.0 };
+        assert_eq!(PowerLaw::through(&[point, point]), None);
+        assert_eq!(time_to(&[point], 0.1), None);
+    }
+
+    #[test]
+    fn scatter_makes_the_slope_uncertain() {
+        let points: Vec<Point> = curve(-0.5, 8)
+            .into_iter()
+            .enumerate()
+            .map(|(i, p)| Point { error: p.error * if i.is_multiple_of(2) { 1.1 } else { 1.0 / 1.1 }, ..p })
+            .collect();
+        let law = PowerLaw::through(&points).unwrap();
+        assert!((law.slope + 0.5).abs() < 3.0 * law.slope_deviation);
+        assert!((0.08..0.13).contains(&law.scatter), "{law:?}");
+    }
+
+    #[test]
+    fn targets_are_met_between_points_and_beyond() {
+        let points = curve(-0.5, 7);
+        let within = time_to(&points, 0.02).unwrap();
+        assert!((within.time - 25.0).abs() < 1e-9 && !within.is_extrapolated);
+        let beyond = time_to(&points, 0.001).unwrap();
+        assert!((beyond.time - 1e4).abs() < 1e-6 && beyond.is_extrapolated);
+        assert_eq!(time_to(&points, 0.2), None);
+    }
+
+    #[test]
+    fn predictions_keep_to_the_slope_that_is_seen() {
+        let points = curve(-0.5, 6);
+        let (history, now) = (&points[..5], points[5]);
+        let found = predict(history, now, now.error / 2.0).unwrap();
+        assert!((found.time / now.time - 4.0).abs() < 1e-6, "{found:?}");
+        assert!(found.range[0] < found.time && found.time < found.range[1]);
+        assert!(found.range[0] >= now.time);
+        let steeper = curve(-0.65, 6);
+        let faster = predict(&steeper[..5], steeper[5], steeper[5].error / 2.0).unwrap();
+        assert!(faster.time / now.time < 3.2, "{faster:?}");
+        assert_eq!(predict(history, now, now.error), None);
+        // Nothing but one estimate: the slope of independent samples, and a wide range.
+        let alone = predict(&[], now, now.error / 2.0).unwrap();
+        assert!((alone.time / now.time - 4.0).abs() < 1e-6);
+        assert!(alone.range[1] - alone.range[0] > found.range[1] - found.range[0]);
+    }
+
+    proptest! {
+        #[test]
+        fn a_power_law_is_found_again(slope in -1.0..-0.2_f64, scale in 1e-6..1e3_f64) {
+            let points: Vec<Point> = (1..7).map(f64::from).map(|t| Point { time: t, error: scale * t.powf(slope) }).collect();
+            let law = PowerLaw::through(&points).unwrap();
+            prop_assert!((law.slope - slope).abs() < 1e-9);
+            prop_assert!((law.error_at(3.0) / (scale * 3_f64.powf(slope)) - 1.0).abs() < 1e-9);
+        }
+    }
+}

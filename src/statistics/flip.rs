@@ -1,0 +1,275 @@
+//! LDR-FLIP: how different two pictures look to someone who switches between them, 0 (alike) to 1.
+//!
+//! Source: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator for
+//! Alternating Images", HPG 2020. Names of constants are the paper's.
+
+/// Pixels in a degree of the eye's field: a 3840 pixel wide screen of .7 m, seen from .7 m.
+pub const PIXELS_PER_DEGREE: f64 = 67.0;
+
+/// Spatial filters of the eye: weights `a` and widths `b` of two Gaussians for brightness, red-green, blue-yellow.
+const CONTRAST: [[(f64, f64); 2]; 3] =
+    [[(1.0, 0.0047), (0.0, 1e-5)], [(1.0, 0.0053), (0.0, 1e-5)], [(34.1, 0.04), (13.5, 0.025)]];
+
+/// Exponent of colour differences.
+const Q_C: f64 = 0.7;
+
+/// The share of the range of colour differences that is mapped to the share [`P_T`] of the result's.
+const P_C: f64 = 0.4;
+
+const P_T: f64 = 0.95;
+
+type Plane = Vec<f64>;
+
+/// What the eye makes of a picture.
+#[derive(Clone, Debug)]
+pub struct Appearance {
+    /// Filtered colours: CIELAB with the chroma scaled by the lightness (Hunt).
+    colours: Vec<[f64; 3]>,
+    /// Strength of edges and of points.
+    features: Vec<[f64; 2]>,
+}
+
+impl Appearance {
+    /// Of a picture of `width` columns as a screen is given it: sRGB, `0..=1`, row by row.
+    pub fn of(width: usize, shown: &[[f64; 3]]) -> Self {
+        let opponent: Vec<[f64; 3]> = shown
+            .iter()
+            .map(|pixel| opponent_from_xyz(xyz_from_linear(pixel.map(linear_from_srgb))))
+            .collect();
+        let plane = |channel: usize| -> Plane { opponent.iter().map(|pixel| pixel[channel]).collect() };
+        let filtered = [0, 1, 2].map(|channel| contrast_filtered(&plane(channel), width, CONTRAST[channel]));
+        let colours = (0..shown.len())
+            .map(|i| {
+                let linear =
+                    linear_from_xyz(xyz_from_opponent([filtered[0][i], filtered[1][i], filtered[2][i]]));
+                hunt(lab_from_xyz(xyz_from_linear(linear.map(|x| x.clamp(0.0, 1.0)))))
+            })
+            .collect();
+        let lightness: Plane = opponent.iter().map(|pixel| (pixel[0] + 16.0) / 116.0).collect();
+        Appearance { colours, features: features(&lightness, width) }
+    }
+
+    /// The mean difference to a picture of the same size.
+    ///
+    /// # Panics
+    /// If the sizes differ.
+    pub fn difference(&self, other: &Appearance) -> f64 {
+        assert_eq!(self.colours.len(), other.colours.len(), "pictures of one size");
+        let greatest = greatest_colour_difference();
+        let sum: f64 = (0..self.colours.len())
+            .map(|i| {
+                let colour = mapped(hyab(self.colours[i], other.colours[i]).powf(Q_C), greatest);
+                let [edges, points] =
+                    [0, 1].map(|f: usize| (self.features[i][f] - other.features[i][f]).abs());
+                let feature = (edges.max(points) / std::f64::consts::SQRT_2).sqrt().min(1.0);
+                colour.powf(1.0 - feature)
+            })
+            .sum();
+        sum / self.colours.len().max(1) as f64
+    }
+}
+
+/// The farthest apart that colours of a screen are taken to be: green and blue.
+fn greatest_colour_difference() -> f64 {
+    let of = |linear| hunt(lab_from_xyz(xyz_from_linear(linear)));
+    hyab(of([0.0, 1.0, 0.0]), of([0.0, 0.0, 1.0])).powf(Q_C)
+}
+
+fn mapped(difference: f64, greatest: f64) -> f64 {
+    let knee = P_C * greatest;
+    if difference < knee {
+        P_T / knee * difference
+    } else {
+        P_T + (difference - knee) / (greatest - knee) * (1.0 - P_T)
+    }
+}
+
+fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (a[0] - b[0]).abs() + (a[1] - b[1]).hypot(a[2] - b[2])
+}
+
+fn hunt([l, a, b]: [f64; 3]) -> [f64; 3] {
+    [l, 0.01 * l * a, 0.01 * l * b]
+}
+
+/// Filters with a sum of two Gaussians of sum 1.
+fn contrast_filtered(plane: &Plane, width: usize, gaussians: [(f64, f64); 2]) -> Plane {
+    use std::f64::consts::PI;
+    let widest = CONTRAST.iter().flatten().fold(0.0_f64, |most, (_, b)| most.max(*b));
+    let radius = (3.0 * (widest / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as i32;
+    let kernels = gaussians.map(|(a, b)| {
+        let kernel: Vec<f64> = (-radius..=radius)
+            .map(|x| (-(PI * f64::from(x) / PIXELS_PER_DEGREE).powi(2) / b).exp())
+            .collect();
+        let sum: f64 = kernel.iter().sum();
+        (a * (PI / b).sqrt() * sum * sum, kernel.iter().map(|x| x / sum).collect::<Vec<f64>>())
+    });
+    let total: f64 = kernels.iter().map(|(weight, _)| weight).sum();
+    let mut filtered = vec![0.0; plane.len()];
+    for (weight, kernel) in kernels.iter().filter(|(weight, _)| *weight > 0.0) {
+        for (sum, x) in filtered.iter_mut().zip(convolved(plane, width, kernel, kernel)) {
+            *sum += weight / total * x;
+        }
+    }
+    filtered
+}
+
+/// Strength of edges and points: the lengths of first and second derivatives of a Gaussian.
+fn features(lightness: &Plane, width: usize) -> Vec<[f64; 2]> {
+    let sigma = 0.5 * 0.082 * PIXELS_PER_DEGREE;
+    let radius = (3.0 * sigma).ceil() as i32;
+    let kernel = |of: fn(f64) -> f64| -> Vec<f64> {
+        let raw: Vec<f64> =
+            (-radius..=radius).map(|x| f64::from(x) / sigma).map(|x| of(x) * (-0.5 * x * x).exp()).collect();
+        // Weights above 0 sum to 1, those below to -1.
+        let sum = |sign: f64| raw.iter().map(|x| (sign * x).max(0.0)).sum::<f64>();
+        let (above, below) = (sum(1.0), sum(-1.0));
+        raw.iter()
+            .map(|x| {
+                if *x > 0.0 {
+                    x / above
+                } else if *x < 0.0 {
+                    x / below
+                } else {
+                    0.0
+                }
+            })
+            .collect()
+    };
+    let (smooth, edge, point) = (kernel(|_| 1.0), kernel(|x| -x), kernel(|x| x * x - 1.0));
+    let length = |derivative: &[f64]| -> Plane {
+        let across = convolved(lightness, width, derivative, &smooth);
+        let down = convolved(lightness, width, &smooth, derivative);
+        across.iter().zip(down).map(|(x, y)| x.hypot(y)).collect()
+    };
+    length(&edge).into_iter().zip(length(&point)).map(|(edge, point)| [edge, point]).collect()
+}
+
+/// Filters rows with one kernel and columns with another; beyond its borders a picture goes on as it ends there.
+fn convolved(plane: &Plane, width: usize, across: &[f64], down: &[f64]) -> Plane {
+    let height = plane.len() / width.max(1);
+    let pass =
+        |source: &Plane, kernel: &[f64], length: usize, index: &dyn Fn(usize, usize) -> usize| -> Plane {
+            let radius = kernel.len() / 2;
+            let mut result = vec![0.0; source.len()];
+            for line in 0..source.len() / length.max(1) {
+                for at in 0..length {
+                    result[index(line, at)] = kernel
+                        .iter()
+                        .enumerate()
+                        .map(|(tap, weight)| {
+                            let from = (at + tap).saturating_sub(radius).min(length - 1);
+                            weight * source[index(line, from)]
+                        })
+                        .sum();
+                }
+            }
+            result
+        };
+    let rows = pass(plane, across, width, &|line, at| line * width + at);
+    pass(&rows, down, height, &|line, at| at * width + line)
+}
+
+fn linear_from_srgb(v: f64) -> f64 {
+    if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
+}
+
+/// sRGB's primaries under D65.
+const XYZ_FROM_LINEAR: [[f64; 3]; 3] = [
+    [10_135_552.0 / 24_577_794.0, 8_788_810.0 / 24_577_794.0, 4_435_075.0 / 24_577_794.0],
+    [2_613_072.0 / 12_288_897.0, 8_788_810.0 / 12_288_897.0, 887_015.0 / 12_288_897.0],
+    [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
+];
+
+fn xyz_from_linear(rgb: [f64; 3]) -> [f64; 3] {
+    XYZ_FROM_LINEAR.map(|row| row[0] * rgb[0] + row[1] * rgb[1] + row[2] * rgb[2])
+}
+
+fn linear_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
+    let [a, b, c] = XYZ_FROM_LINEAR.map(glam::DVec3::from);
+    let inverse = glam::DMat3::from_cols(a, b, c).transpose().inverse();
+    (inverse * glam::DVec3::from(xyz)).to_array()
+}
+
+/// XYZ over that of white.
+fn relative(xyz: [f64; 3]) -> [f64; 3] {
+    let white = xyz_from_linear([1.0; 3]);
+    [0, 1, 2].map(|i| xyz[i] / white[i])
+}
+
+/// The linear space of brightness, red-green and blue-yellow: YCxCz.
+fn opponent_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
+    let [x, y, z] = relative(xyz);
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+fn xyz_from_opponent([yy, cx, cz]: [f64; 3]) -> [f64; 3] {
+    let white = xyz_from_linear([1.0; 3]);
+    let y = (yy + 16.0) / 116.0;
+    let relative = [y + cx / 500.0, y, y - cz / 200.0];
+    [0, 1, 2].map(|i| relative[i] * white[i])
+}
+
+fn lab_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
+    const DELTA: f64 = 6.0 / 29.0;
+    let f = |t: f64| {
+        if t > DELTA.powi(3) { t.cbrt() } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 }
+    };
+    let [x, y, z] = relative(xyz).map(f);
+    [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn constant(colour: [f64; 3]) -> Appearance {
+        Appearance::of(24, &vec![colour; 24 * 20])
+    }
+
+    #[test]
+    fn black_and_white_are_as_the_paper_has_them() {
+        // Lightness differs by 100 and nothing else does: the paper's formula by hand.
+        let difference = constant([0.0; 3]).difference(&constant([1.0; 3]));
+        let greatest = greatest_colour_difference();
+        assert!((greatest - 41.2765).abs() < 0.01, "{greatest}");
+        let expected = 0.95 + (100_f64.powf(0.7) - 0.4 * greatest) / (0.6 * greatest) * 0.05;
+        assert!((difference - expected).abs() < 1e-6, "{difference} {expected}");
+        let colours = constant([0.0, 1.0, 0.0]).difference(&constant([0.0, 0.0, 1.0]));
+        assert!((colours - 1.0).abs() < 1e-6, "{colours}");
+    }
+
+    #[test]
+    fn what_is_too_fine_to_be_seen_counts_for_less() {
+        let chequers = |side: usize| -> Vec<[f64; 3]> {
+            let sign = |x: usize, y: usize| if (x / side + y / side).is_multiple_of(2) { 1.0 } else { -1.0 };
+            (0..48 * 36).map(|i| [0.5 + 0.1 * sign(i % 48, i / 48); 3]).collect()
+        };
+        let flat = Appearance::of(48, &vec![[0.5; 3]; 48 * 36]);
+        let [fine, coarse] = [1, 12].map(|side| flat.difference(&Appearance::of(48, &chequers(side))));
+        assert!(fine < 0.5 * coarse, "{fine} {coarse}");
+    }
+
+    #[test]
+    fn colours_survive_the_way_to_opponents_and_back() {
+        let rgb = [0.2, 0.7, 0.4];
+        let back = linear_from_xyz(xyz_from_opponent(opponent_from_xyz(xyz_from_linear(rgb))));
+        assert!((0..3).all(|i| (back[i] - rgb[i]).abs() < 1e-12), "{back:?}");
+        let white = lab_from_xyz(xyz_from_linear([1.0; 3]));
+        assert!((white[0] - 100.0).abs() < 1e-9 && white[1].abs() < 1e-9, "{white:?}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(16))]
+        #[test]
+        fn a_distance(pixels in prop::collection::vec([0.0..1.0_f64, 0.0..1.0, 0.0..1.0], 2 * 12 * 9)) {
+            let (a, b) = pixels.split_at(12 * 9);
+            let (a, b) = (Appearance::of(12, a), Appearance::of(12, b));
+            prop_assert_eq!(a.difference(&a), 0.0);
+            let there = a.difference(&b);
+            prop_assert!(there > 0.0 && there <= 1.0);
+            prop_assert!((there - b.difference(&a)).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! `weekender compare`: what is equal, what is not, and what cannot be compared.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+fn weekender(arguments: &[&str], directory: &Path) -> (i32, String, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    let Output { status, stdout, stderr } =
+        command.args(arguments).current_dir(directory).stdin(Stdio::null()).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    (status.code().unwrap(), text(stdout), text(stderr))
+}
+
+fn compare(arguments: &[&str], directory: &Path) -> (i32, String, String) {
+    weekender(&[&["compare"], arguments].concat(), directory)
+}
+
+/// Renders `out` with `flags`.
+fn render(directory: &Path, out: &str, flags: &[&str]) {
+    let usual = ["--batch", "--device", "cpu", "--progress", "off", "--out", out];
+    let size: &[&str] = if flags.contains(&"--size") { &[] } else { &["--size", "160x90"] };
+    let (code, _, errors) = weekender(&[&usual[..], size, flags].concat(), directory);
+    assert_eq!(code, 0, "{errors}");
+}
+
+fn json(arguments: &[&str], directory: &Path) -> (i32, serde_json::Value) {
+    let (code, text, errors) = compare(&[arguments, &["--json", "-"]].concat(), directory);
+    (code, serde_json::from_str(&text).unwrap_or_else(|_| panic!("{text}{errors}")))
+}
+
+#[test]
+fn films_that_differ_in_noise_are_equal_and_one_that_differs_in_a_sphere_is_not() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    render(at, "a.exr", &["--samples", "64"]);
+    render(at, "b.exr", &["--samples", "64", "--seed", "1"]);
+    render(at, "c.exr", &["--samples", "64", "--seed", "2", "--sampler", "independent"]);
+    let (code, found) = json(&["a.exr", "b.exr"], at);
+    let times = found["times_noise"].as_f64().unwrap();
+    assert_eq!(code, 0, "{found}");
+    assert!((times - 1.0).abs() < 0.1, "{times}");
+    assert_eq!(json(&["a.exr", "c.exr"], at).0, 0);
+    let (code, text, _) = compare(&["a.exr", "a.exr"], at);
+    assert!(code == 0 && text.contains("equal to the bit") && text.contains("0.00 x noise"), "{text}");
+
+    // A ball that is a hundredth larger.
+    let (code, _, errors) = weekender(&["--save-scene", "scene.toml", "--size", "160x90"], at);
+    assert_eq!(code, 0, "{errors}");
+    let scene = fs::read_to_string(at.join("scene.toml")).unwrap();
+    let larger = scene.replacen("radius = 0.5", "radius = 0.505", 1);
+    assert_ne!(scene, larger, "{scene}");
+    fs::write(at.join("larger.toml"), larger).unwrap();
+    render(at, "larger.exr", &["--scene", "larger.toml", "--samples", "64", "--seed", "3"]);
+    let (code, text, _) = compare(&["a.exr", "larger.exr", "--heat-map", "map.png"], at);
+    assert_eq!(code, 1, "{text}");
+    assert!(text.contains("because") && text.contains("should be different pictures"), "{text}");
+    let map = image::open(at.join("map.png")).unwrap().to_rgb8();
+    assert_eq!(map.dimensions(), (160, 90));
+    assert!(map.pixels().any(|pixel| pixel.0 == [0, 220, 255]), "the worst blocks are framed");
+}
+
+#[test]
+fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    render(at, "film.exr", &["--samples", "256"]);
+    for (name, flags) in [("a.png", ["--seed", "5"]), ("a.ppm", ["--seed", "6"])] {
+        render(at, name, &[&["--samples", "64"], &flags[..]].concat());
+        let (code, text, errors) = compare(&["film.exr", name], at);
+        assert_eq!(code, 0, "{text}{errors}");
+        assert!(text.contains("whole numbers") && text.contains("spread of the differences"), "{text}");
+        let (code, text, _) = compare(&[name, "cpu"], at);
+        assert!(code == 0 && text.contains("cpu"), "{text}");
+    }
+    // Without its description a picture is that of another program, and its scene has to be said.
+    let plain = image::open(at.join("a.png")).unwrap().to_rgb8();
+    plain.save(at.join("plain.png")).unwrap();
+    let scene = ["--scene", "three-spheres"];
+    assert_eq!(compare(&["plain.png", "cpu", scene[0], scene[1]], at).0, 0);
+    assert_eq!(compare(&["plain.png", "film.exr"], at).0, 0);
+    assert_eq!(compare(&["plain.png", "film.exr", "--encoding", "linear"], at).0, 1);
+
+    let mut pfm = b"PF\n160 90\n-1.0\n".to_vec();
+    for row in (0..90).rev() {
+        for pixel in 0..160 {
+            let linear = plain.get_pixel(pixel, row).0.map(|byte| ((f32::from(byte) + 0.5) / 256.0).powi(2));
+            pfm.extend(linear.iter().flat_map(|x| x.to_le_bytes()));
+        }
+    }
+    fs::write(at.join("turned.pfm"), &pfm).unwrap();
+    let (code, text, errors) = compare(&["turned.pfm", "turned.pfm"], at);
+    assert!(code == 0 && text.contains("equal to the bit"), "{text}{errors}");
+    // As a float picture its steps are not known: only the blocks of the smooth sky may tell it apart.
+    let (_, text, _) = compare(&["turned.pfm", "film.exr"], at);
+    assert!(text.contains("float") && text.contains("verdict"), "{text}");
+}
+
+#[test]
+fn backends_agree_on_the_same_samples() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    for scene in ["three-spheres", "book"] {
+        let arguments = ["cpu", "reference", "--scene", scene, "--samples", "16", "--size", "96x54"];
+        let (code, found) = json(&arguments, at);
+        assert_eq!(code, 0, "{found}");
+        assert!(found["times_noise"].as_f64().unwrap() < 0.2, "{found}");
+        assert!(found["paired_samples"]["count"] == 96 * 54 * 16, "{found}");
+    }
+    let (code, text, _) = compare(&["cpu", "cpu", "--samples", "4", "--size", "96x54"], at);
+    assert!(code == 0 && text.contains("equal to the bit") && text.contains("(first)"), "{text}");
+    // A film beside a backend: its scene, its size, its samples.
+    render(at, "film.exr", &["--samples", "24", "--scene", "metals"]);
+    let (code, text, errors) = compare(&["film.exr", "baseline"], at);
+    assert!(
+        code == 0 && text.contains("the same samples") && text.contains("metals, 160x90, 24"),
+        "{text}{errors}"
+    );
+}
+
+#[test]
+fn what_cannot_be_compared_exits_with_2() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    render(at, "a.exr", &["--samples", "2"]);
+    render(at, "small.exr", &["--samples", "2", "--size", "80x45"]);
+    fs::write(at.join("text.png"), "no picture").unwrap();
+    let cases: [(&[&str], &[&str]); 6] = [
+        (&["a.exr"], &["SECOND"]),
+        (&["a.exr", "nowhere.exr"], &["nowhere.exr"]),
+        (&["a.exr", "text.png"], &["text.png", "no PFM, EXR, PNG or PPM"]),
+        (&["a.exr", "small.exr"], &["160x90", "80x45", "one size"]),
+        (&["a.exr", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
+        (&["cpu", "reference", "--stage", "all"], &["--stage all", "choose one"]),
+    ];
+    for (arguments, parts) in cases {
+        let (code, text, message) = compare(arguments, at);
+        assert_eq!((code, text.as_str()), (2, ""), "{arguments:?}: {message}");
+        for part in parts {
+            assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
+        }
+    }
+}
