@@ -3,6 +3,7 @@
 pub mod app;
 pub mod backends;
 pub mod batch;
+pub mod chart;
 pub mod cli;
 pub mod describe;
 pub mod diff;

@@ -15,6 +15,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("record", &[]),
     ("recipe", &["scene", "stages", "render"]),
     ("output", &["stages", "film"]),
+    ("chart", &["film"]),
     ("sampling", &["render"]),
     ("tables", &["scene", "stages", "film", "render"]),
     ("render_cpu", &["stages", "film", "render", "record", "sampling", "tables"]),
@@ -85,6 +86,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("fearless_simd", &["render_cpu"]),
     ("obvhs", &["tables"]),
     ("indicatif", &["batch"]),
+    ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
 ];
 

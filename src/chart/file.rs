@@ -1,0 +1,149 @@
+//! Figures in files.
+
+use super::style::{FAINT_INK, FONT, INK, Units, provide_font};
+use super::{Figure, Panel, bars, lines};
+use crate::film::{WriteError, replace_file};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Pixels of a PNG for each point.
+const PNG_SCALE: u32 = 2;
+
+/// A PNG is drawn this many times larger each way and then made smaller, which smooths its edges.
+const SMOOTHING: u32 = 2;
+
+/// How a figure is kept in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChartFormat {
+    /// Pixels.
+    Png,
+    /// Shapes.
+    Svg,
+}
+
+impl ChartFormat {
+    /// The format that a file's ending stands for, in capitals or not.
+    ///
+    /// # Errors
+    /// [`ChartError::UnknownEnding`].
+    pub fn from_path(path: &Path) -> Result<Self, ChartError> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("png") => Ok(ChartFormat::Png),
+            Some("svg") => Ok(ChartFormat::Svg),
+            _ => Err(ChartError::UnknownEnding { path: path.to_owned() }),
+        }
+    }
+}
+
+/// A figure that cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ChartError {
+    /// The file's name does not say what to write.
+    #[error("the name {} does not end in .png or .svg, which a chart's file must", path.display())]
+    UnknownEnding {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The figure's size or its texts.
+    #[error("cannot draw {}: {reason}; choose another size", path.display())]
+    Draw {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// The file system.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Writes a figure in place of `path`, in the format of its ending.
+///
+/// # Errors
+/// [`ChartError`]; the file that was there is then as it was.
+pub fn save(path: &Path, figure: &Figure) -> Result<(), ChartError> {
+    let draw_error = |reason: String| ChartError::Draw { path: path.to_owned(), reason };
+    if !provide_font() {
+        return Err(draw_error("the font cannot be read".to_owned()));
+    }
+    let bytes = match ChartFormat::from_path(path)? {
+        ChartFormat::Png => png(figure),
+        ChartFormat::Svg => svg(figure),
+    };
+    let bytes = bytes.map_err(draw_error)?;
+    replace_file(path, |writer| io::Write::write_all(writer, &bytes))?;
+    Ok(())
+}
+
+fn svg(figure: &Figure) -> Result<Vec<u8>, String> {
+    let mut text = String::new();
+    let [width, height] = figure.size;
+    let area = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();
+    draw(&area, figure, Units(1.0)).map_err(|error| error.to_string())?;
+    drop(area);
+    Ok(text.into_bytes())
+}
+
+fn png(figure: &Figure) -> Result<Vec<u8>, String> {
+    let [width, height] = figure.size.map(|points| points * PNG_SCALE);
+    let drawn = (width * SMOOTHING, height * SMOOTHING);
+    let mut large = vec![0; 3 * drawn.0 as usize * drawn.1 as usize];
+    let area = BitMapBackend::with_buffer(&mut large, drawn).into_drawing_area();
+    draw(&area, figure, Units(f64::from(PNG_SCALE * SMOOTHING))).map_err(|error| error.to_string())?;
+    drop(area);
+    let pixels = smaller(&large, width as usize, height as usize);
+    let mut bytes = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    let write = |encoder: ::png::Encoder<_>| {
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&pixels)?;
+        writer.finish()
+    };
+    write(encoder).map_err(|error| error.to_string())?;
+    Ok(bytes)
+}
+
+/// The means of squares of pixels.
+fn smaller(large: &[u8], width: usize, height: usize) -> Vec<u8> {
+    let side = SMOOTHING as usize;
+    let mut pixels = Vec::with_capacity(3 * width * height);
+    for y in 0..height {
+        for x in 0..3 * width {
+            let (column, channel) = (x / 3, x % 3);
+            let square = (0..side * side).map(|i| {
+                let (row, column) = (y * side + i / side, column * side + i % side);
+                u32::from(large[3 * (row * width * side + column) + channel])
+            });
+            pixels.push((square.sum::<u32>() / (SMOOTHING * SMOOTHING)) as u8);
+        }
+    }
+    pixels
+}
+
+fn draw<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    figure: &Figure,
+    units: Units,
+) -> Result<(), DrawingAreaErrorKind<B::ErrorType>> {
+    area.fill(&WHITE)?;
+    let margin = units.px(16.0);
+    let title = (FONT, units.px(22.0), &INK).into_text_style(area);
+    area.draw_text(&figure.title, &title, (margin, units.px(14.0)))?;
+    let about = (FONT, units.px(14.0), &FAINT_INK).into_text_style(area);
+    area.draw_text(&figure.about, &about, (margin, units.px(42.0)))?;
+    let (_, below) = area.split_vertically(units.px(if figure.about.is_empty() { 46.0 } else { 64.0 }));
+    let columns = figure.columns.max(1);
+    let places = below.split_evenly((figure.panels.len().div_ceil(columns), columns));
+    for (panel, place) in figure.panels.iter().zip(&places) {
+        match panel {
+            Panel::Lines(chart) => lines::draw(place, chart, units)?,
+            Panel::Bars(chart) => bars::draw(place, chart, units)?,
+        }
+    }
+    area.present()
+}

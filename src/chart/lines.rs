@@ -1,0 +1,161 @@
+//! Lines over two axes.
+
+use super::axis::Ruler;
+use super::style::{FAINT_INK, FINE_GRID, FONT, GRID, GUIDE, INK, Units, color};
+use super::{Corner, LineChart, Look, Series};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
+
+/// A point in positions of both rulers, with the positions of its spread.
+struct Placed {
+    at: (f64, f64),
+    spread: Option<[f64; 2]>,
+}
+
+pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &LineChart, units: Units) -> Drawn<B> {
+    let points = || chart.series.iter().flat_map(|series| &series.points);
+    let x = chart.x.ruler(points().map(|point| point.x));
+    let y = chart
+        .y
+        .ruler(points().flat_map(|point| [point.y].into_iter().chain(point.spread.into_iter().flatten())));
+
+    let mut builder = ChartBuilder::on(area);
+    builder.margin(units.px(8.0)).margin_right(units.px(18.0));
+    builder.x_label_area_size(units.px(46.0)).y_label_area_size(units.px(64.0));
+    if !chart.title.is_empty() {
+        builder.caption(&chart.title, (FONT, units.px(17.0), &INK));
+    }
+    let mut context = builder.build_cartesian_2d(x.clone(), y.clone())?;
+    context
+        .configure_mesh()
+        .bold_line_style(GRID.stroke_width(units.size(1.0)))
+        .light_line_style(FINE_GRID.stroke_width(units.size(1.0)))
+        .axis_style(FAINT_INK.stroke_width(units.size(1.0)))
+        .set_all_tick_mark_size(units.px(4.0))
+        .label_style((FONT, units.px(14.0), &INK))
+        .axis_desc_style((FONT, units.px(15.0), &INK))
+        .x_desc(&chart.x.label)
+        .y_desc(&chart.y.label)
+        .draw()?;
+
+    let mut colors = 0;
+    for series in &chart.series {
+        let placed: Vec<Placed> = series
+            .points
+            .iter()
+            .filter_map(|point| {
+                let at = (x.position(point.x)?, y.position(point.y)?);
+                let ends = |[low, high]: [f64; 2]| Some([y.position(low)?, y.position(high)?]);
+                Some(Placed { at, spread: point.spread.and_then(ends) })
+            })
+            .collect();
+        match series.look {
+            Look::Guide => guide(&mut context, series, &placed, units)?,
+            Look::Measured => {
+                measured(&mut context, series, &placed, colors, units)?;
+                colors += 1;
+            }
+        }
+    }
+    legend(&mut context, chart, units)
+}
+
+type Context<'a, B> = ChartContext<'a, B, Cartesian2d<Ruler, Ruler>>;
+
+fn guide<'a, B: DrawingBackend + 'a>(
+    context: &mut Context<'a, B>,
+    series: &Series,
+    placed: &[Placed],
+    units: Units,
+) -> Drawn<B> {
+    let style = GUIDE.stroke_width(units.size(1.5));
+    let line =
+        DashedLineSeries::new(placed.iter().map(|point| point.at), units.px(7.0), units.px(5.0), style);
+    let drawn = context.draw_series(line)?;
+    if !series.name.is_empty() {
+        let length = units.px(26.0);
+        drawn.label(&series.name).legend(move |(x, y)| {
+            let dash = |from: i32, to: i32| (x + length * from / 5, x + length * to / 5);
+            let lines = [dash(0, 2), dash(3, 5)].map(|(from, to)| vec![(from, y), (to, y)]);
+            let [first, second] = lines.map(|line| PathElement::new(line, style));
+            EmptyElement::at((0, 0)) + first + second
+        });
+    }
+    Ok(())
+}
+
+fn measured<'a, B: DrawingBackend + 'a>(
+    context: &mut Context<'a, B>,
+    series: &Series,
+    placed: &[Placed],
+    index: usize,
+    units: Units,
+) -> Drawn<B> {
+    let style = color(index).stroke_width(units.size(2.0));
+    for point in placed {
+        if let Some([low, high]) = point.spread {
+            let line = vec![(point.at.0, low), (point.at.0, high)];
+            context.draw_series([PathElement::new(line, style)])?;
+        }
+    }
+    let drawn = context.draw_series(LineSeries::new(placed.iter().map(|point| point.at), style))?;
+    if !series.name.is_empty() {
+        let (length, radius) = (units.px(26.0), units.px(4.5));
+        drawn.label(&series.name).legend(move |(x, y)| {
+            let line = PathElement::new(vec![(x, y), (x + length, y)], style);
+            EmptyElement::at((0, 0)) + line + mark((x + length / 2, y), radius, index)
+        });
+    }
+    let radius = units.px(4.5);
+    context
+        .draw_series(placed.iter().map(|point| EmptyElement::at(point.at) + mark((0, 0), radius, index)))?;
+    Ok(())
+}
+
+/// A filled mark: circles, squares, diamonds and triangles take turns.
+fn mark(at: (i32, i32), radius: i32, index: usize) -> Polygon<(i32, i32)> {
+    let corners: &[(f64, f64)] = match index % 4 {
+        1 => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+        2 => &[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)],
+        3 => &[(0.0, -1.25), (1.2, 0.85), (-1.2, 0.85)],
+        _ => &[],
+    };
+    let place = |(x, y): (f64, f64)| {
+        let along = |middle: i32, offset: f64| middle + (offset * f64::from(radius)).round() as i32;
+        (along(at.0, x), along(at.1, y))
+    };
+    const CIRCLE: usize = 24;
+    let points: Vec<(i32, i32)> = if corners.is_empty() {
+        (0..CIRCLE)
+            .map(|step| place((step as f64 / CIRCLE as f64 * std::f64::consts::TAU).sin_cos()))
+            .collect()
+    } else {
+        corners.iter().copied().map(place).collect()
+    };
+    Polygon::new(points, color(index).filled())
+}
+
+fn legend<'a, B: DrawingBackend + 'a>(
+    context: &mut Context<'a, B>,
+    chart: &LineChart,
+    units: Units,
+) -> Drawn<B> {
+    let position = match chart.legend {
+        None => return Ok(()),
+        Some(Corner::UpperLeft) => SeriesLabelPosition::UpperLeft,
+        Some(Corner::UpperRight) => SeriesLabelPosition::UpperRight,
+        Some(Corner::LowerLeft) => SeriesLabelPosition::LowerLeft,
+        Some(Corner::LowerRight) => SeriesLabelPosition::LowerRight,
+    };
+    context
+        .configure_series_labels()
+        .position(position)
+        .margin(units.px(12.0))
+        .legend_area_size(units.px(34.0))
+        .label_font((FONT, units.px(14.0), &INK))
+        .background_style(WHITE.mix(0.9))
+        .border_style(GRID.stroke_width(units.size(1.0)))
+        .draw()
+}
