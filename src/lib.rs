@@ -3,12 +3,14 @@
 pub mod app;
 pub mod backends;
 pub mod batch;
+pub mod bench;
 pub mod chart;
 pub mod cli;
 pub mod describe;
 pub mod diff;
 pub mod failure;
 pub mod film;
+pub mod interrupt;
 pub mod output;
 pub mod progressive;
 pub mod recipe;

@@ -24,6 +24,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("progressive", &["stages", "film", "render", "backends"]),
     ("describe", &["scene", "stages", "film", "recipe", "progressive"]),
     ("failure", &[]),
+    ("interrupt", &["failure"]),
     (
         "cli",
         &[
@@ -37,6 +38,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "render_gpu",
             "backends",
             "progressive",
+            "chart",
             "failure",
         ],
     ),
@@ -56,6 +58,24 @@ const ROOMS: &[(&str, &[&str])] = &[
             "cli",
             "describe",
             "failure",
+            "interrupt",
+        ],
+    ),
+    (
+        "bench",
+        &[
+            "scene",
+            "film",
+            "recipe",
+            "render",
+            "tables",
+            "render_cpu",
+            "render_gpu",
+            "backends",
+            "chart",
+            "cli",
+            "failure",
+            "interrupt",
         ],
     ),
     (
@@ -85,7 +105,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("rayon", &["render_cpu"]),
     ("fearless_simd", &["render_cpu"]),
     ("obvhs", &["tables"]),
-    ("indicatif", &["batch"]),
+    ("indicatif", &["batch", "bench"]),
     ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
 ];

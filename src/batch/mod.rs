@@ -1,7 +1,6 @@
 //! Rendering without a window: pictures to files, progress to standard error, figures at the end.
 
 mod files;
-mod interrupt;
 mod listing;
 mod memory;
 mod merging;
@@ -16,11 +15,11 @@ use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
 use crate::failure::{Failure, INTERRUPTED};
 use crate::film::{Film, check_writable, replace_file};
+use crate::interrupt::Interrupt;
 use crate::progressive::{Phase, Progressive, Status, Work};
 use crate::recipe::{Recipe, file};
 use crate::render::Renderer;
 use anyhow::{Context, anyhow};
-use interrupt::Interrupt;
 use progress::Progress;
 use resuming::Resumed;
 use std::io::Write;

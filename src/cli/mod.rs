@@ -1,10 +1,12 @@
 //! The command line: what was typed, checked, as options that can be carried out.
 
+mod bench;
 mod options;
 mod raw;
 mod sources;
 mod values;
 
+pub use bench::{BenchOptions, BenchScene};
 pub use options::{
     BatchOptions, DiffOptions, JsonTarget, MergeOptions, PathChoice, RenderOptions, SaveSceneOptions,
     SideChoice, WindowOptions,
@@ -22,6 +24,8 @@ use std::ffi::OsString;
 pub enum Request {
     /// Open the window.
     Window(Box<WindowOptions>),
+    /// Measure speed.
+    Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
     List,
     /// Write a scene file and render nothing.
@@ -41,6 +45,9 @@ pub enum Request {
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let raw = Raw::try_parse_from(arguments).map_err(Failure::CommandLine)?;
     match raw.command {
+        Some(RawCommand::Bench(raw)) => {
+            bench::bench(*raw).map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)
+        }
         Some(RawCommand::Merge { films, out }) => Ok(Request::Merge(MergeOptions { films, out })),
         Some(RawCommand::Diff(raw)) => {
             options::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)

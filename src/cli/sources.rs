@@ -29,6 +29,9 @@ pub enum CliError {
     /// No such device here.
     #[error(transparent)]
     Backend(#[from] crate::backends::BackendError),
+    /// A chart's name.
+    #[error(transparent)]
+    Chart(#[from] crate::chart::ChartError),
     /// Two flags that do not go together.
     #[error("{flag} cannot be used with {other}: {reason}")]
     Together {
@@ -104,7 +107,7 @@ pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<Source, Cl
     }
 }
 
-fn scene(name: &str) -> Result<Recipe, CliError> {
+pub(super) fn scene(name: &str) -> Result<Recipe, CliError> {
     if is_file(name) { Ok(file::load(Path::new(name))?) } else { Ok(Recipe::find(name)?) }
 }
 

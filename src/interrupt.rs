@@ -5,11 +5,15 @@ use anyhow::{Context, Result};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-pub(super) struct Interrupt(Arc<AtomicBool>);
+/// Whether Ctrl-C has been pressed.
+pub struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
     /// Listens from now on. Once a process.
-    pub(super) fn install() -> Result<Self> {
+    ///
+    /// # Errors
+    /// If the system does not let it.
+    pub fn install() -> Result<Self> {
         let flag = Arc::new(AtomicBool::new(false));
         let seen = Arc::clone(&flag);
         ctrlc::set_handler(move || {
@@ -21,7 +25,13 @@ impl Interrupt {
         Ok(Interrupt(flag))
     }
 
-    pub(super) fn is_set(&self) -> bool {
+    /// Becomes `true` when an end is asked for.
+    pub fn flag(&self) -> &AtomicBool {
+        &self.0
+    }
+
+    /// Whether an end has been asked for.
+    pub fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
