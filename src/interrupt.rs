@@ -25,6 +25,11 @@ impl Interrupt {
         Ok(Interrupt(flag))
     }
 
+    /// Becomes `true` when an end is asked for.
+    pub fn flag(&self) -> &AtomicBool {
+        &self.0
+    }
+
     /// Whether an end has been asked for.
     pub fn is_set(&self) -> bool {
         self.0.load(Ordering::Relaxed)

@@ -3,6 +3,7 @@
 pub mod app;
 pub mod backends;
 pub mod batch;
+pub mod bench;
 pub mod chart;
 pub mod cli;
 pub mod compare;

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
-use weekender::{app, batch, compare, diff, report};
+use weekender::{app, batch, bench, compare, diff, report};
 
 fn main() -> ExitCode {
     run().unwrap_or_else(|failure| failure.report())
@@ -12,6 +12,7 @@ fn main() -> ExitCode {
 fn run() -> Result<ExitCode, Failure> {
     match cli::parse(std::env::args_os())? {
         Request::Window(options) => app::run(*options).map_err(Failure::Input),
+        Request::Bench(options) => bench::run(&options),
         Request::List => batch::list(),
         Request::SaveScene(options) => batch::save_scene(&options),
         Request::Merge(options) => batch::merge(&options),

@@ -1,10 +1,12 @@
 //! The command line: what was typed, checked, as options that can be carried out.
 
+mod bench;
 mod options;
 mod raw;
 mod sources;
 mod values;
 
+pub use bench::{BenchOptions, BenchScene};
 pub use options::{
     BatchOptions, CompareOptions, CompareSide, DiffOptions, JsonTarget, MergeOptions, PathChoice,
     ReferenceChoice, RenderOptions, ReportOptions, SaveSceneOptions, SideChoice, WindowOptions,
@@ -22,6 +24,8 @@ use std::ffi::OsString;
 pub enum Request {
     /// Open the window.
     Window(Box<WindowOptions>),
+    /// Measure speed.
+    Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
     List,
     /// Write a scene file and render nothing.
@@ -48,6 +52,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     let command = ["weekender".into()].into_iter().chain(typed).collect::<Vec<_>>().join(" ");
     let raw = Raw::try_parse_from(&arguments).map_err(Failure::CommandLine)?;
     match raw.command {
+        Some(RawCommand::Bench(raw)) => {
+            bench::bench(*raw).map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)
+        }
         Some(RawCommand::Merge { films, out }) => Ok(Request::Merge(MergeOptions { films, out })),
         Some(RawCommand::Diff(raw)) => {
             options::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)

@@ -592,7 +592,7 @@ fn directory_of_all(raw: &RawRender) -> Result<PathBuf, CliError> {
     })
 }
 
-fn json_target(path: PathBuf) -> JsonTarget {
+pub(super) fn json_target(path: PathBuf) -> JsonTarget {
     if path == Path::new("-") { JsonTarget::StandardOutput } else { JsonTarget::File(path) }
 }
 

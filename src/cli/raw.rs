@@ -1,5 +1,6 @@
 //! The flags as they are typed. What they mean together is found out in `options`.
 
+use super::bench::RawBench;
 use super::values::{
     Level, RawSide, Simd, parse_isa, parse_number, parse_pixel, parse_rmse, parse_sample_range,
     parse_seconds, parse_sides, parse_simd, parse_size, parse_tolerance, parse_vector,
@@ -24,6 +25,11 @@ pub(super) struct Raw {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum RawCommand {
+    /// Measure how fast this machine renders, beside a plain C program: tables, JSON, a chart
+    ///
+    /// Rows take turns, after a warm-up that is not counted. Medians are shown with the least and the most. Reading,
+    /// preparing and writing are in no figure. The C program is compiled by the compiler that CC names, or cc.
+    Bench(Box<RawBench>),
     /// Add film files of one picture that hold different samples
     Merge {
         /// Film files (.exr), as --checkpoint, --out and merge write them

@@ -30,6 +30,9 @@ pub enum CliError {
     /// No such device here.
     #[error(transparent)]
     Backend(#[from] crate::backends::BackendError),
+    /// A chart's name.
+    #[error(transparent)]
+    Chart(#[from] crate::chart::ChartError),
     /// Two flags that do not go together.
     #[error("{flag} cannot be used with {other}: {reason}")]
     Together {

@@ -2,6 +2,7 @@
 
 use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::render_cpu::Isa;
+use crate::scene::builtin::FIELD_COUNT_LIMITS;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -30,6 +31,55 @@ pub(super) fn parse_isa(text: &str) -> Result<Level, String> {
         let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
         format!("must be auto or one of {}", names.join(", "))
     })
+}
+
+/// Instruction levels as typed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Levels {
+    /// The best.
+    Auto,
+    /// All that the processor has.
+    All,
+    /// These, the least capable first.
+    Named(Vec<Isa>),
+}
+
+pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
+    match text {
+        "auto" => return Ok(Levels::Auto),
+        "all" => return Ok(Levels::All),
+        _ => {}
+    }
+    let level = |name: &str| Isa::ALL.into_iter().find(|isa| isa.name() == name.trim());
+    let named: Option<Vec<Isa>> = text.split(',').map(level).collect();
+    let mut named = named.ok_or_else(|| {
+        let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
+        format!("must be auto, all, or levels of {} with commas between them", names.join(", "))
+    })?;
+    named.sort_unstable();
+    named.dedup();
+    Ok(Levels::Named(named))
+}
+
+/// Numbers of spheres from `A` to `B`: `A` and three times `A`, with powers of ten.
+pub(super) fn parse_counts(text: &str) -> Result<Box<[u64]>, String> {
+    let limits = FIELD_COUNT_LIMITS;
+    // 1e6 is easier to type than a million.
+    let count = |text: &str| {
+        let number: f64 = text.trim().parse().ok()?;
+        let is_whole = number.fract() == 0.0 && number >= 0.0 && number <= *limits.end() as f64;
+        is_whole.then_some(number as u64).filter(|count| limits.contains(count))
+    };
+    let ends = text.split_once("..").and_then(|(a, b)| Some((count(a)?, count(b)?)));
+    let (first, last) = ends.filter(|(first, last)| first <= last).ok_or_else(|| {
+        format!(
+            "must be A..B with A at most B, both within {} and {}, such as 1e3..1e6",
+            limits.start(),
+            limits.end()
+        )
+    })?;
+    let decades = (0..).map(|power| first * 10_u64.pow(power)).take_while(|count| *count <= last);
+    Ok(decades.flat_map(|count| [count, 3 * count]).filter(|count| *count <= last).collect())
 }
 
 pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
@@ -126,6 +176,9 @@ mod tests {
         assert_eq!(parse_isa("sse4.2"), Ok(Level(Some(Isa::Sse42))));
         assert_eq!(parse_pixel("3, 4"), Ok([3, 4]));
         assert_eq!(parse_sides("baseline,gpu"), Ok([RawSide::Baseline, RawSide::Gpu]));
+        assert_eq!(parse_levels("avx2, sse4.2,avx2"), Ok(Levels::Named(vec![Isa::Sse42, Isa::Avx2])));
+        assert_eq!(parse_counts("1e3..2e4").as_deref(), Ok(&[1000, 3000, 10_000][..]));
+        assert_eq!(parse_counts("7..7").as_deref(), Ok(&[7][..]));
         assert_eq!(parse_tolerance("0"), Ok(0.0));
     }
 
@@ -149,6 +202,12 @@ mod tests {
         }
         for text in ["", "cpu", "cpu,tpu", "cpu,gpu,reference"] {
             assert!(parse_sides(text).unwrap_err().contains("baseline"), "{text}");
+        }
+        for text in ["", "auto,avx2", "avx2,", "mmx"] {
+            assert!(parse_levels(text).unwrap_err().contains("sse4.2"), "{text}");
+        }
+        for text in ["", "5", "0..5", "10..9", "1e3..1e8", "nan..5", "1.5..3", "-1..5"] {
+            assert!(parse_counts(text).unwrap_err().contains("10000000"), "{text}");
         }
         for text in ["", "-1", "nan", "2"] {
             assert!(parse_tolerance(text).is_err(), "{text}");

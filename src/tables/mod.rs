@@ -221,6 +221,18 @@ impl<R: Real> Tables<R> {
         true
     }
 
+    /// Memory that grows with the number of spheres.
+    pub fn bytes(&self) -> usize {
+        let hierarchy =
+            self.hierarchy.as_ref().map_or(0, |hierarchy| size_of_val(hierarchy.nodes.as_slice()));
+        size_of_val(self.opaque.as_slice())
+            + size_of_val(self.two_root.as_slice())
+            + size_of_val(self.anchored.as_slice())
+            + size_of_val(self.rows.as_slice())
+            + size_of_val(self.scene_index.as_slice())
+            + hierarchy
+    }
+
     /// The spheres of `two_root` as the scene has them. The tables must be the job's.
     pub fn spheres_of_hierarchy(&self, job: &RenderJob) -> Vec<Sphere> {
         let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());

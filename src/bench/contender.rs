@@ -1,0 +1,216 @@
+//! Who is measured: the control, levels and lane counts of the CPU, a GPU.
+
+use super::control::{Control, ControlError};
+use super::figures::{Kind, Row, Run};
+use crate::backends::{self, BackendChoice};
+use crate::cli::BenchOptions;
+use crate::render::{RenderError, RenderJob, Renderer};
+use crate::render_cpu::{CpuOptions, Isa};
+use crate::render_gpu::{GpuOptions, adapters};
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A warm-up run lasts at least this long, so that its speed means something, seconds.
+const WARM_UP_SECONDS: f64 = 0.2;
+
+/// One row of a scene, ready to run.
+pub struct Contender {
+    /// Its figures so far.
+    pub row: Row,
+    runner: Option<Runner>,
+}
+
+enum Runner {
+    Control { control: Rc<Control>, scene: PathBuf },
+    Renderer(Box<dyn Renderer>),
+}
+
+/// A run that was not to be finished.
+#[derive(Debug)]
+pub struct Cancelled;
+
+/// All contenders of a job, in the order of the table.
+pub fn contenders(
+    options: &BenchOptions,
+    name: &str,
+    job: &RenderJob,
+    control: &Result<Rc<Control>, ControlError>,
+) -> Vec<Contender> {
+    let mut found = vec![Contender::control(name, job, control)];
+    for isa in &options.levels {
+        for lanes in isa.lane_counts() {
+            let kind = if *lanes == 1 { Kind::Scalar } else { Kind::Packets };
+            found.push(Contender::cpu(*isa, *lanes, 1, kind, job));
+        }
+    }
+    let best = options.levels.last().copied().unwrap_or(Isa::Baseline);
+    if options.threads > 1 {
+        found.push(Contender::cpu(best, 1, options.threads, Kind::Threads, job));
+        if best.native_lanes() > 1 {
+            found.push(Contender::cpu(best, best.native_lanes(), options.threads, Kind::Threads, job));
+        }
+    }
+    let is_fit = adapters().iter().any(|adapter| !adapter.is_software && adapter.lacks.is_none());
+    if options.adapter.is_some() || is_fit {
+        found.push(Contender::gpu(options, job));
+    }
+    found
+}
+
+impl Contender {
+    fn new(name: String, kind: Kind, lanes: usize, threads: usize, made: Result<Runner, String>) -> Self {
+        let (runner, skipped) = match made {
+            Ok(runner) => (Some(runner), None),
+            Err(reason) => (None, Some(reason)),
+        };
+        let row = Row {
+            name,
+            kind,
+            lanes,
+            threads,
+            samples_per_pixel: 0,
+            runs: Vec::new(),
+            paths_per_second: None,
+            rays_per_second: None,
+            lanes_in_use: None,
+            ratio_to_control: None,
+            efficiency: None,
+            skipped,
+        };
+        Contender { row, runner }
+    }
+
+    fn control(name: &str, job: &RenderJob, control: &Result<Rc<Control>, ControlError>) -> Self {
+        let made = control.as_ref().map_err(ToString::to_string).and_then(|control| {
+            let scene = control.write_scene(job, &name.replace(['/', '\\', ':'], "-"));
+            let scene = scene.map_err(|error| error.to_string())?;
+            Ok(Runner::Control { control: Rc::clone(control), scene })
+        });
+        let name = match control {
+            Ok(control) => format!("C89, {} -O2, 1 thread", control.compiler),
+            Err(_) => "C89, 1 thread".to_owned(),
+        };
+        Contender::new(name, Kind::Control, 1, 1, made)
+    }
+
+    /// A level of the CPU.
+    pub fn cpu(isa: Isa, lanes: usize, threads: usize, kind: Kind, job: &RenderJob) -> Self {
+        let options = CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: Some(threads) };
+        let count =
+            |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
+        let name = format!("{isa}, {}, {}", count(lanes, "lane"), count(threads, "thread"));
+        Contender::new(name, kind, lanes, threads, prepared(&BackendChoice::Cpu(options), job))
+    }
+
+    fn gpu(options: &BenchOptions, job: &RenderJob) -> Self {
+        let gpu = GpuOptions {
+            adapter: options.adapter.clone(),
+            // Whoever names a software adapter wants it.
+            allow_software: options.adapter.is_some(),
+            ..GpuOptions::default()
+        };
+        let made = prepared(&BackendChoice::Gpu(gpu), job);
+        let info = match &made {
+            Ok(Runner::Renderer(renderer)) => Some(renderer.info()),
+            _ => None,
+        };
+        let name = info.as_ref().map_or_else(|| "GPU".to_owned(), |info| info.device.clone());
+        let (lanes, threads) = info.map_or((0, 0), |info| (info.lanes, info.threads));
+        Contender::new(name, Kind::Gpu, lanes, threads, made)
+    }
+
+    /// Whether it can be run.
+    pub fn is_ready(&self) -> bool {
+        self.runner.is_some()
+    }
+
+    /// Runs it without keeping the figures, with more and more samples, and chooses as many samples for its runs as
+    /// `limit_seconds` allows, at most `samples`.
+    ///
+    /// # Errors
+    /// [`Cancelled`]. A contender that fails is left out from then on.
+    pub fn warm_up(
+        &mut self,
+        job: &RenderJob,
+        samples: u64,
+        limit_seconds: f64,
+        cancel: &AtomicBool,
+    ) -> Result<(), Cancelled> {
+        let least = job.settings().half_count() as u64;
+        let mut tried = least.min(samples);
+        loop {
+            let Some(run) = self.run(job, tried, cancel)? else { return Ok(()) };
+            if run.seconds >= WARM_UP_SECONDS.min(limit_seconds) || tried >= samples {
+                let mut chosen = samples;
+                while chosen > least && chosen as f64 * run.seconds / tried as f64 > limit_seconds {
+                    chosen /= 2;
+                }
+                self.row.samples_per_pixel = chosen.max(1);
+                return Ok(());
+            }
+            tried = (4 * tried).min(samples);
+        }
+    }
+
+    /// Runs it and keeps the figures.
+    ///
+    /// # Errors
+    /// [`Cancelled`]. A contender that fails is left out from then on.
+    pub fn measure(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), Cancelled> {
+        let run = self.run(job, self.row.samples_per_pixel, cancel)?;
+        self.row.runs.extend(run);
+        Ok(())
+    }
+
+    /// `None` if it failed or cannot be run.
+    fn run(&mut self, job: &RenderJob, samples: u64, cancel: &AtomicBool) -> Result<Option<Run>, Cancelled> {
+        let outcome = match &mut self.runner {
+            None => return Ok(None),
+            Some(Runner::Control { control, scene }) => {
+                let is_cancelled = || cancel.load(Ordering::Relaxed);
+                match control.run(Some(scene), job.settings(), samples, 1, None, &is_cancelled) {
+                    Ok(run) => Ok(Run {
+                        seconds: run.seconds,
+                        paths: run.paths,
+                        rays: run.rays,
+                        busy_lanes: 0,
+                        offered_lanes: 0,
+                        rmse: None,
+                    }),
+                    Err(ControlError::Cancelled) => return Err(Cancelled),
+                    Err(error) => Err(error.to_string()),
+                }
+            }
+            Some(Runner::Renderer(renderer)) => {
+                let mut film = job.new_film();
+                match renderer.accumulate(job, 0..samples, &mut film, cancel) {
+                    Ok(stats) => Ok(Run {
+                        seconds: stats.trace.as_secs_f64(),
+                        paths: stats.paths,
+                        rays: stats.rays,
+                        busy_lanes: stats.busy_lanes,
+                        offered_lanes: stats.offered_lanes,
+                        rmse: film.error().map(|error| error.rmse),
+                    }),
+                    Err(RenderError::Cancelled) => return Err(Cancelled),
+                    Err(error) => Err(error.to_string()),
+                }
+            }
+        };
+        match outcome {
+            Ok(run) => Ok(Some(Run { seconds: run.seconds.max(1e-9), ..run })),
+            Err(reason) => {
+                self.runner = None;
+                self.row.skipped = Some(reason);
+                Ok(None)
+            }
+        }
+    }
+}
+
+fn prepared(choice: &BackendChoice, job: &RenderJob) -> Result<Runner, String> {
+    let mut renderer = backends::create(choice).map_err(|error| error.to_string())?;
+    renderer.prepare(job).map_err(|error| error.to_string())?;
+    Ok(Runner::Renderer(renderer))
+}

@@ -1,0 +1,229 @@
+//! The control: the same picture by a plain C89 program, which is compiled when it is asked for.
+
+use crate::render::{RenderJob, RenderSettings};
+use crate::scene::{Camera, Material, Scene};
+use glam::DVec3;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+use tempfile::TempDir;
+
+/// `reference/rt_weekend.c`.
+pub const SOURCE: &str = include_str!("../../reference/rt_weekend.c");
+
+/// How it is compiled.
+pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
+
+/// Time between looks at whether the control has ended.
+const POLL: Duration = Duration::from_millis(5);
+
+/// A control that cannot be had or did not end well.
+#[derive(Debug, thiserror::Error)]
+pub enum ControlError {
+    /// No compiler.
+    #[error("there is no C compiler {compiler:?} ({reason}); install one or name it in CC")]
+    NoCompiler {
+        /// As CC has it, or cc.
+        compiler: String,
+        /// What the system said.
+        reason: io::Error,
+    },
+    /// The compiler refuses it.
+    #[error("{compiler} cannot compile it: {message}")]
+    Compile {
+        /// As CC has it, or cc.
+        compiler: String,
+        /// Its first words.
+        message: String,
+    },
+    /// What the control cannot do.
+    #[error("{0}")]
+    Unfit(&'static str),
+    /// It ended without figures.
+    #[error("it failed: {0}")]
+    Run(String),
+    /// The caller asked to stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// Files.
+    #[error("its files cannot be written: {0}")]
+    Files(#[from] io::Error),
+}
+
+/// The compiled control.
+pub struct Control {
+    directory: TempDir,
+    /// The compiler.
+    pub compiler: String,
+}
+
+/// What the control said of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ControlRun {
+    /// Processor time of tracing.
+    pub seconds: f64,
+    /// Pixels times samples.
+    pub paths: u64,
+    /// Rays traced.
+    pub rays: u64,
+}
+
+impl Control {
+    /// Compiles it with the compiler that the environment's CC names, or cc.
+    ///
+    /// # Errors
+    /// [`ControlError::NoCompiler`], [`ControlError::Compile`] or [`ControlError::Files`].
+    pub fn compile() -> Result<Self, ControlError> {
+        let compiler = std::env::var("CC").ok().filter(|name| !name.trim().is_empty());
+        let compiler = compiler.unwrap_or_else(|| "cc".to_owned());
+        let directory = tempfile::Builder::new().prefix("weekender-control-").tempdir()?;
+        let source = directory.path().join("rt_weekend.c");
+        fs::write(&source, SOURCE)?;
+        let mut words = compiler.split_whitespace();
+        let output = Command::new(words.next().unwrap_or("cc"))
+            .args(words)
+            .args(FLAGS)
+            .arg("-o")
+            .args([program_in(directory.path()), source])
+            .arg("-lm")
+            .stdin(Stdio::null())
+            .output()
+            .map_err(|reason| ControlError::NoCompiler { compiler: compiler.clone(), reason })?;
+        if !output.status.success() {
+            let message =
+                String::from_utf8_lossy(&output.stderr).lines().take(3).collect::<Vec<_>>().join("; ");
+            return Err(ControlError::Compile { compiler, message });
+        }
+        Ok(Control { directory, compiler })
+    }
+
+    /// Writes what it is to render.
+    ///
+    /// # Errors
+    /// [`ControlError::Unfit`] for a stage's rules, [`ControlError::Files`].
+    pub fn write_scene(&self, job: &RenderJob, name: &str) -> Result<PathBuf, ControlError> {
+        if !job.rules().are_finished() {
+            return Err(ControlError::Unfit("it has the rules of the finished renderer alone"));
+        }
+        let path = self.directory.path().join(format!("{name}.txt"));
+        fs::write(&path, scene_text(job.scene(), job.camera()))?;
+        Ok(path)
+    }
+
+    /// Renders `samples` of every pixel of a scene file, or of the three spheres. `out` gets the picture, .ppm as shown or .pfm linear. Ends early when
+    /// `is_cancelled` says so.
+    ///
+    /// # Errors
+    /// [`ControlError::Run`] or [`ControlError::Cancelled`].
+    pub fn run(
+        &self,
+        scene: Option<&Path>,
+        settings: &RenderSettings,
+        samples: u64,
+        seed: u32,
+        out: Option<&Path>,
+        is_cancelled: &dyn Fn() -> bool,
+    ) -> Result<ControlRun, ControlError> {
+        let failed = |reason: io::Error| ControlError::Run(reason.to_string());
+        let RenderSettings { width, height, max_depth, .. } = settings;
+        let mut command = Command::new(program_in(self.directory.path()));
+        command.args([*width, *height].map(|x| x.to_string()));
+        command.args([samples.to_string(), max_depth.to_string(), seed.to_string()]);
+        if let Some(scene) = scene {
+            command.arg("--scene").arg(scene);
+        }
+        if let Some(out) = out {
+            command.arg("--out").arg(out);
+        }
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().map_err(failed)?;
+        let status = loop {
+            if let Some(status) = child.try_wait().map_err(failed)? {
+                break status;
+            }
+            if is_cancelled() {
+                // If it has just ended there is nothing to end.
+                let _ = child.kill();
+                child.wait().map_err(failed)?;
+                return Err(ControlError::Cancelled);
+            }
+            std::thread::sleep(POLL);
+        };
+        if is_cancelled() {
+            return Err(ControlError::Cancelled);
+        }
+        let mut said = String::new();
+        if let Some(mut pipe) = child.stdout.take() {
+            pipe.read_to_string(&mut said).map_err(failed)?;
+        }
+        match figures(&said) {
+            Some(run) if status.success() => Ok(run),
+            _ => {
+                let mut complaint = String::new();
+                if let Some(mut pipe) = child.stderr.take() {
+                    pipe.read_to_string(&mut complaint).map_err(failed)?;
+                }
+                Err(ControlError::Run(format!("{status}, {:?}, {:?}", said.trim(), complaint.trim())))
+            }
+        }
+    }
+}
+
+fn program_in(directory: &Path) -> PathBuf {
+    directory.join(format!("rt_weekend{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// Reads `trace_seconds S paths P rays R`.
+fn figures(said: &str) -> Option<ControlRun> {
+    let words: Vec<&str> = said.split_whitespace().collect();
+    let ["trace_seconds", seconds, "paths", paths, "rays", rays] = words[..] else { return None };
+    Some(ControlRun { seconds: seconds.parse().ok()?, paths: paths.parse().ok()?, rays: rays.parse().ok()? })
+}
+
+/// A scene in the control's format.
+fn scene_text(scene: &Scene, camera: &Camera) -> String {
+    let three = |v: DVec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
+    // vup may be parallel to the view, which the control does not expect; the basis has been put right.
+    let up = camera.basis().v;
+    let mut text = format!(
+        "camera {} {} {} {:?} {:?} {:?}\nsky {} {}\n",
+        three(camera.look_from),
+        three(camera.look_at),
+        three(up),
+        camera.vfov_degrees,
+        camera.defocus_angle_degrees,
+        camera.effective_focus_distance(),
+        three(scene.sky.bottom),
+        three(scene.sky.top)
+    );
+    for sphere in &scene.spheres {
+        let place = format!("{} {:?}", three(sphere.center), sphere.radius);
+        // Writing to a string cannot fail.
+        let _ = match *scene.material_of(sphere) {
+            Material::Lambertian { albedo } => writeln!(text, "lambertian {place} {}", three(albedo)),
+            Material::Metal { albedo, fuzz } => writeln!(text, "metal {place} {} {fuzz:?}", three(albedo)),
+            Material::Dielectric { refraction_index } => {
+                writeln!(text, "dielectric {place} {refraction_index:?}")
+            }
+        };
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_whole_line_of_figures_is_read() {
+        let run = figures("trace_seconds 1.5 paths 30 rays 70\n").expect("figures");
+        assert_eq!(run, ControlRun { seconds: 1.5, paths: 30, rays: 70 });
+        for said in ["", "trace_seconds 1.5 paths 30", "trace_seconds x paths 30 rays 70", "paths 30 rays 70"]
+        {
+            assert_eq!(figures(said), None, "{said}");
+        }
+    }
+}

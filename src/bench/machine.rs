@@ -1,0 +1,69 @@
+//! What is measured on, and whether it was quiet.
+
+use crate::render_cpu::Isa;
+use serde::Serialize;
+use std::fs;
+
+/// The machine and the program.
+#[derive(Clone, Debug, Serialize)]
+pub struct Machine {
+    /// The program's version.
+    pub version: &'static str,
+    /// The processor's name.
+    pub processor: String,
+    /// Threads that the system runs at once.
+    pub cores: usize,
+    /// Instruction levels, the most capable last.
+    pub levels: Vec<&'static str>,
+    /// Processes that wanted a core at the start, the mean of a minute; `None` where the system does not tell.
+    pub load_at_start: Option<f64>,
+}
+
+/// From this load on the figures are in doubt.
+pub const LOAD_LIMIT: f64 = 0.5;
+
+impl Machine {
+    /// This one, now.
+    pub fn look() -> Self {
+        Machine {
+            version: env!("CARGO_PKG_VERSION"),
+            processor: processor(),
+            cores: std::thread::available_parallelism().map_or(1, usize::from),
+            levels: Isa::available().into_iter().map(Isa::name).collect(),
+            load_at_start: load(),
+        }
+    }
+
+    /// One line about it.
+    pub fn words(&self) -> String {
+        let level = self.levels.last().copied().unwrap_or("no level");
+        let load = self.load_at_start.map_or(String::new(), |load| format!(", load {load:.2} at the start"));
+        format!("Weekender {}, {}, {} threads, {level}{load}", self.version, self.processor, self.cores)
+    }
+}
+
+fn processor() -> String {
+    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = info.lines().find_map(|line| line.strip_prefix("model name")?.trim_start().strip_prefix(':'));
+    name.map_or_else(
+        || format!("unnamed {} processor", std::env::consts::ARCH),
+        |name| name.trim().to_owned(),
+    )
+}
+
+fn load() -> Option<f64> {
+    fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
+}
+
+/// Largest memory that this process had since [`forget_peak_memory`], bytes; `None` where the system does not tell.
+pub fn peak_memory() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
+}
+
+/// Lets [`peak_memory`] begin anew, where the system can.
+pub fn forget_peak_memory() {
+    // Where it cannot, the peak is that since the start, which is no smaller.
+    let _ = fs::write("/proc/self/clear_refs", "5");
+}

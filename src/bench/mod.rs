@@ -1,0 +1,184 @@
+//! `weekender bench`: how fast this machine renders, beside a plain C program.
+
+mod contender;
+pub mod control;
+mod figures;
+mod machine;
+mod plot;
+mod progress;
+mod scale;
+mod table;
+
+use crate::chart;
+use crate::cli::{BenchOptions, BenchScene, JsonTarget};
+use crate::failure::{Failure, INTERRUPTED};
+use crate::film::{check_writable, replace_file};
+use crate::interrupt::Interrupt;
+use anyhow::Context;
+use contender::{Cancelled, Contender, contenders};
+use control::{Control, ControlError};
+use figures::{Report, SCHEMA, SPREAD_LIMIT, SceneFigures};
+use machine::{LOAD_LIMIT, Machine};
+use progress::Progress;
+use std::io::Write;
+use std::process::ExitCode;
+use std::rc::Rc;
+use std::sync::atomic::AtomicBool;
+
+/// Measures, prints tables and writes files.
+///
+/// # Errors
+/// [`Failure::Input`] before anything is measured; [`Failure::Run`] later.
+pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
+    let json = match &options.json {
+        Some(JsonTarget::File(path)) => Some(path),
+        _ => None,
+    };
+    for path in [json, options.plot.as_ref()].into_iter().flatten() {
+        check_writable(path).map_err(Failure::input)?;
+    }
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let cancel = interrupt.flag();
+    let mut report = Report {
+        schema: SCHEMA,
+        machine: Machine::look(),
+        scenes: Vec::new(),
+        scale: Vec::new(),
+        warnings: Vec::new(),
+        interrupted: false,
+    };
+    let measured = match options.scale.as_slice() {
+        [] => scenes(options, &mut report, cancel),
+        counts => fields(options, counts, &mut report, cancel),
+    };
+    report.interrupted = interrupt.is_set();
+    report.warnings = warnings(&report);
+    let written = write(options, &report);
+    measured.and(written).map_err(Failure::Run)?;
+    Ok(if report.interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+}
+
+fn scenes(options: &BenchOptions, report: &mut Report, cancel: &AtomicBool) -> anyhow::Result<()> {
+    let control = Control::compile().map(Rc::new);
+    for scene in &options.scenes {
+        let (figures, outcome) = measure_scene(options, scene, &control, cancel);
+        report.scenes.push(figures);
+        if outcome.is_err() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Runs all rows in turn, so that whatever drifts hits all alike.
+fn measure_scene(
+    options: &BenchOptions,
+    scene: &BenchScene,
+    control: &Result<Rc<Control>, ControlError>,
+    cancel: &AtomicBool,
+) -> (SceneFigures, Result<(), Cancelled>) {
+    let job = &scene.job;
+    let mut contenders = contenders(options, &scene.name, job, control);
+    let ready = contenders.iter().filter(|contender| contender.is_ready()).count();
+    let progress = Progress::new(options.progress, (ready * (1 + options.runs)) as u64);
+    let mut turns = || {
+        for turn in 0..=options.runs {
+            for contender in contenders.iter_mut().filter(|contender| contender.is_ready()) {
+                progress.begin(&format!("{}: {}", scene.name, contender.row.name));
+                match turn {
+                    0 => contender.warm_up(job, scene.samples, options.run_limit_seconds, cancel)?,
+                    _ => contender.measure(job, cancel)?,
+                }
+                progress.step();
+            }
+        }
+        Ok(())
+    };
+    let outcome = turns();
+    progress.clear();
+    let settings = job.settings();
+    let mut figures = SceneFigures {
+        scene: scene.name.clone(),
+        width: settings.width,
+        height: settings.height,
+        max_depth: settings.max_depth,
+        sampler: settings.sampler.name(),
+        spheres: job.scene().spheres.len(),
+        rows: contenders.into_iter().map(|Contender { row, .. }| row).collect(),
+    };
+    figures.sum_up();
+    (figures, outcome)
+}
+
+fn fields(
+    options: &BenchOptions,
+    counts: &[u64],
+    report: &mut Report,
+    cancel: &AtomicBool,
+) -> anyhow::Result<()> {
+    let progress = Progress::new(options.progress, (counts.len() * options.runs) as u64);
+    for count in counts {
+        match scale::measure(options, *count, &progress, cancel)? {
+            Some(figures) => report.scale.push(figures),
+            None => break,
+        }
+    }
+    progress.clear();
+    Ok(())
+}
+
+/// What puts the figures in doubt.
+fn warnings(report: &Report) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(load) = report.machine.load_at_start.filter(|load| *load > LOAD_LIMIT) {
+        warnings.push(format!(
+            "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; end other programs and measure again"
+        ));
+    }
+    let rows = report.scenes.iter().flat_map(|scene| {
+        scene
+            .rows
+            .iter()
+            .filter_map(|row| Some((format!("{}, {}", scene.scene, row.name), row.paths_per_second?)))
+    });
+    let fields =
+        report.scale.iter().filter_map(|row| Some((format!("field:{}", row.spheres), row.paths_per_second?)));
+    let spreads: Vec<(String, f64)> =
+        rows.chain(fields).map(|(name, spread)| (name, spread.share())).collect();
+    let wide = spreads.iter().filter(|(_, share)| *share > SPREAD_LIMIT);
+    if let Some((name, share)) = wide.clone().max_by(|a, b| a.1.total_cmp(&b.1)) {
+        warnings.push(format!(
+            "in {} of {} rows the runs differ by more than {:.0} % of their median; most in {name}, by {:.0} %",
+            wide.count(),
+            spreads.len(),
+            100.0 * SPREAD_LIMIT,
+            100.0 * share
+        ));
+    }
+    warnings
+}
+
+fn write(options: &BenchOptions, report: &Report) -> anyhow::Result<()> {
+    let text = table::text(report);
+    let json = || -> anyhow::Result<String> {
+        Ok(serde_json::to_string_pretty(report).context("cannot put the figures into JSON")? + "\n")
+    };
+    let to_stdout =
+        |text: &str| std::io::stdout().write_all(text.as_bytes()).context("cannot print the figures");
+    match &options.json {
+        Some(JsonTarget::StandardOutput) => {
+            eprint!("{text}");
+            to_stdout(&json()?)?;
+        }
+        Some(JsonTarget::File(path)) => {
+            to_stdout(&text)?;
+            let json = json()?;
+            replace_file(path, |writer| writer.write_all(json.as_bytes()))?;
+        }
+        None => to_stdout(&text)?,
+    }
+    if let Some(path) = &options.plot {
+        chart::save(path, &plot::figure(report))?;
+    }
+    Ok(())
+}

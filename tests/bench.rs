@@ -1,0 +1,148 @@
+//! `weekender bench` from outside: what it measures, writes and refuses.
+
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+fn bench(directory: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    command.current_dir(directory).arg("bench").args(arguments).stdin(Stdio::null()).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+const TINY: [&str; 10] =
+    ["--size", "32x18", "--samples", "4", "--runs", "3", "--run-limit", "0.2", "--threads", "2"];
+
+fn tiny(directory: &Path, arguments: &[&str]) -> Output {
+    let output = bench(directory, &[&TINY, arguments].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    output
+}
+
+fn number(value: &Value, key: &str) -> f64 {
+    value[key].as_f64().unwrap_or_else(|| panic!("{key} in {value}"))
+}
+
+fn check_spread(spread: &Value) {
+    let [median, min, max] = ["median", "min", "max"].map(|key| number(spread, key));
+    assert!(0.0 < min && min <= median && median <= max, "{spread}");
+}
+
+#[test]
+fn rows_have_sane_figures() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = tiny(directory.path(), &["--scene", "three-spheres", "--scene", "book", "--json", "b.json"]);
+    let report: Value =
+        serde_json::from_str(&std::fs::read_to_string(directory.path().join("b.json")).unwrap()).unwrap();
+    assert_eq!(report["schema"], 1);
+    assert_eq!(report["interrupted"], false);
+    assert_eq!(report["machine"]["version"], env!("CARGO_PKG_VERSION"));
+    let scenes = report["scenes"].as_array().unwrap();
+    assert_eq!(scenes.iter().map(|scene| &scene["scene"]).collect::<Vec<_>>(), ["three-spheres", "book"]);
+    for scene in scenes {
+        let rows = scene["rows"].as_array().unwrap();
+        let kinds: Vec<&str> = rows.iter().map(|row| row["kind"].as_str().unwrap()).collect();
+        assert_eq!(kinds[0], "control");
+        assert!(kinds.contains(&"scalar") && kinds.contains(&"threads"), "{kinds:?}");
+        let control = number(&rows[0]["paths_per_second"], "median");
+        for row in rows {
+            assert_eq!(row["skipped"], Value::Null, "{row}");
+            assert_eq!(row["runs"].as_array().unwrap().len(), 3);
+            check_spread(&row["paths_per_second"]);
+            check_spread(&row["rays_per_second"]);
+            let ratio = number(&row["paths_per_second"], "median") / control;
+            assert!((number(row, "ratio_to_control") / ratio - 1.0).abs() < 1e-9);
+            for run in row["runs"].as_array().unwrap() {
+                assert_eq!(number(run, "paths"), 32.0 * 18.0 * number(row, "samples_per_pixel"));
+                let rays = number(run, "rays") / number(run, "paths");
+                assert!((1.0..24.0).contains(&rays), "{rays} rays a path");
+            }
+            if row["kind"] == "control" {
+                continue;
+            }
+            assert!((0.0..=1.0).contains(&number(row, "lanes_in_use")), "{row}");
+            if row["lanes"] == 1 {
+                // A path that is absorbed takes its lane through one more turn.
+                assert!(number(row, "lanes_in_use") > 0.9, "{row}");
+            }
+            assert!(number(row, "efficiency") > 0.0);
+        }
+    }
+    let table = text(&output.stdout);
+    assert!(table.lines().all(|line| line.chars().count() <= 100 || line.contains("Weekender")), "{table}");
+    assert!(output.stderr.is_empty(), "quiet when redirected: {}", text(&output.stderr));
+}
+
+#[test]
+fn every_level_is_measured_when_all_are_asked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = tiny(directory.path(), &["--scene", "metals", "--isa", "all", "--json", "-"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let names: Vec<&str> = report["scenes"][0]["rows"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| row["name"].as_str().unwrap())
+        .collect();
+    for level in report["machine"]["levels"].as_array().unwrap() {
+        let start = format!("{}, 1 lane, 1 thread", level.as_str().unwrap());
+        assert!(names.contains(&start.as_str()), "{names:?}");
+    }
+    assert!(text(&output.stderr).contains("metals"), "the table goes to standard error");
+}
+
+#[test]
+fn without_a_compiler_the_control_is_left_out() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    command.env("CC", "no-such-compiler").arg("bench").args(TINY).args(["--scene", "metals"]);
+    let output = command.current_dir(directory.path()).output().unwrap();
+    assert!(output.status.success());
+    let table = text(&output.stdout);
+    assert!(table.contains("left out") && table.contains("no-such-compiler"), "{table}");
+}
+
+#[test]
+fn fields_are_measured_and_drawn() {
+    let directory = tempfile::tempdir().unwrap();
+    tiny(directory.path(), &["--scale", "100..1000", "--json", "s.json", "--plot", "s.svg"]);
+    let read = |name: &str| std::fs::read_to_string(directory.path().join(name)).unwrap();
+    let report: Value = serde_json::from_str(&read("s.json")).unwrap();
+    let rows = report["scale"].as_array().unwrap();
+    assert_eq!(rows.iter().map(|row| number(row, "spheres")).collect::<Vec<_>>(), [100.0, 300.0, 1000.0]);
+    for row in rows {
+        check_spread(&row["paths_per_second"]);
+        // A row of 64, a centre with a radius of 16, a number of 4 and some of the hierarchy.
+        assert!((84.0..200.0).contains(&number(row, "table_bytes_per_sphere")), "{row}");
+        assert!(number(row, "build_seconds") >= number(row, "hierarchy_seconds"));
+    }
+    assert!(read("s.svg").contains("million paths a second"));
+}
+
+#[test]
+fn bad_flags_are_refused_before_anything_is_measured() {
+    let cases: [(&[&str], &str); 8] = [
+        (&["--scene", "no-such"], "no-such"),
+        (&["--scale", "5..1"], "A at most B"),
+        (&["--scale", "10..20", "--scene", "book"], "--scene"),
+        (&["--isa", "mmx"], "sse4.2"),
+        (&["--plot", "chart.jpg"], ".png or .svg"),
+        (&["--runs", "0"], "1..=1000"),
+        (&["--json", "no/such/place.json"], "no/such"),
+        (&["--json", "x.svg", "--plot", "x.svg"], "different names"),
+    ];
+    for (arguments, part) in cases {
+        let directory = tempfile::tempdir().unwrap();
+        let output = bench(directory.path(), arguments);
+        let message = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(message.contains(part), "{arguments:?}: {message}");
+        assert!(output.stdout.is_empty());
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,155 @@
+//! The plain C program: it compiles without a warning, and its pictures are ours but for noise.
+
+#![allow(clippy::unwrap_used)]
+
+use std::path::Path;
+use std::process::Command;
+use std::sync::atomic::AtomicBool;
+use weekender::bench::control::{Control, FLAGS, SOURCE};
+use weekender::film::Film;
+use weekender::recipe::Recipe;
+use weekender::render::{RenderJob, Renderer, SamplerKind};
+use weekender::render_cpu::{CpuOptions, CpuRenderer};
+
+/// Side of the blocks that pictures are compared in, pixels.
+const SIDE: usize = 8;
+
+const WIDTH: usize = 128;
+const HEIGHT: usize = 72;
+
+#[test]
+fn it_is_strict_c89_without_a_warning() {
+    let directory = tempfile::tempdir().unwrap();
+    let source = directory.path().join("rt_weekend.c");
+    std::fs::write(&source, SOURCE).unwrap();
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    let mut words = compiler.split_whitespace();
+    let output = Command::new(words.next().unwrap())
+        .args(words)
+        .args(FLAGS)
+        .args(["-Werror", "-pedantic-errors", "-c", "-o"])
+        .args([directory.path().join("rt_weekend.o"), source])
+        .output()
+        .expect("a C compiler is needed: install one or name it in CC");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.stderr.is_empty(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+fn job(scene: &str) -> RenderJob {
+    let mut recipe = Recipe::find(scene).unwrap();
+    recipe.settings.width = WIDTH as u32;
+    recipe.settings.height = HEIGHT as u32;
+    recipe.settings.sampler = SamplerKind::Independent;
+    recipe.job().unwrap()
+}
+
+/// Means of a PFM, RGB, top row first.
+fn read_pfm(path: &Path) -> Vec<[f64; 3]> {
+    let bytes = std::fs::read(path).unwrap();
+    let scale = if cfg!(target_endian = "little") { "-1.0" } else { "1.0" };
+    let header = format!("PF\n{WIDTH} {HEIGHT}\n{scale}\n");
+    let values = bytes.strip_prefix(header.as_bytes()).unwrap();
+    assert_eq!(values.len(), 12 * WIDTH * HEIGHT);
+    let channel = |pixel: &[u8], c: usize| {
+        f64::from(f32::from_ne_bytes([pixel[4 * c], pixel[4 * c + 1], pixel[4 * c + 2], pixel[4 * c + 3]]))
+    };
+    let rows = values.chunks_exact(12 * WIDTH).rev();
+    rows.flat_map(|row| row.chunks_exact(12)).map(|pixel| [0, 1, 2].map(|c| channel(pixel, c))).collect()
+}
+
+/// Two means of each pixel, of independent samples as many as the other has: their mean is the picture and their
+/// difference tells its noise.
+type Halves = [Vec<[f64; 3]>; 2];
+
+fn of_film(film: &Film) -> Halves {
+    [0, 1].map(|half| {
+        let count = film.half_sample_count(half) as f64;
+        film.halves()[half].iter().map(|sum| sum.radiance().map(|x| x / count)).collect()
+    })
+}
+
+/// Unpaired blocks: the number of blocks, the sum of z^2 and the largest |z|.
+fn blocks(pictures: &[Halves; 2]) -> (f64, f64, f64) {
+    let (mut count, mut squares, mut largest) = (0.0, 0.0, 0.0_f64);
+    for block in 0..(WIDTH / SIDE) * (HEIGHT / SIDE) {
+        let (left, top) = (block % (WIDTH / SIDE) * SIDE, block / (WIDTH / SIDE) * SIDE);
+        let (mut difference, mut variance) = (0.0, 0.0);
+        for pixel in 0..SIDE * SIDE {
+            let index = (top + pixel / SIDE) * WIDTH + left + pixel % SIDE;
+            for (halves, sign) in pictures.iter().zip([1.0, -1.0]) {
+                let [a, b] = [0, 1].map(|half: usize| halves[half][index].iter().sum::<f64>());
+                difference += sign * (a + b) / 2.0;
+                variance += (a - b).powi(2) / 4.0;
+            }
+        }
+        let z: f64 = difference / variance.sqrt();
+        count += 1.0;
+        squares += z * z;
+        largest = largest.max(z.abs());
+    }
+    (count, squares, largest)
+}
+
+fn check(scene: &str, samples: u64) {
+    let job = job(scene);
+    let control = Control::compile().expect("a C compiler is needed: install one or name it in CC");
+    let directory = tempfile::tempdir().unwrap();
+    let text = control.write_scene(&job, "scene").unwrap();
+    let out = directory.path().join("picture.pfm");
+    let theirs: Halves = [1, 2].map(|seed| {
+        let run = control.run(Some(&text), job.settings(), samples / 2, seed, Some(&out), &|| false).unwrap();
+        assert_eq!(run.paths, samples / 2 * (WIDTH * HEIGHT) as u64);
+        assert!(run.rays > run.paths);
+        read_pfm(&out)
+    });
+    let mut film = job.new_film();
+    let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
+    renderer.accumulate(&job, 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
+
+    let (count, squares, largest) = blocks(&[theirs, of_film(&film)]);
+    let spread = (squares - count) / f64::sqrt(2.0 * count);
+    println!(
+        "{scene}: {count} blocks, sum of z^2 {squares:.1}, {spread:.2} deviations, largest {largest:.2}"
+    );
+    assert!(spread.abs() <= 4.0, "{scene}: {squares} for {count} blocks");
+    // What the largest of 144 normal numbers stays below in 99 of 100 cases (Sidak), and a little for variances
+    // that are estimated from 64 pixels.
+    assert!(largest <= 4.2, "{scene}: {largest}");
+}
+
+#[test]
+fn three_spheres_are_the_same_picture() {
+    check("three-spheres", 512);
+}
+
+#[test]
+fn the_book_is_the_same_picture() {
+    check("book", 64);
+}
+
+#[test]
+fn without_a_scene_file_it_renders_the_three_spheres() {
+    let control = Control::compile().expect("a C compiler is needed: install one or name it in CC");
+    let job = job("three-spheres");
+    let directory = tempfile::tempdir().unwrap();
+    let paths = ["given.pfm", "built-in.pfm"].map(|name| directory.path().join(name));
+    let text = control.write_scene(&job, "scene").unwrap();
+    control.run(Some(text.as_path()), job.settings(), 2, 7, Some(&paths[0]), &|| false).unwrap();
+    control.run(None, job.settings(), 2, 7, Some(&paths[1]), &|| false).unwrap();
+    // The camera's up and the sky are written in full; its focus distance is the book's.
+    assert_eq!(read_pfm(&paths[0]), read_pfm(&paths[1]));
+}
+
+#[test]
+fn bad_arguments_are_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let control = Control::compile().expect("a C compiler is needed: install one or name it in CC");
+    let job = job("three-spheres");
+    let broken = directory.path().join("broken.txt");
+    for text in ["metal 0 0 0 1 1 1", "cube 1 2 3", "camera 1 2 x"] {
+        std::fs::write(&broken, text).unwrap();
+        let refused =
+            control.run(Some(&broken), job.settings(), 1, 1, None, &|| false).unwrap_err().to_string();
+        assert!(refused.contains("rt_weekend: "), "{text}: {refused}");
+    }
+}
