@@ -14,8 +14,9 @@
  *   metal       CENTER CENTER CENTER RADIUS  RED GREEN BLUE FUZZ
  *   dielectric  CENTER CENTER CENTER RADIUS  INDEX
  *
- * It prints one line: "trace_seconds S paths P rays R". S is processor time of the tracing alone; reading the scene
- * and writing the picture are not in it. A .ppm file is the picture as it is shown; a .pfm file has the linear means.
+ * It prints "tracing" when it begins to trace and then "trace_seconds S paths P rays R". S is processor time of the
+ * tracing alone: reading the scene and writing the picture are not in it. C89 has no clock of wall time that is fine
+ * enough; whoever wants it measures from one line to the other. A .ppm file is the picture as it is shown; a .pfm file has the linear means.
  */
 
 #include <limits.h>
@@ -469,10 +470,13 @@ int main(int argc, char **argv)
     if (means == NULL)
         fail("out of memory", "");
 
+    printf("tracing\n");
+    fflush(stdout);
     begin = clock();
     rays = render(&scene, width, height, samples, depth, seed, means);
     seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
     printf("trace_seconds %.6f paths %.0f rays %.0f\n", seconds, (double)width * height * samples, rays);
+    fflush(stdout);
 
     if (out != NULL)
         write_picture(out, means, width, height);

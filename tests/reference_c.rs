@@ -1,6 +1,6 @@
 //! The plain C program: it compiles without a warning, and its pictures are ours but for noise.
 
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a helper of a test may fail like the test")]
 
 use std::path::Path;
 use std::process::Command;
@@ -100,6 +100,7 @@ fn check(scene: &str, samples: u64) {
         let run = control.run(Some(&text), job.settings(), samples / 2, seed, Some(&out), &|| false).unwrap();
         assert_eq!(run.paths, samples / 2 * (WIDTH * HEIGHT) as u64);
         assert!(run.rays > run.paths);
+        assert!(run.seconds > 0.0 && run.processor_seconds > 0.0);
         read_pfm(&out)
     });
     let mut film = job.new_film();

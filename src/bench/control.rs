@@ -5,10 +5,11 @@ use crate::scene::{Camera, Material, Scene};
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{self, Read};
+use std::io::{self, BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// `reference/rt_weekend.c`.
@@ -17,8 +18,8 @@ pub const SOURCE: &str = include_str!("../../reference/rt_weekend.c");
 /// How it is compiled.
 pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
 
-/// Time between looks at whether the control has ended.
-const POLL: Duration = Duration::from_millis(5);
+/// Time between looks at whether the caller wants to stop.
+const POLL: Duration = Duration::from_millis(20);
 
 /// A control that cannot be had or did not end well.
 #[derive(Debug, thiserror::Error)]
@@ -63,8 +64,10 @@ pub struct Control {
 /// What the control said of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlRun {
-    /// Processor time of tracing.
+    /// Wall time of tracing.
     pub seconds: f64,
+    /// Processor time of tracing, as the control measures it.
+    pub processor_seconds: f64,
     /// Pixels times samples.
     pub paths: u64,
     /// Rays traced.
@@ -140,33 +143,39 @@ impl Control {
         }
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(failed)?;
-        let status = loop {
-            if let Some(status) = child.try_wait().map_err(failed)? {
-                break status;
+        let (lines, said) = mpsc::channel();
+        let reader = child.stdout.take().map(|pipe| {
+            std::thread::spawn(move || {
+                for line in BufReader::new(pipe).lines().map_while(Result::ok) {
+                    // Nobody listens any more where the run was cancelled.
+                    let _ = lines.send((Instant::now(), line));
+                }
+            })
+        });
+        let (mut begin, mut run) = (None, None);
+        loop {
+            match said.recv_timeout(POLL) {
+                Ok((now, line)) if line == "tracing" => begin = Some(now),
+                Ok((now, line)) => run = begin.and_then(|begin| figures(&line, now - begin)).or(run),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
             }
             if is_cancelled() {
                 // If it has just ended there is nothing to end.
                 let _ = child.kill();
-                child.wait().map_err(failed)?;
-                return Err(ControlError::Cancelled);
             }
-            std::thread::sleep(POLL);
-        };
-        if is_cancelled() {
-            return Err(ControlError::Cancelled);
         }
-        let mut said = String::new();
-        if let Some(mut pipe) = child.stdout.take() {
-            pipe.read_to_string(&mut said).map_err(failed)?;
+        if let Some(reader) = reader {
+            // It only reads; that it could panic is none of the run's business.
+            let _ = reader.join();
         }
-        match figures(&said) {
-            Some(run) if status.success() => Ok(run),
+        let output = child.wait_with_output().map_err(failed)?;
+        match run {
+            _ if is_cancelled() => Err(ControlError::Cancelled),
+            Some(run) if output.status.success() => Ok(run),
             _ => {
-                let mut complaint = String::new();
-                if let Some(mut pipe) = child.stderr.take() {
-                    pipe.read_to_string(&mut complaint).map_err(failed)?;
-                }
-                Err(ControlError::Run(format!("{status}, {:?}, {:?}", said.trim(), complaint.trim())))
+                let complaint = String::from_utf8_lossy(&output.stderr);
+                Err(ControlError::Run(format!("{}, {}", output.status, complaint.trim())))
             }
         }
     }
@@ -176,11 +185,16 @@ fn program_in(directory: &Path) -> PathBuf {
     directory.join(format!("rt_weekend{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Reads `trace_seconds S paths P rays R`.
-fn figures(said: &str) -> Option<ControlRun> {
-    let words: Vec<&str> = said.split_whitespace().collect();
-    let ["trace_seconds", seconds, "paths", paths, "rays", rays] = words[..] else { return None };
-    Some(ControlRun { seconds: seconds.parse().ok()?, paths: paths.parse().ok()?, rays: rays.parse().ok()? })
+/// Reads `trace_seconds S paths P rays R`, which came `wall` after the tracing began.
+fn figures(line: &str, wall: Duration) -> Option<ControlRun> {
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let ["trace_seconds", processor, "paths", paths, "rays", rays] = words[..] else { return None };
+    Some(ControlRun {
+        seconds: wall.as_secs_f64(),
+        processor_seconds: processor.parse().ok()?,
+        paths: paths.parse().ok()?,
+        rays: rays.parse().ok()?,
+    })
 }
 
 /// A scene in the control's format.
@@ -219,11 +233,12 @@ mod tests {
 
     #[test]
     fn only_the_whole_line_of_figures_is_read() {
-        let run = figures("trace_seconds 1.5 paths 30 rays 70\n").expect("figures");
-        assert_eq!(run, ControlRun { seconds: 1.5, paths: 30, rays: 70 });
-        for said in ["", "trace_seconds 1.5 paths 30", "trace_seconds x paths 30 rays 70", "paths 30 rays 70"]
+        let wall = Duration::from_millis(1600);
+        let run = figures("trace_seconds 1.5 paths 30 rays 70", wall).expect("figures");
+        assert_eq!(run, ControlRun { seconds: 1.6, processor_seconds: 1.5, paths: 30, rays: 70 });
+        for line in ["", "trace_seconds 1.5 paths 30", "trace_seconds x paths 30 rays 70", "paths 30 rays 70"]
         {
-            assert_eq!(figures(said), None, "{said}");
+            assert_eq!(figures(line, wall), None, "{line}");
         }
     }
 }

@@ -93,7 +93,7 @@ pub struct Row {
 /// A run. Reading, preparing and writing are not in its time.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Run {
-    /// Of tracing; processor time for the control, else wall time.
+    /// Wall time of tracing.
     pub seconds: f64,
     /// Pixels times samples.
     pub paths: u64,

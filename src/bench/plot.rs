@@ -72,8 +72,11 @@ fn scale(report: &Report) -> Figure {
     let build = series("all tables", &|row| Some(row.build_seconds));
     let generate = series("generating the scene", &|row| Some(row.generate_seconds));
     let guide = in_proportion(&build);
-    let tables = series("tables and hierarchy", &|row| Some(row.table_bytes_per_sphere));
-    let peak = series("peak of the process", &|row| Some(row.peak_memory_bytes? as f64 / row.spheres as f64));
+    let mib = |bytes: f64| bytes / f64::from(1 << 20);
+    let tables =
+        series("tables and hierarchy", &|row| Some(mib(row.table_bytes_per_sphere * row_count(row))));
+    let peak = series("peak of the process", &|row| Some(mib(row.peak_memory_bytes? as f64)));
+    let limit = Series { look: Look::Guide, ..series("2 GiB", &|_| Some(2048.0)) };
     let speed = Series {
         name: String::new(),
         points: rows
@@ -97,7 +100,7 @@ fn scale(report: &Report) -> Figure {
                 vec![guide, build, hierarchy, generate],
                 Some(Corner::UpperLeft),
             ),
-            chart("Memory", "bytes a sphere", vec![tables, peak], Some(Corner::UpperRight)),
+            chart("Memory", "MiB", vec![limit, peak, tables], Some(Corner::LowerRight)),
             chart("Speed", "million paths a second", vec![speed], None),
         ],
     }

@@ -157,12 +157,15 @@ fn plain_text(value: f64) -> String {
     }
 }
 
-/// `10^position` as a label: 0.01, 50, 10⁶, 2·10⁶.
+/// `10^position` as a label: 1e-5, 0.01, 50, 10⁶, 2·10⁶. The font has no raised minus.
 fn power_text(position: f64) -> String {
     let power = (position + 1e-9).floor();
     let digit = 10_f64.powf(position - power).round();
     if (-3.0..4.0).contains(&power) {
         return plain_text(digit * 10_f64.powf(power));
+    }
+    if power < 0.0 {
+        return format!("{digit}e{power:.0}");
     }
     let exponent: String = format!("{power:.0}").chars().map(superscript).collect();
     if digit == 1.0 { format!("10{exponent}") } else { format!("{digit}·10{exponent}") }
@@ -173,7 +176,6 @@ fn superscript(c: char) -> char {
         '1' => '¹',
         '2' => '²',
         '3' => '³',
-        '-' => '⁻',
         digit => digit.to_digit(10).and_then(|digit| char::from_u32(0x2070 + digit)).unwrap_or(digit),
     }
 }
@@ -193,7 +195,7 @@ mod tests {
         assert_eq!(labels(Scale::Linear, [-0.1, 0.31]), ["-0.1", "0", "0.1", "0.2", "0.3"]);
         assert_eq!(labels(Scale::Log, [1e3, 1e7]), ["1000", "10⁴", "10⁵", "10⁶", "10⁷"]);
         assert_eq!(labels(Scale::Log, [3.0, 60.0]), ["3", "5", "7", "10", "20", "30", "50"]);
-        assert_eq!(labels(Scale::Log, [1e-5, 0.1]), ["10⁻⁵", "10⁻⁴", "0.001", "0.01", "0.1"]);
+        assert_eq!(labels(Scale::Log, [1e-5, 0.1]), ["1e-5", "1e-4", "0.001", "0.01", "0.1"]);
         assert_eq!(labels(Scale::Log, [1e5, 1e6]), ["10⁵", "2·10⁵", "5·10⁵", "10⁶"]);
     }
 

@@ -29,14 +29,14 @@ pub fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, chart: &BarChart, u
         note_width = note_width.max(text_width(&bar.note)?);
     }
     let gap = units.px(GAP);
-    let left = name_width + 3 * gap;
+    let left = name_width + 3 * gap + gap / 2;
     let right = width - note_width - 3 * gap;
     let top = if chart.title.is_empty() { gap } else { units.px(2.0 * TITLE_TEXT) };
     let bottom = height - units.px(3.2 * ROW_TEXT);
 
     if !chart.title.is_empty() {
         let style = (FONT, units.px(TITLE_TEXT), &INK).into_text_style(area);
-        area.draw_text(&chart.title, &style, (gap, units.px(0.5 * TITLE_TEXT)))?;
+        area.draw_text(&chart.title, &style, (2 * gap, units.px(0.5 * TITLE_TEXT)))?;
     }
 
     let largest = chart.bars.iter().flat_map(|bar| [bar.value, bar.spread.map_or(0.0, |[_, high]| high)]);

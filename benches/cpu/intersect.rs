@@ -1,0 +1,84 @@
+//! Rays against spheres, for each form of the roots.
+
+use crate::widths::{Body, COUNT, Vectors, rays, run, widths};
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use weekender::render_cpu::lanes::Lanes;
+use weekender::render_cpu::sphere::{Nearest, acne_root, anchored_root, near_root, nearest_root};
+use weekender::tables::AnchoredSphere;
+
+/// Spheres that each ray is tested against.
+const SPHERES: [[f32; 4]; 4] =
+    [[0.0, 0.0, -1.2, 0.25], [-1.0, 0.0, -1.0, 0.25], [-1.0, 0.0, -1.0, 0.16], [1.0, 0.0, -1.0, 0.25]];
+
+const GROUND: AnchoredSphere<f32> =
+    AnchoredSphere { anchor: [0.0, -0.5, -1.0], inward: [0.0, -1.0, 0.0], curvature: 0.001 };
+
+#[derive(Clone, Copy, Debug)]
+enum Root {
+    Near,
+    Nearest,
+    Acne,
+    Anchored,
+}
+
+struct Intersect {
+    root: Root,
+    origins: Vectors,
+    directions: Vectors,
+}
+
+impl Intersect {
+    fn new(root: Root) -> Self {
+        let directions = Vectors::within(-1.0, 1.0).normalised();
+        Intersect { root, origins: Vectors::within(-0.1, 0.1), directions }
+    }
+}
+
+impl Body for Intersect {
+    #[inline(always)]
+    fn run<L: Lanes<Real = f32>>(&self, l: L) -> u32 {
+        let mut found = l.splat_u(0);
+        for first in (0..COUNT).step_by(L::WIDTH) {
+            let rays = rays(l, self.origins.load(l, first).0, self.directions.load(l, first).0);
+            let mut nearest = Nearest::nothing(l);
+            for (index, sphere) in SPHERES.iter().enumerate() {
+                let number = l.splat_u(index as u32);
+                let key = match self.root {
+                    Root::Near => near_root(l, &rays, sphere, number),
+                    Root::Nearest => nearest_root(l, &rays, sphere, number),
+                    Root::Acne => acne_root(l, &rays, sphere),
+                    Root::Anchored => anchored_root(l, &rays, &GROUND, number),
+                };
+                nearest.take(key, number);
+            }
+            found = found ^ nearest.sphere;
+        }
+        L::bits(L::eq_u(found, l.splat_u(0)))
+    }
+}
+
+fn measure(bencher: Bencher, width: usize, root: Root) {
+    let body = Intersect::new(root);
+    bencher.counter(ItemsCount::new(COUNT * SPHERES.len())).bench(|| run(width, divan::black_box(&body)));
+}
+
+#[divan::bench(args = widths())]
+fn near(bencher: Bencher, width: usize) {
+    measure(bencher, width, Root::Near);
+}
+
+#[divan::bench(args = widths())]
+fn nearest(bencher: Bencher, width: usize) {
+    measure(bencher, width, Root::Nearest);
+}
+
+#[divan::bench(args = widths())]
+fn acne(bencher: Bencher, width: usize) {
+    measure(bencher, width, Root::Acne);
+}
+
+#[divan::bench(args = widths())]
+fn anchored(bencher: Bencher, width: usize) {
+    measure(bencher, width, Root::Anchored);
+}

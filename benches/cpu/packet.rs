@@ -1,0 +1,48 @@
+//! The path loop: a tile from the camera to the film, on one thread.
+
+use crate::widths::widths;
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use std::sync::atomic::AtomicBool;
+use weekender::recipe::Recipe;
+use weekender::render::{RenderJob, Renderer, SamplerKind};
+use weekender::render_cpu::{CpuOptions, CpuRenderer};
+
+/// Side of the picture, pixels: a tile.
+const SIDE: u32 = 64;
+
+const SAMPLES: u64 = 16;
+
+fn job(scene: &str, sampler: SamplerKind) -> RenderJob {
+    let mut recipe = Recipe::find(scene).expect("built in");
+    (recipe.settings.width, recipe.settings.height) = (SIDE, SIDE);
+    recipe.settings.sampler = sampler;
+    recipe.job().expect("valid")
+}
+
+fn trace(bencher: Bencher, lanes: usize, scene: &str, sampler: SamplerKind) {
+    let job = job(scene, sampler);
+    let options = CpuOptions { lanes: Some(lanes), threads: Some(1), ..CpuOptions::default() };
+    let mut renderer = CpuRenderer::new(options).expect("a lane count of this processor");
+    renderer.prepare(&job).expect("a kernel");
+    let cancel = AtomicBool::new(false);
+    bencher
+        .counter(ItemsCount::new(u64::from(SIDE * SIDE) * SAMPLES))
+        .with_inputs(|| job.new_film())
+        .bench_local_refs(|film| renderer.accumulate(&job, 0..SAMPLES, film, &cancel).expect("traced"));
+}
+
+#[divan::bench(args = widths(), sample_count = 10)]
+fn three_spheres_sobol(bencher: Bencher, lanes: usize) {
+    trace(bencher, lanes, "three-spheres", SamplerKind::Sobol);
+}
+
+#[divan::bench(args = widths(), sample_count = 10)]
+fn three_spheres_independent(bencher: Bencher, lanes: usize) {
+    trace(bencher, lanes, "three-spheres", SamplerKind::Independent);
+}
+
+#[divan::bench(args = widths(), sample_count = 10)]
+fn book_sobol(bencher: Bencher, lanes: usize) {
+    trace(bencher, lanes, "book", SamplerKind::Sobol);
+}

@@ -1,0 +1,49 @@
+//! The numbers of a ray.
+
+use crate::widths::{Body, COUNT, run, widths};
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use weekender::render_cpu::lanes::Lanes;
+use weekender::render_cpu::rng::{pcg4d, sobol_pair, stream_of};
+
+/// A pair of Sobol coordinates for each of [`COUNT`] rays.
+struct Sobol;
+
+impl Body for Sobol {
+    #[inline(always)]
+    fn run<L: Lanes<Real = f32>>(&self, l: L) -> u32 {
+        let mut sum = l.splat_u(0);
+        for first in (0..COUNT).step_by(L::WIDTH) {
+            let counter = l.splat_u(divan::black_box(first as u32).reverse_bits());
+            let [u, v] = sobol_pair(l, counter, stream_of(l, sum, l.splat_u(3)));
+            sum = sum + (u ^ v);
+        }
+        L::bits(L::eq_u(sum, l.splat_u(0)))
+    }
+}
+
+/// Four independent numbers for each of [`COUNT`] rays.
+struct Independent;
+
+impl Body for Independent {
+    #[inline(always)]
+    fn run<L: Lanes<Real = f32>>(&self, l: L) -> u32 {
+        let mut sum = l.splat_u(0);
+        for first in (0..COUNT).step_by(L::WIDTH) {
+            let counter = l.splat_u(divan::black_box(first as u32));
+            let [a, b, c, d] = pcg4d(l, [counter, sum, l.splat_u(3), l.splat_u(7)]);
+            sum = sum + (a ^ b ^ c ^ d);
+        }
+        L::bits(L::eq_u(sum, l.splat_u(0)))
+    }
+}
+
+#[divan::bench(args = widths())]
+fn sobol(bencher: Bencher, width: usize) {
+    bencher.counter(ItemsCount::new(COUNT)).bench(|| run(width, &Sobol));
+}
+
+#[divan::bench(args = widths())]
+fn independent(bencher: Bencher, width: usize) {
+    bencher.counter(ItemsCount::new(COUNT)).bench(|| run(width, &Independent));
+}

@@ -1,0 +1,65 @@
+//! Scattering, with and without the code of glass.
+
+use crate::widths::{Body, COUNT, Vectors, run, widths};
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use weekender::render_cpu::lanes::{Lanes, V3, dot};
+use weekender::render_cpu::material::{Surface, scatter};
+use weekender::stages::DielectricLaws;
+
+/// Mixed materials: each lane has one of its own.
+struct Scatter<const GLASS: bool> {
+    directions: Vectors,
+    normals: Vectors,
+    units: Vectors,
+}
+
+impl<const GLASS: bool> Scatter<GLASS> {
+    fn new() -> Self {
+        Scatter {
+            directions: Vectors::within(-1.0, 1.0).normalised(),
+            normals: Vectors::within(-0.9, 1.1).normalised(),
+            units: Vectors::within(-1.1, 0.9).normalised(),
+        }
+    }
+}
+
+impl<const GLASS: bool> Body for Scatter<GLASS> {
+    #[inline(always)]
+    fn run<L: Lanes<Real = f32>>(&self, l: L) -> u32 {
+        let zero = l.constant(0.0);
+        let mut sum = V3 { x: zero, y: zero, z: zero };
+        for first in (0..COUNT).step_by(L::WIDTH) {
+            let (direction, coin) = self.directions.load(l, first);
+            let (normal, kind) = self.normals.load(l, first);
+            let cosine = dot::<L>(direction, normal);
+            let front = L::lt(cosine, zero);
+            let is_glass = L::lt(kind, l.constant(if GLASS { 0.3 } else { 0.0 }));
+            let index = L::select(is_glass, l.constant(1.5), zero);
+            let surface = Surface {
+                weight: kind - l.constant(0.6),
+                index,
+                inverse_index: l.constant(1.0) / index,
+                normal_share: l.constant(0.04),
+            };
+            let (unit, _) = self.units.load(l, first);
+            let laws = DielectricLaws::Schlick;
+            let found =
+                scatter::<L, GLASS>(l, &surface, laws, direction, normal, L::abs(cosine), front, unit, coin);
+            sum = sum + found.direction;
+        }
+        L::bits(L::lt(sum.x + sum.y, sum.z))
+    }
+}
+
+#[divan::bench(args = widths())]
+fn opaque(bencher: Bencher, width: usize) {
+    let body = Scatter::<false>::new();
+    bencher.counter(ItemsCount::new(COUNT)).bench(|| run(width, divan::black_box(&body)));
+}
+
+#[divan::bench(args = widths())]
+fn with_glass(bencher: Bencher, width: usize) {
+    let body = Scatter::<true>::new();
+    bencher.counter(ItemsCount::new(COUNT)).bench(|| run(width, divan::black_box(&body)));
+}
