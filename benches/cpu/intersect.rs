@@ -7,12 +7,8 @@ use weekender::render_cpu::lanes::Lanes;
 use weekender::render_cpu::sphere::{Nearest, acne_root, anchored_root, near_root, nearest_root};
 use weekender::tables::AnchoredSphere;
 
-/// Spheres that each ray is tested against.
-const SPHERES: [[f32; 4]; 4] =
-    [[0.0, 0.0, -1.2, 0.25], [-1.0, 0.0, -1.0, 0.25], [-1.0, 0.0, -1.0, 0.16], [1.0, 0.0, -1.0, 0.25]];
-
-const GROUND: AnchoredSphere<f32> =
-    AnchoredSphere { anchor: [0.0, -0.5, -1.0], inward: [0.0, -1.0, 0.0], curvature: 0.001 };
+/// Spheres that each ray is tested against: so many that loading the rays does not matter.
+const SPHERES: usize = 32;
 
 #[derive(Clone, Copy, Debug)]
 enum Root {
@@ -26,12 +22,26 @@ struct Intersect {
     root: Root,
     origins: Vectors,
     directions: Vectors,
+    spheres: Vec<[f32; 4]>,
+    grounds: Vec<AnchoredSphere<f32>>,
 }
 
 impl Intersect {
     fn new(root: Root) -> Self {
         let directions = Vectors::within(-1.0, 1.0).normalised();
-        Intersect { root, origins: Vectors::within(-0.1, 0.1), directions }
+        // In a ring around the origins.
+        let sphere = |index: usize| {
+            let (sine, cosine) = (index as f32 / SPHERES as f32 * std::f32::consts::TAU).sin_cos();
+            [2.0 * cosine, 0.0, 2.0 * sine, 0.25]
+        };
+        let spheres = (0..SPHERES).map(sphere).collect();
+        let ground = |index: usize| AnchoredSphere {
+            anchor: [0.0, -0.5 - index as f32, -1.0],
+            inward: [0.0, -1.0, 0.0],
+            curvature: 0.001,
+        };
+        let grounds = (0..SPHERES).map(ground).collect();
+        Intersect { root, origins: Vectors::within(-0.1, 0.1), directions, spheres, grounds }
     }
 }
 
@@ -42,13 +52,13 @@ impl Body for Intersect {
         for first in (0..COUNT).step_by(L::WIDTH) {
             let rays = rays(l, self.origins.load(l, first).0, self.directions.load(l, first).0);
             let mut nearest = Nearest::nothing(l);
-            for (index, sphere) in SPHERES.iter().enumerate() {
+            for (index, (sphere, ground)) in self.spheres.iter().zip(&self.grounds).enumerate() {
                 let number = l.splat_u(index as u32);
                 let key = match self.root {
                     Root::Near => near_root(l, &rays, sphere, number),
                     Root::Nearest => nearest_root(l, &rays, sphere, number),
                     Root::Acne => acne_root(l, &rays, sphere),
-                    Root::Anchored => anchored_root(l, &rays, &GROUND, number),
+                    Root::Anchored => anchored_root(l, &rays, ground, number),
                 };
                 nearest.take(key, number);
             }
@@ -60,7 +70,7 @@ impl Body for Intersect {
 
 fn measure(bencher: Bencher, width: usize, root: Root) {
     let body = Intersect::new(root);
-    bencher.counter(ItemsCount::new(COUNT * SPHERES.len())).bench(|| run(width, divan::black_box(&body)));
+    bencher.counter(ItemsCount::new(COUNT * SPHERES)).bench(|| run(width, divan::black_box(&body)));
 }
 
 #[divan::bench(args = widths())]

@@ -7,6 +7,9 @@ use weekender::render_cpu::lanes::{Lanes, V3, dot};
 use weekender::render_cpu::material::{Surface, scatter};
 use weekender::stages::DielectricLaws;
 
+/// Bounces of each ray: so many that loading it does not matter.
+const BOUNCES: usize = 8;
+
 /// Mixed materials: each lane has one of its own.
 struct Scatter<const GLASS: bool> {
     directions: Vectors,
@@ -30,10 +33,8 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
         let zero = l.constant(0.0);
         let mut sum = V3 { x: zero, y: zero, z: zero };
         for first in (0..COUNT).step_by(L::WIDTH) {
-            let (direction, coin) = self.directions.load(l, first);
+            let (mut direction, coin) = self.directions.load(l, first);
             let (normal, kind) = self.normals.load(l, first);
-            let cosine = dot::<L>(direction, normal);
-            let front = L::lt(cosine, zero);
             let is_glass = L::lt(kind, l.constant(if GLASS { 0.3 } else { 0.0 }));
             let index = L::select(is_glass, l.constant(1.5), zero);
             let surface = Surface {
@@ -43,10 +44,16 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
                 normal_share: l.constant(0.04),
             };
             let (unit, _) = self.units.load(l, first);
-            let laws = DielectricLaws::Schlick;
-            let found =
-                scatter::<L, GLASS>(l, &surface, laws, direction, normal, L::abs(cosine), front, unit, coin);
-            sum = sum + found.direction;
+            for _ in 0..BOUNCES {
+                let cosine = dot::<L>(direction, normal);
+                let front = L::lt(cosine, zero);
+                let cosine = L::min(L::abs(cosine), l.constant(1.0));
+                let laws = DielectricLaws::Schlick;
+                let found =
+                    scatter::<L, GLASS>(l, &surface, laws, direction, normal, cosine, front, unit, coin);
+                direction = found.direction.scale(l.constant(0.5));
+            }
+            sum = sum + direction;
         }
         L::bits(L::lt(sum.x + sum.y, sum.z))
     }
@@ -55,11 +62,11 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
 #[divan::bench(args = widths())]
 fn opaque(bencher: Bencher, width: usize) {
     let body = Scatter::<false>::new();
-    bencher.counter(ItemsCount::new(COUNT)).bench(|| run(width, divan::black_box(&body)));
+    bencher.counter(ItemsCount::new(COUNT * BOUNCES)).bench(|| run(width, divan::black_box(&body)));
 }
 
 #[divan::bench(args = widths())]
 fn with_glass(bencher: Bencher, width: usize) {
     let body = Scatter::<true>::new();
-    bencher.counter(ItemsCount::new(COUNT)).bench(|| run(width, divan::black_box(&body)));
+    bencher.counter(ItemsCount::new(COUNT * BOUNCES)).bench(|| run(width, divan::black_box(&body)));
 }
