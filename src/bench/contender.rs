@@ -144,9 +144,10 @@ impl Contender {
             if run.seconds >= WARM_UP_SECONDS.min(limit_seconds) || tried >= samples {
                 let mut chosen = samples;
                 while chosen > least && chosen as f64 * run.seconds / tried as f64 > limit_seconds {
-                    chosen /= 2;
+                    // Both halves of the film get as many.
+                    chosen = (chosen / 2).next_multiple_of(least);
                 }
-                self.row.samples_per_pixel = chosen.max(1);
+                self.row.samples_per_pixel = chosen;
                 return Ok(());
             }
             tried = (4 * tried).min(samples);
