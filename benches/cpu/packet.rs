@@ -24,8 +24,8 @@ fn trace(bencher: Bencher, lanes: usize, scene: &str, sampler: SamplerKind) {
     let job = job(scene, sampler);
     let options = CpuOptions { lanes: Some(lanes), threads: Some(1), ..CpuOptions::default() };
     let mut renderer = CpuRenderer::new(options).expect("a lane count of this processor");
-    renderer.prepare(&job).expect("a kernel");
     let cancel = AtomicBool::new(false);
+    renderer.prepare(&job, &cancel).expect("a kernel");
     bencher
         .counter(ItemsCount::new(u64::from(SIDE * SIDE) * SAMPLES))
         .with_inputs(|| job.new_film())

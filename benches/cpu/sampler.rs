@@ -4,7 +4,7 @@ use crate::widths::{Body, COUNT, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::Lanes;
-use weekender::render_cpu::rng::{pcg4d, sobol_pair, stream_of};
+use weekender::render_cpu::rng::{pcg4d, sobol_pair};
 
 /// A pair of Sobol coordinates for each of [`COUNT`] rays.
 struct Sobol;
@@ -15,7 +15,7 @@ impl Body for Sobol {
         let mut sum = l.splat_u(0);
         for first in (0..COUNT).step_by(L::WIDTH) {
             let counter = l.splat_u(divan::black_box(first as u32).reverse_bits());
-            let [u, v] = sobol_pair(l, counter, stream_of(l, sum, l.splat_u(3)));
+            let [u, v] = sobol_pair(l, counter, sum);
             sum = sum + (u ^ v);
         }
         L::bits(L::eq_u(sum, l.splat_u(0)))

@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 use weekender::render_cpu::Isa;
-use weekender::render_cpu::lanes::{Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Permute, Scalar, V3};
+use weekender::render_cpu::lanes::{Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3};
 use weekender::render_cpu::sphere::{NONE, Rays};
 use weekender::tables::Row;
 
@@ -43,7 +43,7 @@ pub fn run(width: usize, body: &impl Body) -> u32 {
     body.run(Scalar::<false>)
 }
 
-fn at<S: Permute>(simd: S, width: usize, body: &impl Body) -> u32 {
+fn at<S: Instructions>(simd: S, width: usize, body: &impl Body) -> u32 {
     match width {
         4 => simd.vectorize(
             #[inline(always)]

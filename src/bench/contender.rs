@@ -96,7 +96,12 @@ impl Contender {
 
     /// A level of the CPU.
     pub fn cpu(isa: Isa, lanes: usize, threads: usize, kind: Kind, job: &RenderJob) -> Self {
-        let options = CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: Some(threads) };
+        let options = CpuOptions {
+            isa: Some(isa),
+            lanes: Some(lanes),
+            threads: Some(threads),
+            ..CpuOptions::default()
+        };
         let count =
             |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
         let name = format!("{isa}, {}, {}", count(lanes, "lane"), count(threads, "thread"));
@@ -212,6 +217,6 @@ impl Contender {
 
 fn prepared(choice: &BackendChoice, job: &RenderJob) -> Result<Runner, String> {
     let mut renderer = backends::create(choice).map_err(|error| error.to_string())?;
-    renderer.prepare(job).map_err(|error| error.to_string())?;
+    renderer.prepare(job, &AtomicBool::new(false)).map_err(|error| error.to_string())?;
     Ok(Runner::Renderer(renderer))
 }
