@@ -4,7 +4,9 @@ use crate::widths::{Body, COUNT, Vectors, rays, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::Lanes;
-use weekender::render_cpu::sphere::{Nearest, acne_root, anchored_root, near_root, nearest_root};
+use weekender::render_cpu::sphere::{
+    Nearest, Spheres, WideSphere, acne_root, anchored_root, near_root, nearest_root,
+};
 use weekender::tables::AnchoredSphere;
 
 /// Spheres that each ray is tested against: so many that loading the rays does not matter.
@@ -22,7 +24,7 @@ struct Intersect {
     root: Root,
     origins: Vectors,
     directions: Vectors,
-    spheres: Vec<[f32; 4]>,
+    spheres: Vec<WideSphere<f32>>,
     grounds: Vec<AnchoredSphere<f32>>,
 }
 
@@ -32,7 +34,7 @@ impl Intersect {
         // In a ring around the origins.
         let sphere = |index: usize| {
             let (sine, cosine) = (index as f32 / SPHERES as f32 * std::f32::consts::TAU).sin_cos();
-            [2.0 * cosine, 0.0, 2.0 * sine, 0.25]
+            WideSphere::new([2.0 * cosine, 0.0, 2.0 * sine, 0.25], index as u32)
         };
         let spheres = (0..SPHERES).map(sphere).collect();
         let ground = |index: usize| AnchoredSphere {
@@ -53,11 +55,11 @@ impl Body for Intersect {
             let rays = rays(l, self.origins.load(l, first).0, self.directions.load(l, first).0);
             let mut nearest = Nearest::nothing(l);
             for (index, (sphere, ground)) in self.spheres.iter().zip(&self.grounds).enumerate() {
-                let number = l.splat_u(index as u32);
+                let (sphere, number) = (Spheres::load(l, sphere), l.splat_u(index as u32));
                 let key = match self.root {
-                    Root::Near => near_root(l, &rays, sphere, number),
-                    Root::Nearest => nearest_root(l, &rays, sphere, number),
-                    Root::Acne => acne_root(l, &rays, sphere),
+                    Root::Near => near_root(l, &rays, &sphere),
+                    Root::Nearest => nearest_root(l, &rays, &sphere),
+                    Root::Acne => acne_root(l, &rays, &sphere),
                     Root::Anchored => anchored_root(l, &rays, ground, number),
                 };
                 nearest.take(key, number);
