@@ -2,7 +2,9 @@
 
 use fearless_simd::Level;
 use weekender::render_cpu::Isa;
-use weekender::render_cpu::lanes::{Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3};
+use weekender::render_cpu::lanes::{
+    Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3, Wide,
+};
 use weekender::render_cpu::sphere::{NONE, Rays};
 use weekender::tables::Row;
 
@@ -88,8 +90,8 @@ impl Vectors {
     /// Those from `first` on, and their numbers.
     #[inline(always)]
     pub fn load<L: Lanes<Real = f32>>(&self, l: L, first: usize) -> (V3<L::F>, L::F) {
-        let mut indices = [0; MAX_LANES];
-        for (lane, index) in indices.iter_mut().enumerate().take(L::WIDTH) {
+        let mut indices = Wide([0; MAX_LANES]);
+        for (lane, index) in indices.0.iter_mut().enumerate().take(L::WIDTH) {
             *index = (first + lane) as u32;
         }
         let [x, y, z, number] = l.gather(&self.0, &indices, 0);
