@@ -107,13 +107,14 @@ impl RenderJob {
     /// # Errors
     /// The first thing that is wrong, with its value, its limit and what to do.
     pub fn new(
-        scene: Scene,
+        scene: impl Into<Arc<Scene>>,
         camera: Camera,
         settings: RenderSettings,
         rules: Rules,
     ) -> Result<Self, JobError> {
+        let scene = scene.into();
         scene.validate()?;
-        RenderJob { scene: Arc::new(scene), camera, settings, rules }.seen_by(camera, settings)
+        RenderJob { scene, camera, settings, rules }.seen_by(camera, settings)
     }
 
     /// The same scene under the same rules, seen by another camera or in another size: the scene is shared, and

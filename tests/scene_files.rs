@@ -169,7 +169,7 @@ fn recipe() -> impl Strategy<Value = Recipe> {
     (any::<String>(), scene(), camera(), settings, rules(), 1..=1_u64 << 32).prop_map(
         |(name, scene, camera, settings, rules, samples_per_pixel)| Recipe {
             name,
-            scene,
+            scene: scene.into(),
             camera,
             settings,
             rules,
@@ -200,7 +200,7 @@ proptest! {
 fn what_is_left_out_has_defaults() {
     let recipe = parse(CAMERA, "bare").expect("enough");
     assert_eq!(recipe.name, "bare");
-    assert_eq!(recipe.scene, Scene::default());
+    assert_eq!(*recipe.scene, Scene::default());
     assert_eq!(recipe.rules, Rules::default());
     assert_eq!(recipe.settings, RenderSettings::default());
     assert_eq!((recipe.settings.width, recipe.settings.height), (800, 450));

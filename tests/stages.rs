@@ -176,7 +176,8 @@ fn stages_have_the_books_rules() {
     assert_eq!(recipe("diffuse-limited").settings.max_depth, 5);
     let tiny = recipe("ppm-tiny").settings;
     assert_eq!((tiny.width, tiny.height), (16, 9));
-    let glass = recipe("glass-tir").scene.materials.into_iter().find(|named| named.name == "left");
+    let recipe = recipe("glass-tir");
+    let glass = recipe.scene.materials.iter().find(|named| named.name == "left");
     let index = Material::Dielectric { refraction_index: 1.0 / 1.33 };
     assert_eq!(glass.map(|named| named.material), Some(index));
 }

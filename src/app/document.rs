@@ -339,7 +339,7 @@ mod tests {
         let mut recipe = stage.recipe();
         recipe.camera.vfov_degrees = 50.0;
         assert_eq!(Origin::guess(&recipe, Some(stage)).source, Source::Stage(stage));
-        recipe.scene.sky.top = DVec3::ZERO;
+        std::sync::Arc::make_mut(&mut recipe.scene).sky.top = DVec3::ZERO;
         assert_eq!(Origin::guess(&recipe, Some(stage)).source, Source::Embedded);
         let builtin = Recipe::builtin("book").unwrap();
         assert_eq!(Origin::guess(&builtin, None).source, Source::Builtin);

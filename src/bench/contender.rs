@@ -96,8 +96,12 @@ impl Contender {
 
     /// A level of the CPU.
     pub fn cpu(isa: Isa, lanes: usize, threads: usize, kind: Kind, job: &RenderJob) -> Self {
-        let options =
-            CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: Some(threads), gives_way: false };
+        let options = CpuOptions {
+            isa: Some(isa),
+            lanes: Some(lanes),
+            threads: Some(threads),
+            ..CpuOptions::default()
+        };
         let count =
             |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
         let name = format!("{isa}, {}, {}", count(lanes, "lane"), count(threads, "thread"));
@@ -145,9 +149,10 @@ impl Contender {
             if run.seconds >= WARM_UP_SECONDS.min(limit_seconds) || tried >= samples {
                 let mut chosen = samples;
                 while chosen > least && chosen as f64 * run.seconds / tried as f64 > limit_seconds {
-                    chosen /= 2;
+                    // Both halves of the film get as many.
+                    chosen = (chosen / 2).next_multiple_of(least);
                 }
-                self.row.samples_per_pixel = chosen.max(1);
+                self.row.samples_per_pixel = chosen;
                 return Ok(());
             }
             tried = (4 * tried).min(samples);

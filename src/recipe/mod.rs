@@ -7,6 +7,7 @@ use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT};
 use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
 use crate::scene::{Camera, Scene, or_nearest, similar_names};
 use crate::stages::{Rules, Setup, Stage};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Samples per pixel where a scene file does not say.
@@ -17,8 +18,8 @@ pub const DEFAULT_SAMPLES_PER_PIXEL: u64 = 200;
 pub struct Recipe {
     /// What the user calls it: a built-in scene's name, a stage's id or a file's stem.
     pub name: String,
-    /// Spheres, materials and sky.
-    pub scene: Scene,
+    /// Spheres, materials and sky; the jobs made from it share it.
+    pub scene: Arc<Scene>,
     /// The camera.
     pub camera: Camera,
     /// Size, depth, sampler, seed, halves.
@@ -62,7 +63,7 @@ impl Recipe {
         let BuiltinScene { width, height, samples_per_pixel, max_depth, .. } = *builtin;
         Recipe {
             name: name.to_owned(),
-            scene,
+            scene: Arc::new(scene),
             camera,
             settings: RenderSettings { width, height, max_depth, ..RenderSettings::default() },
             rules: Rules::FINISHED,
@@ -75,7 +76,7 @@ impl Recipe {
     /// # Errors
     /// See [`RenderJob::new`].
     pub fn job(&self) -> Result<RenderJob, JobError> {
-        RenderJob::new(self.scene.clone(), self.camera, self.settings, self.rules)
+        RenderJob::new(Arc::clone(&self.scene), self.camera, self.settings, self.rules)
     }
 
     /// Checks the samples per pixel.
@@ -97,7 +98,7 @@ impl Stage {
         let Setup { scene, camera, rules, width, height, samples_per_pixel, max_depth } = self.setup;
         Recipe {
             name: self.id.to_owned(),
-            scene: scene(),
+            scene: Arc::new(scene()),
             camera,
             settings: RenderSettings { width, height, max_depth, ..RenderSettings::default() },
             rules,

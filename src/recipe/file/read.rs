@@ -198,7 +198,7 @@ fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
     let (scene, inline) = scene_of(sky, raw.materials, raw.spheres)?;
     let recipe = Recipe {
         name: name.to_owned(),
-        scene,
+        scene: scene.into(),
         camera: camera_of(&raw.camera),
         settings,
         rules: raw.rules,
