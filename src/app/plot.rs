@@ -7,11 +7,19 @@ use super::window::Window;
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use crate::statistics::fit::{Point, Prediction, predict};
 use eframe::egui::{self, Color32, CursorIcon, DragValue, RichText, Sense, Ui};
-use egui_plot::{HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, PlotUi, Points};
+use egui_plot::{
+    GridInput, GridMark, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, PlotUi, Points,
+};
 use std::fmt::Write;
 
 /// Targets that can be chosen, RMSE.
 const TARGETS: std::ops::RangeInclusive<f64> = 1e-6..=1.0;
+
+/// Powers of ten that a scale has lines for.
+const MOST_DECADES: f64 = 40.0;
+
+/// Seconds from now beyond which nothing is drawn.
+const FARTHEST: f64 = 1e6;
 
 /// How near the pointer must be to the target to take hold of it, points.
 const GRIP: f32 = 8.0;
@@ -78,8 +86,8 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
         .set_margin_fraction(egui::vec2(0.03, 0.12))
         .x_axis_formatter(|mark, _| power(mark.value, " s"))
         .y_axis_formatter(|mark, _| power(mark.value, ""))
-        .x_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
-        .y_grid_spacer(egui_plot::uniform_grid_spacer(|_| [1.0, 1.0, 1.0]))
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
         .label_formatter(|hover| {
             let (HoverPosition::NearDataPoint { position: at, .. }
             | HoverPosition::Elsewhere { position: at }) = hover;
@@ -114,6 +122,15 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
         response.inner,
         response.transform.dpos_dvalue_y().abs() as f32,
     );
+}
+
+/// A line for each power of ten; none on a scale so wide that they would be one grey.
+fn decades(grid: GridInput) -> Vec<GridMark> {
+    let (low, high) = (grid.bounds.0.ceil(), grid.bounds.1.floor());
+    if !(0.0..=MOST_DECADES).contains(&(high - low)) {
+        return Vec::new();
+    }
+    (0..=(high - low) as u32).map(|step| GridMark { value: low + f64::from(step), step_size: 1.0 }).collect()
 }
 
 /// Moves the target with the pointer that took hold of its line.
@@ -152,7 +169,7 @@ fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
 /// From the newest estimate to where the target should be met, and between which times.
 fn ahead(plot: &mut PlotUi, now: &Point, target: f64, prediction: &Prediction, color: Color32) {
     let y = target.log10();
-    let at = |seconds_from_now: f64| [(now.time + seconds_from_now).log10(), y];
+    let at = |seconds_from_now: f64| [(now.time + seconds_from_now.min(FARTHEST)).log10(), y];
     let way = vec![logarithm(now), at(prediction.time)];
     let range = prediction.range.map(at).to_vec();
     plot.line(Line::new("expected", PlotPoints::from(way)).color(color).width(1.0).allow_hover(false));
@@ -218,7 +235,7 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
     let from_now = |time: f64| (time - now.time).max(0.0);
     predict(&history, now, target?)
         .map(|found| Prediction { time: from_now(found.time), range: found.range.map(from_now) })
-        .filter(|found| found.time < 1e6)
+        .filter(|found| found.time < FARTHEST)
 }
 
 /// As "RMSE .005 in about 38 s (33 to 44)", while there is a target ahead.
@@ -230,8 +247,13 @@ pub fn prediction_label(window: &Window) -> Option<String> {
 
 /// As "in about 38 s (33 to 44)".
 pub fn prediction_words(prediction: &Prediction) -> String {
-    let [low, high] = prediction.range.map(whole);
-    format!("in about {} s ({low} to {high})", whole(prediction.time))
+    let [low, high] = prediction.range;
+    let about = whole(prediction.time);
+    if high < FARTHEST {
+        format!("in about {about} s ({} to {})", whole(low), whole(high))
+    } else {
+        format!("in about {about} s ({} or more)", whole(low))
+    }
 }
 
 fn whole(seconds: f64) -> String {
@@ -295,6 +317,23 @@ mod tests {
         assert_eq!(found[0].1[1], found[1].1[0]);
         assert_eq!(csv(&history).lines().count(), 4);
         assert!(csv(&history).ends_with("gpu,8,2.1,0.035355339059327376,0.1\n"), "{}", csv(&history));
+    }
+
+    #[test]
+    fn a_scale_has_a_line_for_each_power_of_ten_and_stays_finite() {
+        let marks = |low: f64, high: f64| decades(GridInput { bounds: (low, high), base_step_size: 1.0 });
+        let values: Vec<f64> = marks(-3.2, 1.5).iter().map(|mark| mark.value).collect();
+        assert_eq!(values, [-3.0, -2.0, -1.0, 0.0, 1.0]);
+        assert!(marks(0.2, 0.7).is_empty());
+        for (low, high) in [(-1.0, f64::INFINITY), (-1e300, 1e300), (f64::NAN, 1.0), (0.0, 1e9)] {
+            assert!(marks(low, high).is_empty(), "{low} to {high}");
+        }
+    }
+
+    #[test]
+    fn a_prediction_without_an_end_says_so() {
+        let prediction = Prediction { time: 38.0, range: [31.0, f64::INFINITY] };
+        assert_eq!(prediction_words(&prediction), "in about 38 s (31 or more)");
     }
 
     #[test]
