@@ -4,13 +4,9 @@ use crate::widths::{Body, COUNT, Vectors, rays, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::Lanes;
-<<<<<<< HEAD
-use weekender::render_cpu::sphere::{Nearest, Spheres, acne_root, anchored_root, near_root, nearest_root};
-=======
 use weekender::render_cpu::sphere::{
     Nearest, Spheres, WideSphere, acne_root, anchored_root, near_root, nearest_root,
 };
->>>>>>> bench
 use weekender::tables::AnchoredSphere;
 
 /// Spheres that each ray is tested against: so many that loading the rays does not matter.
@@ -28,11 +24,7 @@ struct Intersect {
     root: Root,
     origins: Vectors,
     directions: Vectors,
-<<<<<<< HEAD
-    spheres: Vec<[f32; 4]>,
-=======
     spheres: Vec<WideSphere<f32>>,
->>>>>>> bench
     grounds: Vec<AnchoredSphere<f32>>,
 }
 
@@ -42,11 +34,7 @@ impl Intersect {
         // In a ring around the origins.
         let sphere = |index: usize| {
             let (sine, cosine) = (index as f32 / SPHERES as f32 * std::f32::consts::TAU).sin_cos();
-<<<<<<< HEAD
-            [2.0 * cosine, 0.0, 2.0 * sine, 0.25]
-=======
             WideSphere::new([2.0 * cosine, 0.0, 2.0 * sine, 0.25], index as u32)
->>>>>>> bench
         };
         let spheres = (0..SPHERES).map(sphere).collect();
         let ground = |index: usize| AnchoredSphere {
@@ -67,12 +55,7 @@ impl Body for Intersect {
             let rays = rays(l, self.origins.load(l, first).0, self.directions.load(l, first).0);
             let mut nearest = Nearest::nothing(l);
             for (index, (sphere, ground)) in self.spheres.iter().zip(&self.grounds).enumerate() {
-<<<<<<< HEAD
-                let number = l.splat_u(index as u32);
-                let sphere = Spheres::splat(l, *sphere, number);
-=======
                 let (sphere, number) = (Spheres::load(l, sphere), l.splat_u(index as u32));
->>>>>>> bench
                 let key = match self.root {
                     Root::Near => near_root(l, &rays, &sphere),
                     Root::Nearest => nearest_root(l, &rays, &sphere),

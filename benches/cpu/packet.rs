@@ -24,13 +24,8 @@ fn trace(bencher: Bencher, lanes: usize, scene: &str, sampler: SamplerKind) {
     let job = job(scene, sampler);
     let options = CpuOptions { lanes: Some(lanes), threads: Some(1), ..CpuOptions::default() };
     let mut renderer = CpuRenderer::new(options).expect("a lane count of this processor");
-<<<<<<< HEAD
-    renderer.prepare(&job, &AtomicBool::new(false)).expect("a kernel");
-    let cancel = AtomicBool::new(false);
-=======
     let cancel = AtomicBool::new(false);
     renderer.prepare(&job, &cancel).expect("a kernel");
->>>>>>> bench
     bencher
         .counter(ItemsCount::new(u64::from(SIDE * SIDE) * SAMPLES))
         .with_inputs(|| job.new_film())

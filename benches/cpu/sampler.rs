@@ -15,11 +15,7 @@ impl Body for Sobol {
         let mut sum = l.splat_u(0);
         for first in (0..COUNT).step_by(L::WIDTH) {
             let counter = l.splat_u(divan::black_box(first as u32).reverse_bits());
-<<<<<<< HEAD
-            let [u, v] = sobol_pair(l, counter, sum + l.splat_u(3));
-=======
             let [u, v] = sobol_pair(l, counter, sum);
->>>>>>> bench
             sum = sum + (u ^ v);
         }
         L::bits(L::eq_u(sum, l.splat_u(0)))

@@ -2,13 +2,9 @@
 
 use fearless_simd::Level;
 use weekender::render_cpu::Isa;
-<<<<<<< HEAD
-use weekender::render_cpu::lanes::{Instructions, Lanes, Lanes4, Lanes8, Lanes16, Scalar, V3, WideU};
-=======
 use weekender::render_cpu::lanes::{
     Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3, Wide,
 };
->>>>>>> bench
 use weekender::render_cpu::sphere::{NONE, Rays};
 use weekender::tables::Row;
 
@@ -94,11 +90,7 @@ impl Vectors {
     /// Those from `first` on, and their numbers.
     #[inline(always)]
     pub fn load<L: Lanes<Real = f32>>(&self, l: L, first: usize) -> (V3<L::F>, L::F) {
-<<<<<<< HEAD
-        let mut indices = WideU::default();
-=======
         let mut indices = Wide([0; MAX_LANES]);
->>>>>>> bench
         for (lane, index) in indices.0.iter_mut().enumerate().take(L::WIDTH) {
             *index = (first + lane) as u32;
         }
