@@ -223,14 +223,15 @@ impl<R: Real> Tables<R> {
 
     /// Memory that grows with the number of spheres.
     pub fn bytes(&self) -> usize {
-        let hierarchy =
-            self.hierarchy.as_ref().map_or(0, |hierarchy| size_of_val(hierarchy.nodes.as_slice()));
-        size_of_val(self.opaque.as_slice())
-            + size_of_val(self.two_root.as_slice())
+        let Groups { opaque, two_root, anchored } = &self.groups;
+        let indices = [opaque, two_root, anchored, &self.scene_index];
+        let packed = [&self.opaque, &self.two_root];
+        let nodes = self.hierarchy.as_ref().map_or(0, |hierarchy| size_of_val(hierarchy.nodes.as_slice()));
+        indices.iter().map(|list| size_of_val(list.as_slice())).sum::<usize>()
+            + packed.iter().map(|list| size_of_val(list.as_slice())).sum::<usize>()
             + size_of_val(self.anchored.as_slice())
             + size_of_val(self.rows.as_slice())
-            + size_of_val(self.scene_index.as_slice())
-            + hierarchy
+            + nodes
     }
 
     /// The spheres of `two_root` as the scene has them. The tables must be the job's.
