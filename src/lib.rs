@@ -7,6 +7,7 @@ pub mod bench;
 pub mod chart;
 pub mod cli;
 pub mod compare;
+pub mod control;
 pub mod describe;
 pub mod diff;
 pub mod failure;

@@ -326,6 +326,11 @@ pub trait Renderer: Send {
         Duration::ZERO
     }
 
+    /// What the device spent on all dispatches since this was made, by its own clock; `None` without one.
+    fn device_time(&self) -> Option<Duration> {
+        None
+    }
+
     /// What the prepared job's kernel contains, and what making it took, in words.
     fn kernel(&self) -> String {
         String::new()

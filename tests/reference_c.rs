@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
-use weekender::bench::control::{Control, FLAGS, SOURCE};
+use weekender::control::{Control, FLAGS, SOURCE};
 use weekender::film::Film;
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, Renderer, SamplerKind};

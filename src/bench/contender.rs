@@ -1,9 +1,9 @@
 //! Who is measured: the control, levels and lane counts of the CPU, a GPU.
 
-use super::control::{Control, ControlError};
 use super::figures::{Kind, Row, Run};
 use crate::backends::{self, BackendChoice};
 use crate::cli::BenchOptions;
+use crate::control::{Control, ControlError};
 use crate::render::{RenderError, RenderJob, Renderer};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::{GpuOptions, adapters};

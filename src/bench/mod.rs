@@ -1,7 +1,6 @@
 //! `weekender bench`: how fast this machine renders, beside a plain C program.
 
 mod contender;
-pub mod control;
 mod figures;
 mod machine;
 mod plot;
@@ -11,12 +10,13 @@ mod table;
 
 use crate::chart;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
+use crate::control::{Control, ControlError};
 use crate::failure::{Failure, INTERRUPTED};
 use crate::film::{check_writable, replace_file};
 use crate::interrupt::Interrupt;
 use anyhow::Context;
 use contender::{Cancelled, Contender, contenders};
-use control::{Control, ControlError};
+
 use figures::{Report, SCHEMA, SPREAD_LIMIT, SceneFigures};
 use machine::{LOAD_LIMIT, Machine};
 use progress::Progress;

@@ -94,11 +94,10 @@ fn measured<'a, B: DrawingBackend + 'a>(
     units: Units,
 ) -> Drawn<B> {
     let style = color(index).stroke_width(units.size(2.0));
-    for point in placed {
-        if let Some([low, high]) = point.spread {
-            let line = vec![(point.at.0, low), (point.at.0, high)];
-            context.draw_series([PathElement::new(line, style)])?;
-        }
+    let band = |end: usize| placed.iter().filter_map(move |point| Some((point.at.0, point.spread?[end])));
+    let outline: Vec<(f64, f64)> = band(0).chain(band(1).collect::<Vec<_>>().into_iter().rev()).collect();
+    if outline.len() > 2 {
+        context.draw_series([Polygon::new(outline, color(index).mix(0.22).filled())])?;
     }
     let drawn = context.draw_series(LineSeries::new(placed.iter().map(|point| point.at), style))?;
     if !series.name.is_empty() {

@@ -92,7 +92,7 @@ pub struct Point {
     pub x: f64,
     /// Up.
     pub y: f64,
-    /// Least and largest y, drawn as an error bar.
+    /// Least and largest y, drawn as a band between the points.
     pub spread: Option<[f64; 2]>,
 }
 

@@ -9,7 +9,8 @@ mod values;
 pub use bench::{BenchOptions, BenchScene};
 pub use options::{
     BatchOptions, CompareOptions, CompareSide, DiffOptions, JsonTarget, MergeOptions, PathChoice,
-    ReferenceChoice, RenderOptions, ReportOptions, SaveSceneOptions, SideChoice, WindowOptions,
+    ReferenceChoice, RenderOptions, ReportBackend, ReportOptions, SaveSceneOptions, SideChoice,
+    WindowOptions,
 };
 pub use raw::ProgressChoice;
 pub use sources::CliError;

@@ -1,7 +1,7 @@
 //! Options that can be carried out, and how flags become them.
 
 use super::Request;
-use super::raw::{ProgressChoice, RawCompare, RawDevice, RawDiff, RawRender, RawReport};
+use super::raw::{ProgressChoice, RawCompare, RawDevice, RawDiff, RawRender, RawReport, RawSwitch};
 use super::sources::{self, CliError, Source};
 use super::values::{Level, RawSide, Simd};
 use crate::backends::BackendChoice;
@@ -237,7 +237,7 @@ pub struct ReportOptions {
     /// Scenes, at their size.
     pub scenes: Vec<Recipe>,
     /// Backends by their names.
-    pub backends: Vec<(String, BackendChoice)>,
+    pub backends: Vec<(String, ReportBackend)>,
     /// Samplers.
     pub samplers: Vec<SamplerKind>,
     /// Pictures of each curve.
@@ -248,6 +248,10 @@ pub struct ReportOptions {
     pub time_limit: f64,
     /// Most samples per pixel.
     pub max_samples: u64,
+    /// Whether samples are kept in two halves.
+    pub estimate_error: bool,
+    /// Errors that times are told for; the first is marked in the plot.
+    pub targets: Vec<f64>,
     /// What errors are measured against.
     pub reference: ReferenceChoice,
     /// Where the report goes.
@@ -256,6 +260,18 @@ pub struct ReportOptions {
     pub progress: ProgressChoice,
     /// What was typed.
     pub command: String,
+}
+
+/// What a curve of a report is rendered by.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReportBackend {
+    /// A backend of this program.
+    Renderer(BackendChoice),
+    /// The plain C89 program.
+    Control {
+        /// Whether it was asked for by name; otherwise it may be missing.
+        is_asked_for: bool,
+    },
 }
 
 /// What errors are measured against.
@@ -274,38 +290,51 @@ pub enum ReferenceChoice {
     },
 }
 
+/// What a report's flags stand for when they are left out.
+struct ReportDefaults {
+    scenes: &'static [&'static str],
+    backends: &'static [&'static str],
+    seeds: u32,
+    size: (u32, u32),
+    time_limit: f64,
+    max_samples: u64,
+    /// Times as many samples as the longest curve's has the reference.
+    reference_factor: u64,
+}
+
+const RACE: ReportDefaults = ReportDefaults {
+    scenes: &["three-spheres", "book"],
+    backends: &["cpu", "scalar", "gpu", CONTROL],
+    seeds: 8,
+    size: (160, 90),
+    time_limit: 12.0,
+    max_samples: 1024,
+    reference_factor: 4,
+};
+
+const CALIBRATION: ReportDefaults = ReportDefaults {
+    scenes: &["three-spheres", "book", "close-up", sources::NEAR_GLASS],
+    backends: &["cpu", "gpu"],
+    seeds: 24,
+    size: (96, 54),
+    time_limit: 1e9,
+    max_samples: 256,
+    reference_factor: 16,
+};
+
+/// The control's name among a report's backends.
+const CONTROL: &str = "c89";
+
+/// Errors that times are told for in any case.
+const TARGETS: [f64; 2] = [0.01, 0.001];
+
 /// What `weekender report` is asked for; `command` is what was typed.
 pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, CliError> {
-    let adapter = raw.adapter.as_deref();
-    let named = |name: &str| {
-        let choice = BackendChoice::named(name, adapter)
-            .ok_or_else(|| CliError::BackendName { name: name.to_owned() })?;
-        Ok::<_, CliError>((name.to_owned(), choice))
-    };
-    let names = if raw.backends.is_empty() {
-        let has_gpu = adapter.is_some()
-            || matches!(
-                BackendChoice::auto(CpuOptions::default(), GpuOptions::default()),
-                BackendChoice::Gpu(_)
-            );
-        ["cpu", "scalar", "gpu"].into_iter().take(if has_gpu { 3 } else { 2 }).map(str::to_owned).collect()
-    } else {
-        raw.backends
-    };
-    if adapter.is_some() && !names.iter().chain([&raw.reference_backend]).any(|name| name == "gpu") {
-        let reason = "it chooses among GPUs; leave it out";
-        return Err(CliError::Needs { flag: "--adapter", other: "gpu among --backends", reason });
-    }
-    let scenes = raw
-        .scenes
-        .iter()
-        .map(|name| {
-            let mut recipe = sources::scene(name)?;
-            (recipe.settings.width, recipe.settings.height) = raw.size;
-            recipe.job()?;
-            Ok(recipe)
-        })
-        .collect::<Result<Vec<_>, CliError>>()?;
+    let defaults = if raw.calibration { CALIBRATION } else { RACE };
+    let backends = report_backends(&raw, &defaults)?;
+    let size = raw.size.unwrap_or(defaults.size);
+    let scenes = report_scenes(&raw, &defaults, size)?;
+    let max_samples = raw.max_samples.unwrap_or(defaults.max_samples);
     let reference = match raw.reference {
         Some(_) if scenes.len() > 1 => {
             let reason = "one film is the reference of one scene; say which with --scenes";
@@ -313,24 +342,83 @@ pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, C
         }
         Some(path) => ReferenceChoice::File(path),
         None => {
-            let (name, choice) = named(&raw.reference_backend)?;
-            let samples = raw.reference_samples.unwrap_or((4 * raw.max_samples).min(SAMPLE_LIMIT));
-            ReferenceChoice::Make { name, choice, samples }
+            let choice = backend_named(&raw.reference_backend, raw.adapter.as_deref(), &[])?;
+            let samples = (defaults.reference_factor * max_samples).min(SAMPLE_LIMIT);
+            let samples = raw.reference_samples.unwrap_or(samples);
+            ReferenceChoice::Make { name: raw.reference_backend, choice, samples }
         }
     };
+    let mut targets: Vec<f64> = raw.target.into_iter().collect();
+    targets.extend(TARGETS.into_iter().filter(|target| raw.target != Some(*target)));
     Ok(ReportOptions {
         scenes,
-        backends: names.iter().map(|name| named(name)).collect::<Result<_, _>>()?,
+        backends,
         samplers: raw.samplers.into_iter().map(Into::into).collect(),
-        seeds: raw.seeds,
-        size: raw.size,
-        time_limit: raw.time_limit,
-        max_samples: raw.max_samples,
+        seeds: raw.seeds.unwrap_or(defaults.seeds),
+        size,
+        time_limit: raw.time_limit.unwrap_or(defaults.time_limit),
+        max_samples,
+        estimate_error: raw.estimate_error == RawSwitch::On,
+        targets,
         reference,
         out: raw.out,
         progress: raw.progress,
         command,
     })
+}
+
+/// `more` are names that are possible besides.
+fn backend_named(name: &str, adapter: Option<&str>, more: &[&str]) -> Result<BackendChoice, CliError> {
+    BackendChoice::named(name, adapter).ok_or_else(|| {
+        let choices = [&BackendChoice::NAMES[..], more].concat().join(", ");
+        CliError::BackendName { name: name.to_owned(), choices }
+    })
+}
+
+fn report_backends(
+    raw: &RawReport,
+    defaults: &ReportDefaults,
+) -> Result<Vec<(String, ReportBackend)>, CliError> {
+    let adapter = raw.adapter.as_deref();
+    let is_asked_for = !raw.backends.is_empty();
+    let names = if is_asked_for {
+        raw.backends.clone()
+    } else {
+        let auto = || BackendChoice::auto(CpuOptions::default(), GpuOptions::default());
+        let has_gpu = adapter.is_some() || matches!(auto(), BackendChoice::Gpu(_));
+        let present = defaults.backends.iter().filter(|name| has_gpu || **name != "gpu");
+        present.map(|name| (*name).to_owned()).collect()
+    };
+    if adapter.is_some() && !names.iter().chain([&raw.reference_backend]).any(|name| name == "gpu") {
+        let reason = "it chooses among GPUs; leave it out";
+        return Err(CliError::Needs { flag: "--adapter", other: "gpu among --backends", reason });
+    }
+    let of_name = |name: String| {
+        let backend = match name.as_str() {
+            CONTROL => ReportBackend::Control { is_asked_for },
+            name => ReportBackend::Renderer(backend_named(name, adapter, &[CONTROL])?),
+        };
+        Ok((name, backend))
+    };
+    names.into_iter().map(of_name).collect()
+}
+
+fn report_scenes(
+    raw: &RawReport,
+    defaults: &ReportDefaults,
+    size: (u32, u32),
+) -> Result<Vec<Recipe>, CliError> {
+    let sized = |recipe: Result<Recipe, CliError>| {
+        let mut recipe = recipe?;
+        (recipe.settings.width, recipe.settings.height) = size;
+        recipe.job()?;
+        Ok(recipe)
+    };
+    if raw.scenes.is_empty() {
+        defaults.scenes.iter().map(|name| sized(sources::carried(name))).collect()
+    } else {
+        raw.scenes.iter().map(|name| sized(sources::scene(name))).collect()
+    }
 }
 
 /// Samples that are compared unless a number is asked for.

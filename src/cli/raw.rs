@@ -279,18 +279,22 @@ pub(super) struct RawReport {
     #[arg(long, value_name = "DIRECTORY")]
     pub out: PathBuf,
 
-    /// Built-in scenes, field:N or scene files, with commas between them
+    /// See whether the error that pictures tell of themselves is true. Unless said otherwise: 24 pictures of 96x54
+    /// a curve, 256 samples, no time limit; three-spheres, book, close-up, hollow glass from near by; cpu, and gpu
+    /// where there is one
+    #[arg(long, help_heading = "What is compared")]
+    pub calibration: bool,
+    /// Built-in scenes, field:N or scene files, with commas between them [default: three-spheres,book]
     #[arg(
         long = "scenes",
         alias = "scene",
         value_name = "A,B,...",
         value_delimiter = ',',
-        default_value = "three-spheres,book",
         help_heading = "What is compared"
     )]
     pub scenes: Vec<String>,
-    /// Backends: cpu (the widest packets), scalar (one lane), baseline, reference (f64), gpu
-    /// [default: cpu,scalar, and gpu where there is one]
+    /// Backends: cpu (the widest packets), scalar (one lane), baseline, reference (f64), gpu,
+    /// c89 (the plain C program) [default: cpu,scalar, gpu where there is one, c89 where there is a C compiler]
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', help_heading = "What is compared")]
     pub backends: Vec<String>,
     /// Samplers
@@ -307,22 +311,35 @@ pub(super) struct RawReport {
     #[arg(long, value_name = "SUBSTRING", help_heading = "What is compared")]
     pub adapter: Option<String>,
 
-    /// Width and height of all pictures in pixels, each 1 to 16384
-    #[arg(long, value_name = "WxH", value_parser = parse_size, default_value = "160x90",
-          help_heading = "How it is measured")]
-    pub size: (u32, u32),
-    /// Pictures of each curve, which differ in their random numbers alone, 1 to 1000
+    /// Width and height of all pictures in pixels, each 1 to 16384 [default: 160x90]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "How it is measured")]
+    pub size: Option<(u32, u32)>,
+    /// Pictures of each curve, which differ in their random numbers alone, 1 to 1000 [default: 8]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000),
-          allow_hyphen_values = true, default_value = "8", help_heading = "How it is measured")]
-    pub seeds: u32,
+          allow_hyphen_values = true, help_heading = "How it is measured")]
+    pub seeds: Option<u32>,
     /// Seconds of tracing for all pictures of a curve; a picture ends with the last doubling that fits in
+    /// [default: 12]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_hyphen_values = true,
-          default_value = "12", help_heading = "How it is measured")]
-    pub time_limit: f64,
-    /// Most samples per pixel, 2 to 4294967296
+          help_heading = "How it is measured")]
+    pub time_limit: Option<f64>,
+    /// Most samples per pixel, 2 to 4294967296 [default: 1024]
     #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
-          allow_hyphen_values = true, default_value = "1024", help_heading = "How it is measured")]
-    pub max_samples: u64,
+          allow_hyphen_values = true, help_heading = "How it is measured")]
+    pub max_samples: Option<u64>,
+    /// Keep samples in two halves, which tell the error; off makes one set of points of them
+    #[arg(
+        long,
+        value_enum,
+        default_value = "on",
+        conflicts_with = "calibration",
+        help_heading = "How it is measured"
+    )]
+    pub estimate_error: RawSwitch,
+    /// Tell the seconds to this RMSE, too, and mark it in the plot [default: 0.01]
+    #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
+          help_heading = "How it is measured")]
+    pub target: Option<f64>,
     /// A film to measure against, of the one scene at this size and with two halves
     #[arg(long, value_name = "FILM.exr", help_heading = "How it is measured")]
     pub reference: Option<PathBuf>,
@@ -335,7 +352,7 @@ pub(super) struct RawReport {
         help_heading = "How it is measured"
     )]
     pub reference_backend: String,
-    /// Samples per pixel of the references [default: 4 times --max-samples]
+    /// Samples per pixel of the references [default: 4 times --max-samples, for --calibration 16 times]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
           allow_hyphen_values = true, conflicts_with = "reference", help_heading = "How it is measured")]
     pub reference_samples: Option<u64>,

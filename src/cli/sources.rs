@@ -1,7 +1,6 @@
 //! Where a picture comes from: a built-in scene, a stage, a scene file or a film; and what flags change in it.
 
 use super::raw::{RawPicture, RawSwitch};
-use crate::backends::BackendChoice;
 use crate::film::key;
 use crate::output::{OutputError, read_description};
 use crate::recipe::{Recipe, SceneNameError, file};
@@ -66,10 +65,12 @@ pub enum CliError {
         height: u32,
     },
     /// No such backend.
-    #[error("there is no backend {name:?}; choose among {}", BackendChoice::NAMES.join(", "))]
+    #[error("there is no backend {name:?}; choose among {choices}")]
     BackendName {
         /// What was asked for.
         name: String,
+        /// What there is.
+        choices: String,
     },
     /// Two files of one name.
     #[error("{first} and {second} are both {}; give them different names", path.display())]
@@ -117,6 +118,18 @@ pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<Source, Cl
 /// The scene of this name or in this file.
 pub(super) fn scene(name: &str) -> Result<Recipe, CliError> {
     if is_file(name) { Ok(file::load(Path::new(name))?) } else { Ok(Recipe::find(name)?) }
+}
+
+/// The example scene `near-glass`, which the program carries for reports.
+pub(super) const NEAR_GLASS: &str = "near-glass";
+
+/// A built-in scene, or [`NEAR_GLASS`].
+pub(super) fn carried(name: &str) -> Result<Recipe, CliError> {
+    if name != NEAR_GLASS {
+        return scene(name);
+    }
+    let recipe = file::parse(include_str!("../../assets/scenes/near-glass.toml"), NEAR_GLASS)?;
+    Ok(Recipe { name: name.to_owned(), ..recipe })
 }
 
 /// Whether `--scene` names a file: a name with an ending or a directory.

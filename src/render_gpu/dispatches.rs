@@ -61,7 +61,12 @@ impl Dispatches {
 
     /// By what they are timed.
     pub(super) fn timer(&self) -> &'static str {
-        if self.timers.is_empty() { "wall clock" } else { "timestamp queries" }
+        if self.is_timed_by_device() { "timestamp queries" } else { "wall clock" }
+    }
+
+    /// Whether the device's own clock tells what dispatches take.
+    pub(super) fn is_timed_by_device(&self) -> bool {
+        !self.timers.is_empty()
     }
 
     fn budget(&mut self, kernel: &Overrides) -> &mut Budget {

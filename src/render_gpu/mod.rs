@@ -139,6 +139,10 @@ impl Renderer for GpuRenderer {
         self.report.hierarchy_time
     }
 
+    fn device_time(&self) -> Option<Duration> {
+        self.dispatches.is_timed_by_device().then_some(self.dispatches.time)
+    }
+
     fn kernel(&self) -> String {
         let GpuReport { features, compile_time, timer, .. } = &self.report;
         format!("{features}; compiled in {:.3} s; dispatches timed by {timer}", compile_time.as_secs_f64())

@@ -33,6 +33,8 @@ pub struct Settings {
     pub time_limit: f64,
     /// Most samples per pixel.
     pub max_samples: u64,
+    /// Whether samples are kept in two halves, which tell the error.
+    pub estimate_error: bool,
     /// Samples per pixel of references that the report makes.
     pub reference_samples: u64,
     /// What makes them, or the file that is taken.
@@ -86,10 +88,12 @@ pub struct Run {
 pub struct Measured {
     /// Samples per pixel.
     pub samples: u64,
-    /// Seconds of tracing.
+    /// Seconds of tracing; the control tells those of its processor.
     pub trace_seconds: f64,
     /// Seconds of tracing and of adding to the film.
     pub wall_seconds: f64,
+    /// Seconds that the device was at work, by its own clock; `None` where it has none.
+    pub device_seconds: Option<f64>,
     /// Mean squared error over pixels and channels, linear radiance, less the reference's own; it can be below 0
     /// where the picture is better than the reference.
     pub mse: f64,

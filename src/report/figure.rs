@@ -1,11 +1,11 @@
 //! The plot.
 
 use super::data::Data;
-use super::summary::{CurveSummary, TARGETS};
+use super::summary::CurveSummary;
 use crate::chart::{Axis, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
 
-/// Error against seconds, a chart for each scene.
-pub fn figure(data: &Data, curves: &[CurveSummary]) -> Figure {
+/// Error against seconds, a chart for each scene, with the times to `target` marked.
+pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {
     let mut scenes: Vec<&str> = Vec::new();
     for curve in curves {
         if !scenes.contains(&curve.curve.scene.as_str()) {
@@ -16,7 +16,7 @@ pub fn figure(data: &Data, curves: &[CurveSummary]) -> Figure {
     let rows = scenes.len().div_ceil(columns).max(1) as u32;
     let settings = &data.settings;
     let about = format!(
-        "lower and more to the left is better; each mark doubles the samples; bars span {} pictures; {}",
+        "lower and more to the left is better; each mark doubles the samples: 1, 2, 4 ...; bands span {} pictures; {}",
         settings.seeds, settings.software
     );
     Figure {
@@ -24,11 +24,11 @@ pub fn figure(data: &Data, curves: &[CurveSummary]) -> Figure {
         about,
         size: [560 * columns as u32, 90 + 470 * rows],
         columns,
-        panels: scenes.into_iter().map(|scene| Panel::Lines(chart(scene, data, curves))).collect(),
+        panels: scenes.into_iter().map(|scene| Panel::Lines(chart(scene, data, curves, target))).collect(),
     }
 }
 
-fn chart(scene: &str, data: &Data, curves: &[CurveSummary]) -> LineChart {
+fn chart(scene: &str, data: &Data, curves: &[CurveSummary], target: f64) -> LineChart {
     let of_scene: Vec<&CurveSummary> = curves.iter().filter(|c| c.curve.scene == scene).collect();
     let points = || of_scene.iter().flat_map(|c| &c.points);
     let least = |of: fn(&super::summary::CurvePoint) -> f64| points().map(of).fold(f64::INFINITY, f64::min);
@@ -36,7 +36,7 @@ fn chart(scene: &str, data: &Data, curves: &[CurveSummary]) -> LineChart {
     let times = [least(|p| p.wall_seconds), most(|p| p.wall_seconds)];
     let errors = [least(|p| p.rmse), most(|p| p.rmse)];
     let bottom = 0.7 * errors[0];
-    let mut series = guides(times, errors, bottom, &of_scene);
+    let mut series = guides(times, errors, bottom, &of_scene, target);
     series.extend(floor(scene, data, times, bottom));
     series.extend(of_scene.iter().map(|curve| measured(curve, bottom)));
     let axis = |label: &str, limits: [f64; 2]| {
@@ -72,7 +72,13 @@ fn line(name: String, points: &[[f64; 2]]) -> Series {
 }
 
 /// The slope of independent samples, the target, and when each curve reaches it.
-fn guides(times: [f64; 2], errors: [f64; 2], bottom: f64, curves: &[&CurveSummary]) -> Vec<Series> {
+fn guides(
+    times: [f64; 2],
+    errors: [f64; 2],
+    bottom: f64,
+    curves: &[&CurveSummary],
+    target: f64,
+) -> Vec<Series> {
     let mut guides = Vec::new();
     // From the upper left corner down, as far as the chart goes.
     let end = times[1].min(times[0] * (errors[1] / bottom).powi(2));
@@ -81,10 +87,11 @@ fn guides(times: [f64; 2], errors: [f64; 2], bottom: f64, curves: &[&CurveSummar
         "half the error for 4 x the time".to_owned(),
         &[[times[0], at(times[0])], [end, at(end)]],
     ));
-    let target = TARGETS[0];
     if target > bottom && target < errors[1] {
         guides.push(line(format!("target: {target}"), &[[times[0], target], [times[1], target]]));
-        for crossing in curves.iter().filter_map(|c| c.times[0]).filter(|c| !c.is_extrapolated) {
+        for crossing in
+            curves.iter().filter_map(|c| c.times.first().copied().flatten()).filter(|c| !c.is_extrapolated)
+        {
             guides.push(line(String::new(), &[[crossing.time, target], [crossing.time, bottom]]));
         }
     }

@@ -1,10 +1,12 @@
 //! `weekender report`: error against time, for scenes, backends and samplers.
 
+mod calibration;
+mod contender;
 mod data;
 mod figure;
-mod measure;
 mod progress;
 mod reference;
+mod rounding;
 mod summary;
 mod table;
 
@@ -17,15 +19,18 @@ use crate::interrupt::Interrupt;
 use crate::recipe::Recipe;
 use crate::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
 use anyhow::{Context, Result};
+use calibration::Calibration;
+use contender::{Contender, Limits};
 use data::{Curve, Data, SCHEMA, Settings};
-use measure::Limits;
 use progress::Progress;
 use reference::Reference;
-use std::collections::BTreeMap;
+use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
+use summary::SamplerRatio;
+use table::Findings;
 
 /// Samples per pixel of the films that tell rounding.
 const ROUNDING_SAMPLES: u64 = 256;
@@ -55,7 +60,7 @@ pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
 struct Report<'a> {
     options: &'a ReportOptions,
     data: Data,
-    renderers: BTreeMap<String, Box<dyn Renderer>>,
+    contenders: Vec<(String, Contender)>,
     interrupt: Interrupt,
     progress: Progress,
 }
@@ -67,12 +72,7 @@ impl<'a> Report<'a> {
         std::fs::create_dir_all(out)
             .with_context(|| format!("cannot make the directory {}; choose another --out", out.display()))?;
         check_writable(&out.join("report.json"))?;
-        let mut renderers = BTreeMap::new();
-        for (name, choice) in &options.backends {
-            let renderer =
-                backends::create(choice).with_context(|| format!("the backend {name} cannot be had"))?;
-            renderers.insert(name.clone(), renderer);
-        }
+        let contenders = contenders(options)?;
         if let ReferenceChoice::File(path) = &options.reference {
             for recipe in &options.scenes {
                 reference::read(path, recipe)?;
@@ -86,12 +86,13 @@ impl<'a> Report<'a> {
             runs: Vec::new(),
             rounding: Vec::new(),
         });
-        let curves = options.scenes.len() * options.backends.len() * options.samplers.len();
+        let per_scene: usize = contenders.iter().map(|(_, c)| c.samplers(&options.samplers).len()).sum();
+        let curves = options.scenes.len() * per_scene;
         let total = curves as f64 * options.time_limit + 2.0 * EXPECTED_SECONDS * options.scenes.len() as f64;
         Ok(Report {
             options,
             data,
-            renderers,
+            contenders,
             interrupt: Interrupt::install()?,
             progress: Progress::new(options.progress, total),
         })
@@ -110,9 +111,9 @@ impl<'a> Report<'a> {
         // Seeds outside, curves inside: what else the machine does is shared by all curves.
         for seed in 0..self.options.seeds {
             for (recipe, reference) in self.options.scenes.iter().zip(&references) {
-                for (backend, _) in &self.options.backends {
-                    for sampler in &self.options.samplers {
-                        self.run(recipe, reference, backend, *sampler, seed)?;
+                for contender in 0..self.contenders.len() {
+                    for sampler in self.contenders[contender].1.samplers(&self.options.samplers) {
+                        self.run(recipe, reference, contender, sampler, seed)?;
                         if self.interrupt.is_set() {
                             return Ok(());
                         }
@@ -147,24 +148,23 @@ impl<'a> Report<'a> {
         &mut self,
         recipe: &Recipe,
         reference: &Reference,
-        backend: &str,
+        contender: usize,
         sampler: SamplerKind,
         seed: u32,
     ) -> Result<()> {
+        let (backend, contender) = &mut self.contenders[contender];
         let curve = Curve {
             scene: recipe.name.clone(),
-            backend: backend.to_owned(),
+            backend: backend.clone(),
             sampler: sampler.name().to_owned(),
         };
         let seconds = self.options.time_limit / f64::from(self.options.seeds);
         self.progress.at(&format!("{}, {backend}, {}, seed {seed}", curve.scene, curve.sampler), 0.0);
         if !self.data.runs.iter().any(|run| run.curve == curve && run.seed == seed) {
-            let job = job(recipe, sampler, seed)?;
+            let job = job(recipe, sampler, seed, self.options.estimate_error)?;
             let limits = Limits { seconds, samples: self.options.max_samples };
             let interrupt = &self.interrupt;
-            let Some(renderer) = self.renderers.get_mut(backend) else { return Ok(()) };
-            let run =
-                measure::run(&curve, &job, renderer.as_mut(), reference, limits, || !interrupt.is_set())?;
+            let run = contender.run(&curve, &job, reference, limits, &|| !interrupt.is_set())?;
             if let Some(run) = run {
                 self.data.runs.push(run);
                 self.write_json()?;
@@ -179,31 +179,39 @@ impl<'a> Report<'a> {
         let is_there = |data: &Data, backend: &str| {
             data.rounding.iter().any(|row| row.scene == recipe.name && row.backend == backend)
         };
-        let missing: Vec<String> = self
-            .renderers
-            .keys()
-            .filter(|name| name.as_str() != "reference" && !is_there(&self.data, name))
-            .cloned()
+        let missing: Vec<(&str, &mut dyn Renderer)> = self
+            .contenders
+            .iter_mut()
+            .filter(|(name, _)| name != "reference" && !is_there(&self.data, name))
+            .filter_map(|(name, contender)| match contender {
+                Contender::Renderer(renderer) => Some((name.as_str(), renderer.as_mut())),
+                Contender::Control(_) => None,
+            })
             .collect();
         if missing.is_empty() || self.interrupt.is_set() {
             return Ok(());
         }
         self.progress.at(&format!("rounding of {}", recipe.name), 0.0);
-        let job = job(recipe, SamplerKind::Sobol, 0)?;
+        let job = job(recipe, SamplerKind::Sobol, 0, true)?;
         let samples = self.options.max_samples.clamp(2, ROUNDING_SAMPLES);
         let mut exact = backends::create(&backends::BackendChoice::Reference { threads: None })?;
         let exact = film(exact.as_mut(), &job, samples)?;
-        for name in missing {
-            let Some(renderer) = self.renderers.get_mut(&name) else { continue };
-            let film = film(renderer.as_mut(), &job, samples)?;
-            self.data.rounding.push(measure::rounding(&recipe.name, &name, &film, &exact));
+        for (name, renderer) in missing {
+            let film = film(renderer, &job, samples)?;
+            self.data.rounding.push(rounding::rounding(&recipe.name, name, &film, &exact));
         }
         self.progress.finished(EXPECTED_SECONDS);
         self.write_json()
     }
 
     fn write_json(&self) -> Result<()> {
-        let mut text = serde_json::to_string_pretty(&self.data).context("cannot make JSON of the report")?;
+        let curves = summary::summaries(&self.data, &self.options.targets);
+        let written = Written {
+            data: &self.data,
+            calibration: calibration::calibration(&self.data),
+            sampler_ratios: summary::sampler_ratios(&curves),
+        };
+        let mut text = serde_json::to_string_pretty(&written).context("cannot make JSON of the report")?;
         text.push('\n');
         write_text(&self.options.out.join("report.json"), &text)
     }
@@ -211,10 +219,18 @@ impl<'a> Report<'a> {
     fn write(&self) -> Result<()> {
         let out = &self.options.out;
         self.write_json()?;
-        let curves = summary::summaries(&self.data);
-        write_text(&out.join("report.csv"), &table::csv(&self.data))?;
-        write_text(&out.join("report.md"), &table::markdown(&self.data, &curves, &self.options.command))?;
-        let figure = figure::figure(&self.data, &curves);
+        let (data, targets) = (&self.data, self.options.targets.as_slice());
+        let curves = summary::summaries(data, targets);
+        let findings = Findings {
+            data,
+            curves: &curves,
+            targets,
+            calibration: &calibration::calibration(data),
+            sampler_ratios: &summary::sampler_ratios(&curves),
+        };
+        write_text(&out.join("report.csv"), &table::csv(data))?;
+        write_text(&out.join("report.md"), &table::markdown(&findings, &self.options.command))?;
+        let figure = figure::figure(data, &curves, targets[0]);
         for name in ["error-vs-time.png", "error-vs-time.svg"] {
             chart::save(&out.join(name), &figure)?;
         }
@@ -224,6 +240,26 @@ impl<'a> Report<'a> {
         );
         Ok(())
     }
+}
+
+/// `report.json`: what was measured, and what follows from it.
+#[derive(Serialize)]
+struct Written<'a> {
+    #[serde(flatten)]
+    data: &'a Data,
+    calibration: Vec<Calibration>,
+    sampler_ratios: Vec<SamplerRatio>,
+}
+
+/// Who renders, without those that are missing and were not asked for.
+fn contenders(options: &ReportOptions) -> Result<Vec<(String, Contender)>> {
+    let mut contenders = Vec::new();
+    for (name, backend) in &options.backends {
+        let contender =
+            Contender::of(backend).with_context(|| format!("the backend {name} cannot be had"))?;
+        contenders.extend(contender.map(|contender| (name.clone(), contender)));
+    }
+    Ok(contenders)
 }
 
 fn settings(options: &ReportOptions) -> Settings {
@@ -237,6 +273,7 @@ fn settings(options: &ReportOptions) -> Settings {
         seeds: options.seeds,
         time_limit: options.time_limit,
         max_samples: options.max_samples,
+        estimate_error: options.estimate_error,
         reference_samples,
         reference,
     }
@@ -248,8 +285,8 @@ fn resumed(path: &Path, settings: &Settings) -> Option<Data> {
     (data.schema == SCHEMA && data.settings == *settings).then_some(data)
 }
 
-fn job(recipe: &Recipe, sampler: SamplerKind, seed: u32) -> Result<RenderJob> {
-    let settings = RenderSettings { sampler, seed, estimate_error: true, ..recipe.settings };
+fn job(recipe: &Recipe, sampler: SamplerKind, seed: u32, estimate_error: bool) -> Result<RenderJob> {
+    let settings = RenderSettings { sampler, seed, estimate_error, ..recipe.settings };
     Ok(Recipe { settings, ..recipe.clone() }.job()?)
 }
 

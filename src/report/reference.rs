@@ -1,5 +1,6 @@
 //! The pictures that errors are measured against, and the errors.
 
+use super::contender::film_means;
 use super::data::ReferenceUsed;
 use crate::backends::{self, BackendChoice};
 use crate::film::{Description, Film, checkpoint, key};
@@ -49,7 +50,7 @@ impl Reference {
                 "the reference of {scene} has one half and does not tell its own error; render it with --estimate-error on"
             );
         };
-        let means: Vec<[f64; 3]> = (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect();
+        let means = film_means(film);
         let (width, height) = (film.width(), film.height());
         Ok(Reference {
             appearance: appearance(&means, transfer, width, height),
@@ -67,9 +68,8 @@ impl Reference {
         })
     }
 
-    /// The errors of a film of the same size.
-    pub fn errors(&self, film: &Film) -> Errors {
-        let means: Vec<[f64; 3]> = (0..self.means.len()).map(|pixel| film.mean(pixel)).collect();
+    /// The errors of a picture of the same size, linear RGB, row by row from the top.
+    pub fn errors(&self, means: &[[f64; 3]]) -> Errors {
         let (mut squares, mut relative) = (0.0, 0.0);
         for (x, expected) in means.iter().flatten().zip(self.means.iter().flatten()) {
             let square = (x - expected).powi(2);
@@ -77,7 +77,7 @@ impl Reference {
             relative += square / (expected * expected + 1e-2);
         }
         let count = (3 * means.len()) as f64;
-        let shown = appearance(&means, self.transfer, self.width, self.height);
+        let shown = appearance(means, self.transfer, self.width, self.height);
         Errors {
             mse: squares / count - self.used.mse,
             rel_mse: relative / count - self.used.rel_mse,

@@ -2,10 +2,8 @@
 
 use super::data::{Curve, Data, Measured, Run};
 use crate::statistics::fit::{Crossing, Point, PowerLaw, time_to};
+use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// Errors that times are told for.
-pub const TARGETS: [f64; 2] = [0.01, 0.001];
 
 /// The slope is fitted to points of at least this many samples: smaller pictures are done before all threads are.
 const SLOPE_FROM_SAMPLES: u64 = 16;
@@ -21,6 +19,8 @@ pub struct CurvePoint {
     pub trace_seconds: f64,
     /// Median seconds with adding to the film.
     pub wall_seconds: f64,
+    /// Median seconds by the device's own clock; `None` where it has none.
+    pub device_seconds: Option<f64>,
     /// Root of the mean squared error over all pictures.
     pub rmse: f64,
     /// Least and greatest RMSE of a picture.
@@ -46,12 +46,12 @@ pub struct CurveSummary {
     pub slope: Option<[f64; 2]>,
     /// `1 / (MSE seconds)` at the last point.
     pub efficiency: f64,
-    /// Seconds to each of [`TARGETS`].
-    pub times: [Option<Crossing>; 2],
+    /// Seconds to each target.
+    pub times: Vec<Option<Crossing>>,
 }
 
 impl CurveSummary {
-    fn of(curve: &Curve, runs: &[&Run]) -> Self {
+    fn of(curve: &Curve, runs: &[&Run], targets: &[f64]) -> Self {
         let mut by_samples: BTreeMap<u64, Vec<&Measured>> = BTreeMap::new();
         for point in runs.iter().flat_map(|run| &run.points) {
             by_samples.entry(point.samples).or_default().push(point);
@@ -68,7 +68,7 @@ impl CurveSummary {
             about: runs.first().map_or_else(String::new, |run| run.about.clone()),
             slope: PowerLaw::through(&errors[first..]).map(|law| [law.slope, law.slope_deviation]),
             efficiency: points.last().map_or(f64::NAN, |p| 1.0 / (p.rmse * p.rmse * p.wall_seconds)),
-            times: TARGETS.map(|target| time_to(&errors, target)),
+            times: targets.iter().map(|target| time_to(&errors, *target)).collect(),
             points,
         }
     }
@@ -79,12 +79,14 @@ fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
     let mean = |of: fn(&Measured) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / count;
     let mse = mean(|p| p.mse).max(f64::MIN_POSITIVE);
     let estimates: Option<Vec<f64>> = points.iter().map(|p| p.mse_estimate).collect();
+    let device: Option<Vec<f64>> = points.iter().map(|p| p.device_seconds).collect();
     let roots = || points.iter().map(|p| p.mse.max(0.0).sqrt());
     CurvePoint {
         samples,
         seeds: points.len(),
         trace_seconds: median(points.iter().map(|p| p.trace_seconds)),
         wall_seconds: median(points.iter().map(|p| p.wall_seconds)),
+        device_seconds: device.map(|all| median(all.into_iter())),
         rmse: mse.sqrt(),
         range: [roots().fold(f64::INFINITY, f64::min), roots().fold(0.0, f64::max)],
         rel_mse: mean(|p| p.rel_mse),
@@ -105,7 +107,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// All curves that have a run, in the order of their first.
-pub fn summaries(data: &Data) -> Vec<CurveSummary> {
+pub fn summaries(data: &Data, targets: &[f64]) -> Vec<CurveSummary> {
     let mut curves: Vec<&Curve> = Vec::new();
     for run in &data.runs {
         if !curves.contains(&&run.curve) {
@@ -116,13 +118,13 @@ pub fn summaries(data: &Data) -> Vec<CurveSummary> {
         .into_iter()
         .map(|curve| {
             let runs: Vec<&Run> = data.runs.iter().filter(|run| run.curve == *curve).collect();
-            CurveSummary::of(curve, &runs)
+            CurveSummary::of(curve, &runs, targets)
         })
         .collect()
 }
 
 /// How two samplers compare on one backend.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SamplerRatio {
     /// The scene.
     pub scene: String,
@@ -185,6 +187,7 @@ mod tests {
                             samples,
                             trace_seconds: seconds,
                             wall_seconds: seconds,
+                            device_seconds: None,
                             mse,
                             rel_mse: 2.0 * mse,
                             flip: 0.1,
@@ -201,14 +204,14 @@ mod tests {
     fn a_curve_has_its_slope_its_times_and_its_spread() {
         let data_runs = runs("cpu", "sobol", 0.04, 0.01);
         let all: Vec<&Run> = data_runs.iter().collect();
-        let found = CurveSummary::of(&data_runs[0].curve, &all);
+        let found = CurveSummary::of(&data_runs[0].curve, &all, &[0.01, 0.001]);
         let last = found.points.last().unwrap();
         assert!((last.rmse - 0.2 / 16.0).abs() < 1e-12 && last.seeds == 4, "{last:?}");
         assert!(last.range[0] < last.rmse && last.rmse < last.range[1]);
         assert!((last.estimate_ratio.unwrap() - 1.1).abs() < 1e-9);
         assert_eq!(found.points[0].estimate_ratio, None);
         assert!((found.slope.unwrap()[0] + 0.5).abs() < 1e-9);
-        let [first, second] = found.times.map(Option::unwrap);
+        let [first, second] = [0, 1].map(|target| found.times[target].unwrap());
         assert!((first.time - 4.0).abs() < 1e-6 && first.is_extrapolated, "{first:?}");
         assert!((second.time - 400.0).abs() < 1e-4 && second.is_extrapolated);
         assert!((found.efficiency - 2500.0).abs() < 1e-6, "{}", found.efficiency);
@@ -219,7 +222,7 @@ mod tests {
         let all = [runs("cpu", "sobol", 0.01, 0.012), runs("cpu", "independent", 0.04, 0.01)].concat();
         let of = |sampler: &str| {
             let some: Vec<&Run> = all.iter().filter(|run| run.curve.sampler == sampler).collect();
-            CurveSummary::of(&some[0].curve, &some)
+            CurveSummary::of(&some[0].curve, &some, &[0.01])
         };
         let ratios = sampler_ratios(&[of("sobol"), of("independent")]);
         assert_eq!(ratios.len(), 9);

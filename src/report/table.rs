@@ -1,7 +1,8 @@
 //! `report.md` and `report.csv`.
 
-use super::data::{Data, Measured};
-use super::summary::{CurvePoint, CurveSummary, TARGETS, sampler_ratios};
+use super::calibration::{Calibration, TOLERANCE};
+use super::data::{Curve, Data, Measured};
+use super::summary::{CurvePoint, CurveSummary, SamplerRatio};
 use crate::statistics::fit::Crossing;
 use std::fmt::Write;
 
@@ -11,18 +12,19 @@ const BASES: [&str; 2] = ["c89", "scalar"];
 /// Every measurement, a line for each picture and number of samples.
 pub fn csv(data: &Data) -> String {
     let mut text = String::from(
-        "scene,backend,sampler,seed,samples,trace_seconds,wall_seconds,mse,rel_mse,flip,mse_estimate,rejected\n",
+        "scene,backend,sampler,seed,samples,trace_seconds,wall_seconds,device_seconds,mse,rel_mse,flip,mse_estimate,rejected\n",
     );
     for run in &data.runs {
         for point in &run.points {
             let Measured { samples, trace_seconds, wall_seconds, mse, rel_mse, flip, rejected, .. } = point;
-            let estimate = point.mse_estimate.map_or_else(String::new, |mse| mse.to_string());
+            let optional = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+            let (device, estimate) = (optional(point.device_seconds), optional(point.mse_estimate));
             let curve = &run.curve;
             // Names of scenes may be those of files.
             let scene = curve.scene.replace([',', '"', '\n'], "_");
             let _ = writeln!(
                 text,
-                "{scene},{},{},{},{samples},{trace_seconds},{wall_seconds},{mse},{rel_mse},{flip},{estimate},{rejected}",
+                "{scene},{},{},{},{samples},{trace_seconds},{wall_seconds},{device},{mse},{rel_mse},{flip},{estimate},{rejected}",
                 curve.backend, curve.sampler, run.seed
             );
         }
@@ -30,8 +32,23 @@ pub fn csv(data: &Data) -> String {
     text
 }
 
+/// What the tables are made from.
+pub struct Findings<'a> {
+    /// What was measured.
+    pub data: &'a Data,
+    /// Its curves.
+    pub curves: &'a [CurveSummary],
+    /// Errors that times are told for.
+    pub targets: &'a [f64],
+    /// Estimates against true errors.
+    pub calibration: &'a [Calibration],
+    /// Samplers against each other.
+    pub sampler_ratios: &'a [SamplerRatio],
+}
+
 /// The report for readers. `command` is what made it.
-pub fn markdown(data: &Data, curves: &[CurveSummary], command: &str) -> String {
+pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
+    let Findings { data, curves, targets, calibration: calibrations, sampler_ratios } = *findings;
     let mut text = String::from("# Error against time\n\n");
     let settings = &data.settings;
     let _ = writeln!(
@@ -55,13 +72,13 @@ pub fn markdown(data: &Data, curves: &[CurveSummary], command: &str) -> String {
                 reference.mse.sqrt()
             );
         }
-        overview(&mut text, &of_scene);
+        overview(&mut text, &of_scene, targets);
         for curve in &of_scene {
             points(&mut text, curve);
         }
     }
-    samplers(&mut text, curves);
-    calibration(&mut text, curves);
+    samplers(&mut text, sampler_ratios);
+    calibration(&mut text, calibrations);
     rounding(&mut text, data, curves);
     text
 }
@@ -72,7 +89,8 @@ linear radiance, where white is 1: at .05 a picture is grainy, at .01 nearly cle
 left. *relMSE* weighs errors in the dark more; *FLIP* is how different the shown pictures look to someone who
 switches between them, 0 to 1. The *slope* is by which power of the seconds the RMSE falls: -.5 means that half the
 error costs four times the time. *Efficiency* is 1/(RMSE^2 seconds) at the last point: twice as much is the same picture in half
-the time. Times with ~ lie beyond what was measured. Seconds are medians over the pictures, errors means.
+the time. Times with ~ lie beyond what was measured. *Trace* seconds are the
+tracer's own, *wall* seconds with adding to the film, *device* seconds by a GPU's clock. Seconds are medians over the pictures, errors means.
 ";
 
 fn scenes(curves: &[CurveSummary]) -> Vec<&str> {
@@ -86,45 +104,49 @@ fn scenes(curves: &[CurveSummary]) -> Vec<&str> {
 }
 
 /// One row a curve.
-fn overview(text: &mut String, curves: &[&CurveSummary]) {
+fn overview(text: &mut String, curves: &[&CurveSummary], targets: &[f64]) {
     let bases: Vec<&str> =
         BASES.into_iter().filter(|base| curves.iter().any(|c| c.curve.backend == *base)).collect();
-    let mut head = format!(
-        "| backend | sampler | slope | efficiency | to RMSE {} | to RMSE {} |",
-        TARGETS[0], TARGETS[1]
-    );
+    let mut head = "| backend | sampler | slope | efficiency |".to_owned();
+    for target in targets {
+        let _ = write!(head, " to RMSE {target} |");
+    }
     for base in &bases {
         let _ = write!(head, " times {base} |");
     }
-    let _ = writeln!(text, "{head}\n|{}", " --- |".repeat(6 + bases.len()));
+    let _ = writeln!(text, "{head}\n|{}", " --- |".repeat(4 + targets.len() + bases.len()));
     for curve in curves {
         let slope =
             curve.slope.map_or("-".to_owned(), |[slope, deviation]| format!("{slope:.2} ± {deviation:.2}"));
-        let [coarse, fine] = curve.times.map(crossing);
         let _ = write!(
             text,
-            "| {} | {} | {slope} | {} | {coarse} | {fine} |",
+            "| {} | {} | {slope} | {} |",
             curve.curve.backend,
             curve.curve.sampler,
             number(curve.efficiency)
         );
+        for time in &curve.times {
+            let _ = write!(text, " {} |", crossing(*time));
+        }
         for base in &bases {
             let _ = write!(text, " {} |", ratio(curve, curves, base));
         }
         text.push('\n');
     }
-    if !bases.is_empty() {
-        text.push_str(
-            "\n*times X*: how many times as long X takes to an RMSE of .01, with its own best sampler.\n",
+    if let (false, [target, ..]) = (bases.is_empty(), targets) {
+        let _ = writeln!(
+            text,
+            "\n*times X*: how many times as long X takes to an RMSE of {target}, with its own best sampler."
         );
     }
 }
 
 /// How many times as long `base` takes to the first target.
 fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
-    let of_base = curves.iter().filter(|c| c.curve.backend == base).filter_map(|c| c.times[0]);
+    let first = |curve: &CurveSummary| curve.times.first().copied().flatten();
+    let of_base = curves.iter().filter(|c| c.curve.backend == base).filter_map(|c| first(c));
     let best = of_base.min_by(|a, b| a.time.total_cmp(&b.time));
-    match (best, curve.times[0]) {
+    match (best, first(curve)) {
         (Some(base), Some(mine)) => {
             let mark = if base.is_extrapolated || mine.is_extrapolated { "~" } else { "" };
             format!("{mark}{:.2}", base.time / mine.time)
@@ -143,27 +165,27 @@ fn crossing(crossing: Option<Crossing>) -> String {
 fn points(text: &mut String, curve: &CurveSummary) {
     let _ = writeln!(
         text,
-        "\n### {}: {}, {}\n\n{}\n\n| samples | trace s | wall s | RMSE | least to greatest | relMSE | FLIP | estimate / actual |\n|{}",
+        "\n### {}: {}, {}\n\n{}\n\n| samples | trace s | wall s | device s | RMSE | least to greatest | relMSE | FLIP | estimate / actual |\n|{}",
         curve.curve.scene,
         curve.curve.backend,
         curve.curve.sampler,
         curve.about,
-        " ---: |".repeat(8)
+        " ---: |".repeat(9)
     );
     for point in &curve.points {
         let CurvePoint {
             samples, trace_seconds, wall_seconds, rmse, range: [low, high], rel_mse, flip, ..
         } = point;
+        let device = point.device_seconds.map_or("-".to_owned(), |seconds| format!("{seconds:.4}"));
         let estimate = point.estimate_ratio.map_or("-".to_owned(), |ratio| format!("{ratio:.3}"));
         let _ = writeln!(
             text,
-            "| {samples} | {trace_seconds:.4} | {wall_seconds:.4} | {rmse:.2e} | {low:.2e} to {high:.2e} | {rel_mse:.2e} | {flip:.4} | {estimate} |"
+            "| {samples} | {trace_seconds:.4} | {wall_seconds:.4} | {device} | {rmse:.2e} | {low:.2e} to {high:.2e} | {rel_mse:.2e} | {flip:.4} | {estimate} |"
         );
     }
 }
 
-fn samplers(text: &mut String, curves: &[CurveSummary]) {
-    let ratios = sampler_ratios(curves);
+fn samplers(text: &mut String, ratios: &[SamplerRatio]) {
     if ratios.is_empty() {
         return;
     }
@@ -181,23 +203,35 @@ fn samplers(text: &mut String, curves: &[CurveSummary]) {
     }
 }
 
-fn calibration(text: &mut String, curves: &[CurveSummary]) {
-    text.push_str(
-        "\n## Is the estimate true?\n\nThe RMSE that a picture's two halves estimate without a reference, over the \
-         actual one.\n\n| scene | backend | sampler | samples | estimate / actual |\n| --- | --- | --- | ---: | ---: |\n",
+fn calibration(text: &mut String, rows: &[Calibration]) {
+    if rows.is_empty() {
+        return;
+    }
+    let off = rows.iter().filter(|row| !row.holds()).count();
+    let largest = rows.iter().map(|row| (row.ratio - 1.0).abs()).fold(0.0, f64::max);
+    let _ = writeln!(
+        text,
+        "\n## Is the estimate true?\n\nThe RMSE that a picture's two halves predict without a reference, and the \
+         actual one, over all pictures of a curve. {} of {} ratios are 1 ± {TOLERANCE}; the farthest is off by \
+         {largest:.3}.\n\n| scene | backend | sampler | samples | pictures | predicted | actual | predicted / actual |\n\
+         | --- | --- | --- | ---: | ---: | ---: | ---: | ---: |",
+        rows.len() - off,
+        rows.len()
     );
-    for curve in curves {
-        for point in curve.points.iter().filter(|p| p.samples >= 16) {
-            if let Some(ratio) = point.estimate_ratio {
-                let Curve { scene, backend, sampler } = &curve.curve;
-                let _ =
-                    writeln!(text, "| {scene} | {backend} | {sampler} | {} | {ratio:.3} |", point.samples);
-            }
-        }
+    for row in rows {
+        let Curve { scene, backend, sampler } = &row.curve;
+        let _ = writeln!(
+            text,
+            "| {scene} | {backend} | {sampler} | {} | {} | {} | {} | {:.3} ± {:.3} |",
+            row.samples,
+            row.seeds,
+            number(row.predicted_rmse),
+            number(row.actual_rmse),
+            row.ratio,
+            row.deviation
+        );
     }
 }
-
-use super::data::Curve;
 
 fn rounding(text: &mut String, data: &Data, curves: &[CurveSummary]) {
     if data.rounding.is_empty() {

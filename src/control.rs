@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// `reference/rt_weekend.c`.
-pub const SOURCE: &str = include_str!("../../reference/rt_weekend.c");
+pub const SOURCE: &str = include_str!("../reference/rt_weekend.c");
 
 /// How it is compiled.
 pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
@@ -114,6 +114,11 @@ impl Control {
         let path = self.directory.path().join(format!("{name}.txt"));
         fs::write(&path, scene_text(job.scene(), job.camera()))?;
         Ok(path)
+    }
+
+    /// A file that goes away with the control.
+    pub fn scratch(&self, name: &str) -> PathBuf {
+        self.directory.path().join(name)
     }
 
     /// Renders `samples` of every pixel of a scene file, or of the three spheres. `out` gets the picture, .ppm as shown or .pfm linear. Ends early when

@@ -1,0 +1,92 @@
+//! Whether the error that pictures tell of themselves is true.
+
+use super::data::{Curve, Data, Measured};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The estimate counts as true if it is off by at most this share.
+pub const TOLERANCE: f64 = 0.05;
+
+/// Pictures of fewer samples are not held against their estimate: no stop is decided by it.
+const FROM_SAMPLES: u64 = 16;
+
+/// The estimates of one curve's pictures at one number of samples, held against their true errors.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Calibration {
+    /// The curve.
+    #[serde(flatten)]
+    pub curve: Curve,
+    /// Samples per pixel.
+    pub samples: u64,
+    /// Pictures.
+    pub seeds: usize,
+    /// Root of the mean of their estimates of the squared error.
+    pub predicted_rmse: f64,
+    /// Root of the mean of their squared errors.
+    pub actual_rmse: f64,
+    /// The one over the other.
+    pub ratio: f64,
+    /// Its standard deviation, from leaving out each picture in turn.
+    pub deviation: f64,
+}
+
+impl Calibration {
+    /// Whether the ratio is 1, within [`TOLERANCE`].
+    pub fn holds(&self) -> bool {
+        (self.ratio - 1.0).abs() <= TOLERANCE
+    }
+
+    fn of(curve: &Curve, samples: u64, pairs: &[[f64; 2]]) -> Option<Self> {
+        let count = pairs.len() as f64;
+        let [predicted, actual] = [0, 1].map(|side| pairs.iter().map(|pair| pair[side]).sum::<f64>());
+        let left_out = || pairs.iter().map(|pair| ((predicted - pair[0]) / (actual - pair[1])).sqrt());
+        let mean = left_out().sum::<f64>() / count;
+        let squares: f64 = left_out().map(|ratio| (ratio - mean).powi(2)).sum();
+        let is_sound = pairs.len() > 1 && predicted > 0.0 && actual > 0.0;
+        is_sound.then(|| Calibration {
+            curve: curve.clone(),
+            samples,
+            seeds: pairs.len(),
+            predicted_rmse: (predicted / count).sqrt(),
+            actual_rmse: (actual / count).sqrt(),
+            ratio: (predicted / actual).sqrt(),
+            deviation: (squares * (count - 1.0) / count).sqrt(),
+        })
+    }
+}
+
+/// Estimate and squared error of each picture, by curve and samples.
+type Pairs<'a> = BTreeMap<(&'a Curve, u64), Vec<[f64; 2]>>;
+
+/// All curves whose pictures tell an error, at every number of samples from 16 on.
+pub fn calibration(data: &Data) -> Vec<Calibration> {
+    let mut pairs: Pairs<'_> = BTreeMap::new();
+    for run in &data.runs {
+        for Measured { samples, mse, mse_estimate, .. } in &run.points {
+            if let (Some(estimate), FROM_SAMPLES..) = (mse_estimate, *samples) {
+                pairs.entry((&run.curve, *samples)).or_default().push([*estimate, *mse]);
+            }
+        }
+    }
+    let rows = pairs.iter().filter_map(|((curve, samples), pairs)| Calibration::of(curve, *samples, pairs));
+    rows.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ratio_has_its_deviation() {
+        let curve = Curve { scene: "s".into(), backend: "cpu".into(), sampler: "sobol".into() };
+        let of = |pairs: &[[f64; 2]]| Calibration::of(&curve, 16, pairs);
+        let even = of(&[[1.21, 1.0]; 4]).unwrap();
+        assert!((even.ratio - 1.1).abs() < 1e-12 && even.deviation < 1e-12 && !even.holds(), "{even:?}");
+        // The mean of n values of deviation d is uncertain by d over the root of n, its root by half of that.
+        let pairs: Vec<[f64; 2]> = (0..24).map(|k| [if k % 2 == 0 { 0.9 } else { 1.1 }, 1.0]).collect();
+        let uneven = of(&pairs).unwrap();
+        let expected = 0.5 * 0.1 / f64::sqrt(23.0);
+        assert!(uneven.holds() && (uneven.deviation / expected - 1.0).abs() < 0.02, "{uneven:?}");
+        assert_eq!(of(&[[1.0, 1.0]]), None);
+    }
+}

@@ -1,0 +1,214 @@
+//! Who renders a curve: a backend, or the plain C89 program.
+
+use super::data::{Curve, Measured, Run};
+use super::reference::Reference;
+use crate::backends;
+use crate::cli::ReportBackend;
+use crate::control::{Control, ControlError};
+use crate::output::{Encoding, read_picture};
+use crate::render::{RenderJob, Renderer, SamplerKind};
+use anyhow::{Context, Result};
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// How far a picture grows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Seconds of rendering.
+    pub seconds: f64,
+    /// Samples per pixel.
+    pub samples: u64,
+}
+
+/// Who renders a curve.
+pub enum Contender {
+    /// A backend, whose picture grows.
+    Renderer(Box<dyn Renderer>),
+    /// The control, which begins anew for every number of samples.
+    Control(Control),
+}
+
+impl Contender {
+    /// Makes it ready. `None` for a control that is not there and was not asked for.
+    ///
+    /// # Errors
+    /// What is missing.
+    pub fn of(backend: &ReportBackend) -> Result<Option<Self>> {
+        Ok(match backend {
+            ReportBackend::Renderer(choice) => Some(Contender::Renderer(backends::create(choice)?)),
+            ReportBackend::Control { is_asked_for } => match Control::compile() {
+                Ok(control) => Some(Contender::Control(control)),
+                Err(error) if *is_asked_for => return Err(error.into()),
+                Err(_) => None,
+            },
+        })
+    }
+
+    /// Which of the samplers it has: the control has one of its own, of independent numbers.
+    pub fn samplers(&self, asked_for: &[SamplerKind]) -> Vec<SamplerKind> {
+        match self {
+            Contender::Renderer(_) => asked_for.to_vec(),
+            Contender::Control(_) => vec![SamplerKind::Independent],
+        }
+    }
+
+    /// Renders 1, 2, 4 ... samples and measures each. The last step is the last that should end within the limits;
+    /// two samples are always taken. `None` if `go_on` said no.
+    ///
+    /// # Errors
+    /// If it fails.
+    pub fn run(
+        &mut self,
+        curve: &Curve,
+        job: &RenderJob,
+        reference: &Reference,
+        limits: Limits,
+        go_on: &dyn Fn() -> bool,
+    ) -> Result<Option<Run>> {
+        let begin = Instant::now();
+        let (about, prepare_seconds, points) = match self {
+            Contender::Renderer(renderer) => {
+                let mut growing = Growing::new(renderer.as_mut(), job)?;
+                let prepared = begin.elapsed();
+                growing.warm_up()?;
+                let points = powers_of_two(limits, go_on, |samples| growing.grow(samples, reference))?;
+                (growing.about(), prepared, points)
+            }
+            Contender::Control(control) => {
+                let scene = control.write_scene(job, "report")?;
+                let prepared = begin.elapsed();
+                let points = powers_of_two(limits, go_on, |samples| {
+                    let measured = by_control(control, &scene, job, samples, reference, go_on);
+                    measured.context("the C89 program")
+                })?;
+                (format!("C89, {} -O2, 1 thread", control.compiler), prepared, points)
+            }
+        };
+        Ok(points.map(|points| Run {
+            curve: curve.clone(),
+            seed: job.settings().seed,
+            about,
+            prepare_seconds: prepare_seconds.as_secs_f64(),
+            points,
+        }))
+    }
+}
+
+fn powers_of_two(
+    limits: Limits,
+    go_on: &dyn Fn() -> bool,
+    mut measure: impl FnMut(u64) -> Result<Option<Measured>>,
+) -> Result<Option<Vec<Measured>>> {
+    let mut points = Vec::new();
+    let mut samples = 1;
+    while samples <= limits.samples.max(2) {
+        if !go_on() {
+            return Ok(None);
+        }
+        let Some(point) = measure(samples)? else { return Ok(None) };
+        points.push(point);
+        // Twice the samples take twice as long.
+        if samples >= 2 && 2.0 * point.wall_seconds > limits.seconds {
+            break;
+        }
+        samples *= 2;
+    }
+    Ok(Some(points))
+}
+
+/// A film that grows.
+struct Growing<'a> {
+    renderer: &'a mut dyn Renderer,
+    job: &'a RenderJob,
+    film: crate::film::Film,
+    trace: Duration,
+    wall: Duration,
+    rejected: u64,
+    /// The device's clock when the film began.
+    device_begin: Option<Duration>,
+}
+
+impl<'a> Growing<'a> {
+    fn new(renderer: &'a mut dyn Renderer, job: &'a RenderJob) -> Result<Self> {
+        renderer.prepare(job, &AtomicBool::new(false))?;
+        Ok(Growing {
+            renderer,
+            job,
+            film: job.new_film(),
+            trace: Duration::ZERO,
+            wall: Duration::ZERO,
+            rejected: 0,
+            device_begin: None,
+        })
+    }
+
+    /// What is first touched takes longer: caches, threads and the system's memory are warmed outside the clock.
+    fn warm_up(&mut self) -> Result<()> {
+        self.renderer.accumulate(self.job, 0..1, &mut self.job.new_film(), &AtomicBool::new(false))?;
+        self.device_begin = self.renderer.device_time();
+        Ok(())
+    }
+
+    fn about(&self) -> String {
+        let info = self.renderer.info();
+        format!("{} {}, {} lanes, {} threads", info.name, info.device, info.lanes, info.threads)
+    }
+
+    fn grow(&mut self, samples: u64, reference: &Reference) -> Result<Option<Measured>> {
+        let range = self.film.sample_count()..samples;
+        let begin = Instant::now();
+        let stats = self.renderer.accumulate(self.job, range, &mut self.film, &AtomicBool::new(false))?;
+        self.wall += begin.elapsed();
+        self.trace += stats.trace;
+        self.rejected += stats.rejected;
+        let device = self.renderer.device_time().zip(self.device_begin).map(|(now, begin)| now - begin);
+        let errors = reference.errors(&film_means(&self.film));
+        Ok(Some(Measured {
+            samples,
+            trace_seconds: self.trace.as_secs_f64(),
+            wall_seconds: self.wall.as_secs_f64(),
+            device_seconds: device.map(|time| time.as_secs_f64()),
+            mse: errors.mse,
+            rel_mse: errors.rel_mse,
+            flip: errors.flip,
+            mse_estimate: self.film.error().map(|error| error.rmse.powi(2)),
+            rejected: self.rejected,
+        }))
+    }
+}
+
+/// The means of a film's pixels, linear RGB, row by row from the top.
+pub fn film_means(film: &crate::film::Film) -> Vec<[f64; 3]> {
+    (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
+}
+
+fn by_control(
+    control: &Control,
+    scene: &PathBuf,
+    job: &RenderJob,
+    samples: u64,
+    reference: &Reference,
+    go_on: &dyn Fn() -> bool,
+) -> Result<Option<Measured>> {
+    let out = control.scratch("report.pfm");
+    let settings = job.settings();
+    let ran = control.run(Some(scene), settings, samples, settings.seed, Some(&out), &|| !go_on());
+    let run = match ran {
+        Err(ControlError::Cancelled) => return Ok(None),
+        ran => ran?,
+    };
+    // The encoding is that of whole numbers, of which a PFM has none.
+    let errors = reference.errors(&read_picture(&out, Encoding::Srgb)?.pixels);
+    Ok(Some(Measured {
+        samples,
+        trace_seconds: run.processor_seconds,
+        wall_seconds: run.seconds,
+        device_seconds: None,
+        mse: errors.mse,
+        rel_mse: errors.rel_mse,
+        flip: errors.flip,
+        mse_estimate: None,
+        rejected: 0,
+    }))
+}
