@@ -41,7 +41,8 @@ fn data(at: &Path) -> serde_json::Value {
 fn a_report_has_its_files_and_figures_that_make_sense() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    let (code, text, errors) = report(&[&SMALL[..], &["--backends", "cpu,baseline"]].concat(), at);
+    let (code, text, errors) =
+        report(&[&SMALL[..], &["--backends", "cpu,baseline", "--target", "0.02"]].concat(), at);
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("error-vs-time.png"), "{text}");
     let data_found = data(at);
@@ -76,6 +77,7 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
     let table = fs::read_to_string(at.join("found/report.md")).unwrap();
     for part in [
         "| cpu | sobol |",
+        "| to RMSE 0.02 | to RMSE 0.01 | to RMSE 0.001 |",
         "Sobol points against",
         "Is the estimate true",
         "What rounding costs",
@@ -85,6 +87,88 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
     }
     assert!(image::open(at.join("found/error-vs-time.png")).unwrap().width() > 500);
     assert!(fs::read_to_string(at.join("found/error-vs-time.svg")).unwrap().contains("cpu, sobol"));
+}
+
+#[test]
+fn the_control_is_a_curve_of_its_own() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let (code, _, errors) =
+        report(&[&SMALL[..], &["--backends", "cpu,c89", "--samplers", "independent"]].concat(), at);
+    assert_eq!(code, 0, "{errors}");
+    let found = data(at);
+    let runs = found["runs"].as_array().unwrap();
+    // Independent samples of the same picture have the same error, whoever draws them: all runs at 32 samples.
+    let mean = |backend: &str| {
+        let of = runs.iter().filter(|run| run["backend"] == backend);
+        let errors: Vec<f64> = of.map(|run| run["points"][5]["mse"].as_f64().unwrap()).collect();
+        assert_eq!(errors.len(), 4, "{backend}");
+        errors.iter().sum::<f64>() / 4.0
+    };
+    let ratio = mean("c89") / mean("cpu");
+    assert!((0.85..1.18).contains(&ratio), "{ratio}");
+    assert!(found["calibration"].as_array().unwrap().iter().all(|row| row["backend"] == "cpu"));
+    let table = fs::read_to_string(at.join("found/report.md")).unwrap();
+    assert!(table.contains("times c89") && table.contains("| c89 | independent |"), "{table}");
+    // Without a compiler there is none, which is said if it was asked for.
+    let failing = Command::new(env!("CARGO_BIN_EXE_weekender"))
+        .args(["report", "--out", "other", "--backends", "c89"])
+        .env("CC", "no-such-compiler")
+        .current_dir(at)
+        .output()
+        .unwrap();
+    let message = String::from_utf8(failing.stderr).unwrap();
+    assert_eq!(failing.status.code(), Some(2), "{message}");
+    assert!(message.contains("no-such-compiler") && message.contains("CC"), "{message}");
+}
+
+#[test]
+fn calibration_holds_estimates_against_true_errors() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let small =
+        ["--out", "found", "--calibration", "--size", "48x27", "--max-samples", "32", "--seeds", "12"];
+    let (code, _, errors) =
+        report(&[&small[..], &["--scenes", "three-spheres", "--backends", "cpu"]].concat(), at);
+    assert_eq!(code, 0, "{errors}");
+    let found = data(at);
+    assert_eq!(found["settings"]["reference_samples"], 512);
+    let rows = found["calibration"].as_array().unwrap();
+    let what: Vec<_> =
+        rows.iter().map(|row| (row["sampler"].as_str().unwrap(), row["samples"].as_u64().unwrap())).collect();
+    assert_eq!(what, [("independent", 16), ("independent", 32), ("sobol", 16), ("sobol", 32)]);
+    for row in rows {
+        let of = |key: &str| row[key].as_f64().unwrap();
+        assert_eq!(of("seeds"), 12.0);
+        assert!((of("predicted_rmse") / of("actual_rmse") - of("ratio")).abs() < 1e-9, "{row}");
+        // The deviation is itself uncertain, hence 4 of them, and not less than a hundredth.
+        assert!(
+            (of("ratio") - 1.0).abs() < 4.0 * of("deviation").max(0.01) && of("deviation") < 0.05,
+            "{row}"
+        );
+    }
+    let table = fs::read_to_string(at.join("found/report.md")).unwrap();
+    assert!(table.contains("4 of 4 ratios are 1 ± 0.05"), "{table}");
+    // One half has no estimate that could be held against anything.
+    let (code, _, message) = report(&[&small[..], &["--estimate-error", "off"]].concat(), at);
+    assert_eq!(code, 2, "{message}");
+    assert!(message.contains("--estimate-error") && message.contains("--calibration"), "{message}");
+}
+
+#[test]
+fn one_half_is_measured_without_an_estimate() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let arguments = ["--backends", "cpu", "--estimate-error", "off"];
+    let (code, _, errors) = report(&[&SMALL[..], &arguments[..]].concat(), at);
+    assert_eq!(code, 0, "{errors}");
+    let found = data(at);
+    assert!(found["runs"].as_array().unwrap().iter().all(|run| run["points"][5]["mse_estimate"].is_null()));
+    assert!(found["calibration"].as_array().unwrap().is_empty());
+    let ratios = found["sampler_ratios"].as_array().unwrap();
+    let of = |samples: u64| ratios.iter().find(|row| row["samples"] == samples).unwrap();
+    assert!(of(32)["at_equal_samples"].as_f64().unwrap() > 1.5, "{ratios:?}");
+    assert!(!fs::read_to_string(at.join("found/report.md")).unwrap().contains("Is the estimate true"));
 }
 
 #[test]
@@ -126,7 +210,7 @@ fn what_cannot_be_measured_is_refused_before_anything_is_rendered() {
         (&[], &["--out"]),
         (&["--out", "file"], &["file", "choose another"]),
         (&["--out", "o", "--scenes", "three-sphere"], &["three-sphere", "three-spheres"]),
-        (&["--out", "o", "--backends", "cpu,tpu"], &["tpu", "scalar"]),
+        (&["--out", "o", "--backends", "cpu,tpu"], &["tpu", "scalar", "c89"]),
         (&["--out", "o", "--reference", "x.exr"], &["--reference", "--scenes"]),
         (&["--out", "o", "--scenes", "book", "--reference", "x.exr"], &["x.exr"]),
         (&["--out", "o", "--backends", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
