@@ -88,6 +88,7 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
         .y_axis_formatter(|mark, _| power(mark.value, ""))
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
+        .grid_color(weak.gamma_multiply(GRID_SHARE))
         .label_formatter(|hover| {
             let (HoverPosition::NearDataPoint { position: at, .. }
             | HoverPosition::Elsewhere { position: at }) = hover;
@@ -124,13 +125,21 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
     );
 }
 
-/// A line for each power of ten; none on a scale so wide that they would be one grey.
+/// How much of the colour of weak text the grid has.
+const GRID_SHARE: f32 = 0.4;
+
+/// Lines at powers of ten, and paler ones at 2 and 5 times them; none on a scale so wide that they would be one grey.
 fn decades(grid: GridInput) -> Vec<GridMark> {
-    let (low, high) = (grid.bounds.0.ceil(), grid.bounds.1.floor());
+    let (low, high) = grid.bounds;
     if !(0.0..=MOST_DECADES).contains(&(high - low)) {
         return Vec::new();
     }
-    (0..=(high - low) as u32).map(|step| GridMark { value: low + f64::from(step), step_size: 1.0 }).collect()
+    let powers = low.floor() as i32..=high.floor() as i32;
+    let marks = powers.flat_map(|power| {
+        [(1.0_f64, 1.0), (2.0, 0.3), (5.0, 0.3)]
+            .map(|(digit, step_size)| GridMark { value: f64::from(power) + digit.log10(), step_size })
+    });
+    marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
 }
 
 /// Moves the target with the pointer that took hold of its line.
@@ -280,12 +289,8 @@ fn csv(history: &[HistoryPoint]) -> String {
 
 /// A mark of a scale in powers of ten.
 fn power(exponent: f64, unit: &str) -> String {
-    let value = 10_f64.powf(exponent);
-    if (exponent - exponent.round()).abs() > 1e-6 {
-        String::new()
-    } else {
-        format!("{}{unit}", compact(value))
-    }
+    let decade = 10_f64.powf((exponent + 1e-6).floor());
+    format!("{}{unit}", compact((10_f64.powf(exponent) / decade).round() * decade))
 }
 
 #[cfg(test)]

@@ -5,10 +5,11 @@ use super::reference::Reference;
 use crate::backends;
 use crate::cli::ReportBackend;
 use crate::control::{Control, ControlError};
+use crate::film::Film;
 use crate::output::{Encoding, read_picture};
 use crate::render::{RenderJob, Renderer, SamplerKind};
 use anyhow::{Context, Result};
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -121,7 +122,7 @@ fn powers_of_two(
 struct Growing<'a> {
     renderer: &'a mut dyn Renderer,
     job: &'a RenderJob,
-    film: crate::film::Film,
+    film: Film,
     trace: Duration,
     wall: Duration,
     rejected: u64,
@@ -179,13 +180,13 @@ impl<'a> Growing<'a> {
 }
 
 /// The means of a film's pixels, linear RGB, row by row from the top.
-pub fn film_means(film: &crate::film::Film) -> Vec<[f64; 3]> {
+pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
     (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
 }
 
 fn by_control(
     control: &Control,
-    scene: &PathBuf,
+    scene: &Path,
     job: &RenderJob,
     samples: u64,
     reference: &Reference,
