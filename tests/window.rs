@@ -914,3 +914,48 @@ fn escape_leaves_a_control_before_tab_hides_the_panels() {
     harness.run_steps(2);
     assert!(!harness.state_mut().remembered_mut().has_panels);
 }
+
+/// Where the pointer says that it can move the plot's target, as low as possible.
+fn grip_of_target(harness: &mut Harness<'_, Window>) -> Pos2 {
+    let at = |y: f32| egui::pos2(640.0, y);
+    for y in (1000..1390).rev() {
+        harness.event(egui::Event::PointerMoved(at(y as f32)));
+        harness.step();
+        // The cursor of the frame tells of the hover that the last one found.
+        harness.step();
+        // A panel's edge has the same cursor, but is above the plot's middle.
+        if harness.output().platform_output.cursor_icon == egui::CursorIcon::ResizeVertical {
+            return at(y as f32);
+        }
+    }
+    panic!("the target cannot be taken hold of");
+}
+
+#[test]
+fn the_target_is_dragged_in_the_plot() {
+    let mut harness =
+        open("--scene three-spheres --size 64x36 --device cpu --noise-target 0.002 --samples 4000000000");
+    send(&mut harness, Command::Plot);
+    until(&mut harness, "an estimate", has_samples(16));
+    send(&mut harness, Command::Pause);
+    let target = |harness: &Harness<'_, Window>| harness.state().document().stop.noise.unwrap();
+    let start = grip_of_target(&mut harness);
+    assert_eq!(target(&harness), 0.002);
+    let button = |pos: Pos2, pressed| egui::Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(button(start, true));
+    harness.step();
+    for step in 1..=8 {
+        harness.event(egui::Event::PointerMoved(start - egui::vec2(0.0, 2.0) * step as f32));
+        harness.step();
+    }
+    harness.event(button(start - egui::vec2(0.0, 16.0), false));
+    harness.run_steps(2);
+    // Up is a larger error.
+    let moved = target(&harness);
+    assert!(moved > 0.0022 && moved < 0.2, "{moved}");
+}
