@@ -3,7 +3,7 @@
 //! A lane owns a pixel and walks through a block of its samples. When its path ends it starts its next sample at
 //! once, and when its block is done it is dealt the next (block, pixel) of the tile; so a packet never waits for
 //! its longest path. A lane's sums stay in 32-bit registers until its block is done. Several packets take turns
-//! in two phases, intersect and shade, so that the latency of one hides behind the others.
+//! in three phases, intersect, collect and send on, so that the latency of one hides behind the others.
 //!
 //! Twin: shaders/path.wgsl
 
@@ -434,9 +434,10 @@ fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet:
         }
     }
     let next = select3::<L>(ended, camera.direction, bounced.direction);
-    // Where the unit vector cancels the normal, rounding is all that is left: such a ray stays shorter than 1.
-    let length2 = L::max(l.constant(NEAR_ZERO), dot::<L>(next, next));
-    let next = next.scale(one / L::sqrt(length2));
+    let length2 = dot::<L>(next, next);
+    let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
+    let next = select3::<L>(vanishes, normal, next);
+    let next = next.scale(one / L::sqrt(L::select(vanishes, one, length2)));
     // A fuzzy reflection into the surface is absorbed.
     packet.absorbed = bounced.is_metal & !L::lt(zero, dot::<L>(next, normal)) & !ended;
     let inward = (front & bounced.refracts) | !(front | bounced.refracts);
