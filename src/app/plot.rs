@@ -154,13 +154,7 @@ fn drag_target(
     let held = ui.scope_id().with("target is held");
     let is_near = ((pointer - target.log10()) as f32 * points_a_unit).abs() <= GRIP;
     if plot.drag_started() {
-        // A drag is known as one only some points away from where the button went down.
-        let moved = ui.input(|input| {
-            let [now, origin] = [input.pointer.interact_pos(), input.pointer.press_origin()];
-            now.zip(origin).map_or(0.0, |(now, origin)| now.y - origin.y)
-        });
-        let above = (pointer - target.log10()) as f32 * points_a_unit + moved;
-        ui.data_mut(|data| data.insert_temp(held, above.abs() <= GRIP));
+        ui.data_mut(|data| data.insert_temp(held, is_near));
     }
     let is_held = plot.dragged() && ui.data(|data| data.get_temp(held).unwrap_or(false));
     if is_held {
