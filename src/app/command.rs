@@ -55,6 +55,10 @@ pub enum Command {
     CopyCommand,
     /// Load a film to compare with.
     LoadReference,
+    /// Put the plot's points on the clipboard.
+    CopyPlot,
+    /// Save the plot's points.
+    SavePlot,
     /// Close the window.
     Quit,
     /// Take back a change.
@@ -132,7 +136,7 @@ impl Command {
     pub fn all() -> Vec<Command> {
         use Command::*;
         let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
-        all.extend([SaveScene, CopyCommand, LoadReference, Quit]);
+        all.extend([SaveScene, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
         all.extend(super::viewport::Show::ALL.map(Show));
         all.extend([Wipe, WipeDifference, Fit, ActualSize, ZoomIn, ZoomOut]);
@@ -156,6 +160,8 @@ impl Command {
             Command::SaveScene => "Save scene file…".into(),
             Command::CopyCommand => "Copy as command".into(),
             Command::LoadReference => "Load reference film…".into(),
+            Command::CopyPlot => "Copy error against time".into(),
+            Command::SavePlot => "Save error against time (CSV)…".into(),
             Command::Quit => "Quit".into(),
             Command::Undo => "Undo".into(),
             Command::Redo => "Redo".into(),
@@ -202,6 +208,8 @@ impl Command {
             Command::SaveScene => "Scene, camera and settings as text",
             Command::CopyCommand => "The command line that renders this picture; on the CPU to the bit",
             Command::LoadReference => "A film (.exr) of the same size, for the view of the difference",
+            Command::CopyPlot => "The plot's points as CSV, on the clipboard",
+            Command::SavePlot => "The plot's points as CSV: backend, samples, seconds, errors",
             Command::Quit => "Close the window",
             Command::Undo => "Take back the last change",
             Command::Redo => "Make the change again",
@@ -236,8 +244,8 @@ impl Command {
 
     /// Whether it asks for something before it does anything.
     pub fn opens_dialog(self) -> bool {
-        use Command::{Help, LoadReference, Open, Palette, Save, SaveScene};
-        matches!(self, Open | Save(_) | SaveScene | LoadReference | Palette | Help)
+        use Command::{Help, LoadReference, Open, Palette, Save, SavePlot, SaveScene};
+        matches!(self, Open | Save(_) | SaveScene | SavePlot | LoadReference | Palette | Help)
     }
 
     /// The menu in which it stands.
@@ -248,6 +256,8 @@ impl Command {
             | Command::SaveScene
             | Command::CopyCommand
             | Command::LoadReference
+            | Command::CopyPlot
+            | Command::SavePlot
             | Command::Quit => Group::File,
             Command::Undo | Command::Redo | Command::Home | Command::ResetAll | Command::AddBookmark => {
                 Group::Edit

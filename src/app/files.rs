@@ -55,7 +55,8 @@ impl Window {
         match purpose {
             Purpose::Open => self.open(path, Some(context)),
             Purpose::Save(format) => self.pending_save = Some((format, path)),
-            Purpose::SaveScene => self.save_scene(&path),
+            Purpose::SaveScene => self.save_text(&path, &file::to_toml(&self.document.recipe())),
+            Purpose::SavePlot => self.save_text(&path, &super::plot::csv(&self.main.status().history)),
             Purpose::Reference => self.load_reference(path, context),
         }
     }
@@ -83,8 +84,7 @@ impl Window {
         });
     }
 
-    fn save_scene(&mut self, path: &Path) {
-        let text = file::to_toml(&self.document.recipe());
+    fn save_text(&self, path: &Path, text: &str) {
         let outcome = replace_file(path, |writer| writer.write_all(text.as_bytes()));
         let _ = self
             .messages
@@ -121,7 +121,7 @@ impl Window {
     }
 
     /// Takes what other threads have sent.
-    pub(super) fn receive(&mut self) {
+    pub(super) fn receive(&mut self, context: &egui::Context) {
         while let Ok(message) = self.messages.1.try_recv() {
             match message {
                 Message::Saved(Ok(path)) => self.toasts.good(format!("Saved {}", path.display())),
@@ -136,18 +136,9 @@ impl Window {
                     if matches!(self.dialog, Some(Dialog::Path(_))) {
                         self.dialog = None;
                     }
-                    self.queue_path(purpose, path);
+                    self.use_path(purpose, path, context);
                 }
             }
-        }
-    }
-
-    fn queue_path(&mut self, purpose: Purpose, path: PathBuf) {
-        match purpose {
-            Purpose::Open => self.open(path, None),
-            Purpose::Save(format) => self.pending_save = Some((format, path)),
-            Purpose::SaveScene => self.save_scene(&path),
-            Purpose::Reference => self.load_reference(path, &egui::Context::default()),
         }
     }
 

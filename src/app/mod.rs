@@ -65,6 +65,11 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             .with_icon(theme::icon())
             .with_drag_and_drop(true),
         dithering: false,
+        renderer: if std::env::var_os("W_GLOW").is_some() {
+            eframe::Renderer::Glow
+        } else {
+            eframe::Renderer::Wgpu
+        },
         ..Default::default()
     };
     let create = Box::new(|context: &eframe::CreationContext<'_>| {

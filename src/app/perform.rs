@@ -25,6 +25,9 @@ impl Window {
             Command::Device(device) => device.unavailable(),
             Command::SwitchDevice => Device::Gpu.unavailable(),
             Command::Show(show) => self.useless_show(show),
+            Command::CopyPlot | Command::SavePlot if self.main.status().history.is_empty() => {
+                no("No error has been estimated yet")
+            }
             Command::Wipe | Command::WipeDifference if self.document.stage().is_none() => {
                 no("Only stages of the book have something to be compared with; choose one")
             }
@@ -109,7 +112,12 @@ impl Window {
             Command::Save(format) => self.ask_path(Purpose::Save(format)),
             Command::SaveScene => self.ask_path(Purpose::SaveScene),
             Command::LoadReference => self.ask_path(Purpose::Reference),
+            Command::SavePlot => self.ask_path(Purpose::SavePlot),
             Command::CopyCommand => self.copy_command(context),
+            Command::CopyPlot => {
+                context.copy_text(super::plot::csv(&self.main.status().history));
+                self.toasts.good("Copied the plot's points");
+            }
             Command::Quit => context.send_viewport_cmd(ViewportCommand::Close),
             Command::Undo => {
                 if let Some(document) = self.undo.undo(&self.document) {

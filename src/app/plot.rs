@@ -1,14 +1,16 @@
 //! The error against the seconds that were traced, both on scales of powers of ten: a curve for each backend since
 //! the last restart, how it should go on, and the target, which can be typed or dragged.
 
+use super::command::Command;
 use super::theme;
 use super::widgets::compact;
 use super::window::Window;
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use crate::statistics::fit::{Point, Prediction, predict};
-use eframe::egui::{self, Color32, CursorIcon, DragValue, RichText, Sense, Ui};
+use eframe::egui::{self, Color32, CursorIcon, DragValue, Rect, RichText, Sense, Ui, WidgetInfo};
 use egui_plot::{
-    GridInput, GridMark, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, PlotUi, Points,
+    GridInput, GridMark, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, PlotTransform,
+    PlotUi, Points,
 };
 use std::fmt::Write;
 
@@ -47,8 +49,9 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
 fn header(window: &mut Window, ui: &mut Ui, status: &Status) {
     let weak = ui.visuals().weak_text_color();
     ui.horizontal_wrapped(|ui| {
-        ui.label(
-            RichText::new("Estimated error (RMSE, linear radiance) against seconds").small().color(weak),
+        let title = "Estimated error (RMSE, linear radiance) against seconds; dots at 1, 2, 4, 8 … samples";
+        ui.label(RichText::new(title).small().color(weak)).on_hover_text(
+            "Sobol points are even at powers of two; between two dots the error falls a little less",
         );
         if let Some(target) = &mut window.document.stop.noise {
             ui.label(RichText::new("target").small());
@@ -60,9 +63,13 @@ fn header(window: &mut Window, ui: &mut Ui, status: &Status) {
         if let Some(prediction) = prediction(status, window.document.stop.noise) {
             ui.label(RichText::new(prediction_words(&prediction)).small());
         }
-        let copy = ui.add_enabled(!status.history.is_empty(), egui::Button::new("Copy data").small());
-        if copy.on_hover_text("Copies the plot's points as CSV").clicked() {
-            ui.copy_text(csv(&status.history));
+        for (label, command) in [("Copy data", Command::CopyPlot), ("Save data…", Command::SavePlot)] {
+            let useless = window.useless(command);
+            let button = ui.add_enabled(useless.is_none(), egui::Button::new(label).small());
+            let button = button.on_hover_text(command.help());
+            if button.on_disabled_hover_text(useless.unwrap_or_default()).clicked() {
+                window.send(command);
+            }
         }
     });
 }
@@ -82,7 +89,7 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .show_background(false)
-        .sense(Sense::click_and_drag())
+        .sense(Sense::hover())
         .set_margin_fraction(egui::vec2(0.03, 0.12))
         .x_axis_formatter(|mark, _| power(mark.value, " s"))
         .y_axis_formatter(|mark, _| power(mark.value, ""))
@@ -92,12 +99,16 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
         .label_formatter(|hover| {
             let (HoverPosition::NearDataPoint { position: at, .. }
             | HoverPosition::Elsewhere { position: at }) = hover;
-            Some(format!("{:.2} s\nerror {:.5}", 10_f64.powf(at.x), 10_f64.powf(at.y)))
+            Some(hover_words(&status.history, [at.x, at.y]))
         });
     if curves.len() > 1 {
         plot = plot.legend(Legend::default());
     }
+    let line = ui.scope_id().with("target line");
+    let is_held = ui.ctx().is_being_dragged(line);
     let response = plot.show(ui, |plot| {
+        // While the target is moved, the scale that it is moved on stays.
+        plot.set_auto_bounds(!is_held);
         guide(plot, &all, weak);
         if let Some(target) = target.filter(|target| *target > 0.0) {
             let style = LineStyle::dashed_loose();
@@ -114,15 +125,10 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
             let newest = vec![last, logarithm(now)];
             plot.line(Line::new("now", PlotPoints::from(newest)).color(accent).width(1.0).allow_hover(false));
         }
-        plot.pointer_coordinate().map(|at| at.y)
     });
-    drag_target(
-        window,
-        ui,
-        &response.response,
-        response.inner,
-        response.transform.dpos_dvalue_y().abs() as f32,
-    );
+    if let Some(target) = &mut window.document.stop.noise {
+        drag_target(ui, line, target, &response.transform);
+    }
 }
 
 /// How much of the colour of weak text the grid has.
@@ -143,25 +149,39 @@ fn decades(grid: GridInput) -> Vec<GridMark> {
 }
 
 /// Moves the target with the pointer that took hold of its line.
-fn drag_target(
-    window: &mut Window,
-    ui: &Ui,
-    plot: &egui::Response,
-    pointer: Option<f64>,
-    points_a_unit: f32,
-) {
-    let (Some(pointer), Some(target)) = (pointer, window.document.stop.noise) else { return };
-    let held = ui.scope_id().with("target is held");
-    let is_near = ((pointer - target.log10()) as f32 * points_a_unit).abs() <= GRIP;
-    if plot.drag_started() {
-        ui.data_mut(|data| data.insert_temp(held, is_near));
+fn drag_target(ui: &Ui, line: egui::Id, target: &mut f64, plot: &PlotTransform) {
+    let level = plot.position_from_point_y(target.log10());
+    let grip = Rect::from_x_y_ranges(plot.frame().x_range(), level - GRIP..=level + GRIP);
+    let response = ui.interact(grip.intersect(plot.frame().expand(GRIP)), line, Sense::drag());
+    response.widget_info(|| WidgetInfo::slider(true, *target, "Target error, as a line"));
+    let Some(pointer) = response.interact_pointer_pos() else {
+        if response.hovered() {
+            ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
+        }
+        return;
+    };
+    if response.drag_started() {
+        ui.data_mut(|data| data.insert_temp(line, pointer.y - level));
     }
-    let is_held = plot.dragged() && ui.data(|data| data.get_temp(held).unwrap_or(false));
-    if is_held {
-        window.document.stop.noise = Some(10_f64.powf(pointer).clamp(*TARGETS.start(), *TARGETS.end()));
+    let above_pointer = ui.data(|data| data.get_temp(line).unwrap_or(0.0_f32));
+    let at = plot.value_from_position(egui::pos2(pointer.x, pointer.y - above_pointer));
+    if response.drag_delta().y != 0.0 {
+        *target = two_digits(10_f64.powf(at.y)).clamp(*TARGETS.start(), *TARGETS.end());
     }
-    if is_held || (plot.hovered() && is_near) {
-        ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
+    ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
+}
+
+/// The nearest number of two significant digits.
+fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+/// What the pointer is at: a dot, which tells its samples, or any place.
+fn hover_words(history: &[HistoryPoint], [x, y]: [f64; 2]) -> String {
+    let place = format!("{:.3} s\nerror {:.5}", 10_f64.powf(x), 10_f64.powf(y));
+    match history.iter().find(|point| logarithms(point) == [x, y]) {
+        Some(point) => format!("{} samples per pixel\n{place}", point.samples_per_pixel),
+        None => place,
     }
 }
 
@@ -270,7 +290,7 @@ fn whole(seconds: f64) -> String {
 }
 
 /// The points with a head.
-fn csv(history: &[HistoryPoint]) -> String {
+pub fn csv(history: &[HistoryPoint]) -> String {
     let mut text = String::from("backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n");
     for point in history {
         // Writing to a string does not fail.
@@ -335,6 +355,19 @@ mod tests {
         for (low, high) in [(-1.0, f64::INFINITY), (-1e300, 1e300), (f64::NAN, 1.0), (0.0, 1e9)] {
             assert!(marks(low, high).is_empty(), "{low} to {high}");
         }
+    }
+
+    #[test]
+    fn a_dot_tells_its_samples() {
+        let history = [point("cpu", 4, 2.0)];
+        let [x, y] = logarithms(&history[0]);
+        assert_eq!(hover_words(&history, [x, y]), "4 samples per pixel\n2.000 s\nerror 0.05000");
+        assert_eq!(hover_words(&history, [x, y + 1.0]), "2.000 s\nerror 0.50000");
+    }
+
+    #[test]
+    fn a_target_that_is_dragged_has_two_digits() {
+        assert_eq!([0.002_134, 0.0999, 1.0].map(two_digits), [0.0021, 0.1, 1.0]);
     }
 
     #[test]

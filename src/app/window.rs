@@ -256,7 +256,7 @@ impl Window {
     pub fn ui_in(&mut self, ui: &mut egui::Ui) {
         let context = ui.ctx().clone();
         self.dress(&context);
-        self.receive();
+        self.receive(&context);
         let begin = Instant::now();
         let is_pictured = self.main.poll(&context);
         self.frame_times.picture = begin.elapsed();

@@ -16,6 +16,8 @@ pub enum Purpose {
     Save(OutputFormat),
     /// To be written with the scene.
     SaveScene,
+    /// To be written with the plot's points.
+    SavePlot,
     /// To be compared with.
     Reference,
 }
@@ -28,6 +30,7 @@ impl Purpose {
             Purpose::Save(OutputFormat::P6) => "Save picture as PPM",
             Purpose::Save(OutputFormat::Exr) => "Save film as EXR",
             Purpose::SaveScene => "Save scene file",
+            Purpose::SavePlot => "Save error against time as CSV",
             Purpose::Reference => "Load reference film",
         }
     }
@@ -40,7 +43,7 @@ impl Purpose {
     }
 
     fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save(_) | Purpose::SaveScene)
+        matches!(self, Purpose::Save(_) | Purpose::SaveScene | Purpose::SavePlot)
     }
 
     fn endings(self) -> &'static [&'static str] {
@@ -50,6 +53,7 @@ impl Purpose {
             Purpose::Save(OutputFormat::P6) => &["ppm"],
             Purpose::Save(OutputFormat::Exr) | Purpose::Reference => &["exr"],
             Purpose::SaveScene => &["toml"],
+            Purpose::SavePlot => &["csv"],
         }
     }
 }

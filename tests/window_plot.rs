@@ -1,0 +1,132 @@
+//! The plot of error against time, driven as by a person.
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+
+use eframe::egui::{self, Modifiers, PointerButton, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::time::{Duration, Instant};
+use weekender::app::{Command, Window};
+use weekender::cli::{self, Request};
+
+fn open(arguments: &str) -> Harness<'static, Window> {
+    let words = std::iter::once("weekender").chain(arguments.split_whitespace());
+    let Request::Window(options) = cli::parse(words.map(Into::into)).unwrap() else { panic!("{arguments}") };
+    let window = Window::new(*options, None).unwrap();
+    let mut harness = Harness::builder()
+        .with_size([1280.0, 1400.0])
+        .with_step_dt(1.0 / 60.0)
+        .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), window);
+    harness.run_steps(2);
+    harness
+}
+
+fn until(harness: &mut Harness<'_, Window>, what: &str, is_so: impl Fn(&Window) -> bool) {
+    let begin = Instant::now();
+    while !is_so(harness.state()) {
+        assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}");
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+}
+
+fn target(harness: &Harness<'_, Window>) -> f64 {
+    harness.state().document().stop.noise.unwrap()
+}
+
+/// Where the target's line is.
+fn line(harness: &Harness<'_, Window>) -> Pos2 {
+    harness.get_by_label("Target error, as a line").rect().center()
+}
+
+/// From one place to another in small steps, the button held down.
+fn drag(harness: &mut Harness<'_, Window>, from: Pos2, to: Pos2) {
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(egui::Event::PointerMoved(from));
+    harness.step();
+    harness.event(button(from, true));
+    harness.step();
+    for step in 1..=10 {
+        harness.event(egui::Event::PointerMoved(from.lerp(to, step as f32 / 10.0)));
+        harness.step();
+    }
+    harness.event(button(to, false));
+    harness.run_steps(2);
+}
+
+#[test]
+fn the_target_is_dragged() {
+    let mut harness = open("--scene three-spheres --size 64x36 --device cpu --noise-target 0.002");
+    harness.state_mut().send(Command::Plot);
+    until(&mut harness, "an estimate", |window| window.status().samples_per_pixel >= 16);
+    harness.state_mut().send(Command::Pause);
+    harness.run_steps(3);
+    assert_eq!(target(&harness), 0.002);
+    // Taken hold of some points beside it: it moves as far as the pointer, and does not jump.
+    let beside = line(&harness) + vec2(40.0, 5.0);
+    drag(&mut harness, beside, beside);
+    assert_eq!(target(&harness), 0.002);
+    let from = line(&harness);
+    drag(&mut harness, from + vec2(40.0, 5.0), from + vec2(60.0, -15.0));
+    let moved = target(&harness);
+    assert!(moved > 0.0022 && moved < 0.2, "up is a larger error: {moved}");
+    assert!(harness.state().is_paused());
+
+    // Beside the line nothing is taken hold of.
+    let away = line(&harness) + vec2(40.0, 14.0);
+    drag(&mut harness, away, away - vec2(0.0, 30.0));
+    assert_eq!(target(&harness), moved);
+
+    harness.state_mut().send(Command::Undo);
+    harness.run_steps(2);
+    assert_eq!(target(&harness), 0.002, "a whole drag is one change");
+}
+
+#[test]
+fn a_render_ends_at_the_target_and_goes_on_to_a_lower_one() {
+    let mut harness = open("--scene three-spheres --size 64x36 --device cpu --noise-target 0.01");
+    harness.state_mut().send(Command::Plot);
+    until(&mut harness, "the end", |window| window.status().phase.is_over());
+    let done = harness.state().status().samples_per_pixel;
+    harness.run_steps(3);
+    let from = line(&harness);
+    drag(&mut harness, from, from + vec2(0.0, 12.0));
+    assert!(target(&harness) < 0.01, "{}", target(&harness));
+    until(&mut harness, "more samples", |window| window.status().samples_per_pixel > done);
+}
+
+#[test]
+fn the_points_are_copied_and_saved() {
+    let mut harness = open("--scene three-spheres --size 64x36 --device cpu --samples 16");
+    let has_nothing = harness.state().useless(Command::SavePlot).is_some();
+    until(&mut harness, "the end", |window| window.status().phase.is_over());
+    assert!(harness.state().useless(Command::SavePlot).is_none());
+    harness.state_mut().send(Command::CopyPlot);
+    harness.step();
+    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let copied = copied.unwrap();
+    assert!(copied.starts_with("backend,samples_per_pixel,trace_seconds,"), "{copied}");
+    assert!(copied.lines().count() >= 4, "{copied}");
+
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("error.csv");
+    harness.state_mut().send(Command::SavePlot);
+    harness.run_steps(3);
+    let name = harness.get_by_label("File name");
+    name.focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
+    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    harness.run_steps(2);
+    harness.get_by_label("Save").click();
+    harness.run_steps(3);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), copied);
+    assert!(has_nothing || copied.lines().count() > 1);
+}
