@@ -137,12 +137,7 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
             SideChoice::Cpu(CpuOptions { isa: Some(Isa::Baseline), ..CpuOptions::default() })
         }
         RawSide::Reference => SideChoice::Reference,
-        RawSide::Gpu => SideChoice::Gpu(GpuOptions {
-            adapter: raw.adapter.clone(),
-            // Whoever names a software adapter wants it.
-            allow_software: raw.adapter.is_some(),
-            ..GpuOptions::default()
-        }),
+        RawSide::Gpu => SideChoice::Gpu(GpuOptions::of_adapter(raw.adapter.as_deref())),
     });
     Ok(DiffOptions {
         scene: stage.map_or(recipe.name.clone(), |stage| stage.id.to_owned()),

@@ -7,7 +7,7 @@ use super::values::{JsonTarget, Level, Simd};
 use crate::backends::BackendChoice;
 use crate::output::OutputFormat;
 use crate::progressive::Plan;
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, plain_name};
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::CpuOptions;
 use crate::render_gpu::{Drill, Fault, GpuOptions};
@@ -239,13 +239,8 @@ fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
     ];
     let drill =
         drills.into_iter().find_map(|(after, fault, flag)| after.map(|after| (Drill { fault, after }, flag)));
-    let gpu = GpuOptions {
-        adapter: raw.adapter.clone(),
-        // Whoever names a software adapter wants it.
-        allow_software: raw.adapter.is_some(),
-        drill: drill.map(|(drill, _)| drill),
-        ..GpuOptions::default()
-    };
+    let gpu =
+        GpuOptions { drill: drill.map(|(drill, _)| drill), ..GpuOptions::of_adapter(raw.adapter.as_deref()) };
     let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { drill.map(|(_, flag)| flag) };
     if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, raw.device) {
         let other = if raw.device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
@@ -287,7 +282,5 @@ fn directory_of_all(raw: &RawRender) -> Result<PathBuf, CliError> {
 /// `SCENE.png` in the current directory.
 fn default_name(source: &Source) -> PathBuf {
     let name = source.stage.map_or(source.recipe.name.as_str(), |stage| stage.id);
-    let is_plain = |c: char| c.is_alphanumeric() || "-_. ".contains(c);
-    let name: String = name.chars().map(|c| if is_plain(c) { c } else { '-' }).collect();
-    PathBuf::from(format!("{name}.png"))
+    PathBuf::from(format!("{}.png", plain_name(name)))
 }

@@ -5,7 +5,7 @@ use crate::render::SamplerKind;
 use crate::render_cpu::lanes::{Lanes, unit_float};
 use crate::render_cpu::rng::{lens_stream_of, pcg4d, sobol_pair};
 use crate::sampling::GOLDEN_RATIO;
-use crate::tables::{Real, Tables};
+use crate::tables::Tables;
 
 /// The numbers for a packet's next rays.
 #[derive(Clone, Copy)]
