@@ -1,7 +1,7 @@
 // Arithmetic on single numbers and vectors. WGSL allows a compiler to assume that no NaN and no infinity
 // occurs, so nothing here or elsewhere relies on either: comparisons stand before the operation.
 //
-// Twin: src/render_cpu/lanes.rs
+// Twin: src/render_cpu/lanes
 
 // The size of one with the sign of another.
 fn copysign(size: f32, signed: f32) -> f32 {

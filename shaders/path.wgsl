@@ -1,7 +1,7 @@
 // The path loop: a thread owns a pixel and walks through blocks of its samples. When a path ends the thread
 // starts its next sample at once, so that none waits for the longest path beside it.
 //
-// Twin: src/render_cpu/path.rs
+// Twin: src/render_cpu/path
 
 struct Path {
     ray: Ray,

@@ -28,3 +28,4 @@ pub mod scene;
 pub mod stages;
 pub mod statistics;
 pub mod tables;
+pub mod terminal;

@@ -46,6 +46,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "failure",
         ],
     ),
+    ("terminal", &["film", "cli"]),
     (
         "batch",
         &[
@@ -63,6 +64,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "describe",
             "failure",
             "interrupt",
+            "terminal",
         ],
     ),
     (
@@ -81,6 +83,8 @@ const ROOMS: &[(&str, &[&str])] = &[
             "control",
             "failure",
             "interrupt",
+            "terminal",
+            "statistics",
         ],
     ),
     (
@@ -99,9 +103,24 @@ const ROOMS: &[(&str, &[&str])] = &[
             "control",
             "failure",
             "interrupt",
+            "terminal",
         ],
     ),
-    ("compare", &["film", "heat", "render", "recipe", "output", "backends", "statistics", "cli", "failure"]),
+    (
+        "compare",
+        &[
+            "film",
+            "heat",
+            "render",
+            "recipe",
+            "output",
+            "backends",
+            "statistics",
+            "cli",
+            "failure",
+            "terminal",
+        ],
+    ),
     (
         "diff",
         &[
@@ -115,6 +134,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "backends",
             "cli",
             "failure",
+            "terminal",
         ],
     ),
 ];
@@ -131,7 +151,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("obvhs", &["tables"]),
     ("libm", &["statistics"]),
     ("image", &["output", "compare"]),
-    ("indicatif", &["batch", "bench", "report"]),
+    ("indicatif", &["terminal", "report"]),
     ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
 ];

@@ -343,9 +343,12 @@ fn what_is_no_film_file_is_refused_with_the_reason() {
     assert!(matches!(load_error(&path), CheckpointError::NotFilm { .. }));
 }
 
-/// The place of `needle` in `bytes`.
-fn find(bytes: &[u8], needle: &[u8]) -> usize {
-    bytes.windows(needle.len()).position(|window| window == needle).unwrap()
+/// Puts another byte `offset` behind where `needle` begins in the file.
+fn spoil(path: &Path, needle: &[u8], offset: usize, byte: u8) {
+    let mut bytes = std::fs::read(path).unwrap();
+    let place = bytes.windows(needle.len()).position(|window| window == needle).unwrap();
+    bytes[place + offset] = byte;
+    std::fs::write(path, bytes).unwrap();
 }
 
 #[test]
@@ -353,10 +356,7 @@ fn another_version_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 2, &[0..10]), &description()).unwrap();
-    let mut bytes = std::fs::read(&path).unwrap();
-    let place = find(&bytes, b"version = 1") + 10;
-    bytes[place] = b'2';
-    std::fs::write(&path, bytes).unwrap();
+    spoil(&path, b"version = 1", 10, b'2');
     let error = load_error(&path);
     assert_eq!(error, CheckpointError::Version { path, version: 2 });
 }
@@ -391,10 +391,7 @@ fn a_missing_channel_is_named() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 1, &[0..10]), &description()).unwrap();
-    let mut bytes = std::fs::read(&path).unwrap();
-    let place = find(&bytes, b"sum.a.R.lo") + 9;
-    bytes[place] = b'p';
-    std::fs::write(&path, bytes).unwrap();
+    spoil(&path, b"sum.a.R.lo", 9, b'p');
     let message = load_error(&path).to_string();
     assert!(message.contains("sum.a.R.lo is missing"), "{message}");
 }

@@ -19,11 +19,11 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::progressive::{Plan, Progressive, Work};
-use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
+use weekender::recipe::Recipe;
+use weekender::render::{RenderJob, RenderSettings, Renderer};
 use weekender::render_gpu::{GpuOptions, GpuRenderer, HierarchyKind, Overrides};
-use weekender::scene::Camera;
-use weekender::scene::builtin::{BuiltinScene, field};
-use weekender::stages::{Rules, Shading};
+use weekender::stages::Shading;
+use weekender::statistics;
 use weekender::tables::Tables;
 use weekender::tables::cwbvh::{CwBvhNode, Cwbvh};
 use weekender::tables::hierarchy::{Hierarchy, Node};
@@ -50,22 +50,10 @@ fn main() -> anyhow::Result<()> {
 
 /// A built-in scene or `field:N`.
 fn job(scene: &str, [width, height, max_depth]: [u32; 3]) -> anyhow::Result<RenderJob> {
-    let (spheres, camera): (_, Camera) = match scene.strip_prefix("field:") {
-        Some(count) => field(count.parse()?),
-        None => match BuiltinScene::ALL.iter().find(|builtin| builtin.name == scene) {
-            Some(builtin) => (builtin.build)(),
-            None => anyhow::bail!("there is no scene {scene}"),
-        },
-    };
-    let settings = RenderSettings {
-        width,
-        height,
-        max_depth,
-        sampler: SamplerKind::Sobol,
-        seed: 0,
-        estimate_error: false,
-    };
-    Ok(RenderJob::new(spheres, camera, settings, Rules::default())?)
+    let mut recipe = Recipe::find(scene)?;
+    recipe.settings =
+        RenderSettings { width, height, max_depth, estimate_error: false, ..RenderSettings::default() };
+    Ok(recipe.job()?)
 }
 
 fn options_of(arguments: &[String]) -> anyhow::Result<GpuOptions> {
@@ -121,9 +109,8 @@ fn trace(arguments: &[String]) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    values[values.len() / 2]
+fn median(values: &[f64]) -> f64 {
+    statistics::median(values.iter().copied()).unwrap_or(f64::NAN)
 }
 
 fn pair(arguments: &[String]) -> anyhow::Result<()> {
@@ -146,14 +133,14 @@ fn pair(arguments: &[String]) -> anyhow::Result<()> {
             }
         }
     }
-    let mut ratios: Vec<f64> = times[1].iter().zip(&times[0]).map(|(cwbvh, bvh2)| cwbvh / bvh2).collect();
-    let [bvh2, cwbvh] = &mut times;
+    let ratios: Vec<f64> = times[1].iter().zip(&times[0]).map(|(cwbvh, bvh2)| cwbvh / bvh2).collect();
+    let [bvh2, cwbvh] = &times;
     println!(
         "| {} | {:.1} | {:.1} | {:.2} |",
         arguments.join(" "),
         median(bvh2),
         median(cwbvh),
-        median(&mut ratios)
+        median(&ratios)
     );
     Ok(())
 }
@@ -178,8 +165,8 @@ fn hierarchy(scene: &str) -> anyhow::Result<()> {
         "| {scene} | {:.1} | {:.1} | {:.2} | {:.2} |",
         sizes[0] as f64 / count,
         sizes[1] as f64 / count + size_of::<u32>() as f64,
-        median(&mut bvh2_times),
-        median(&mut cwbvh_times),
+        median(&bvh2_times),
+        median(&cwbvh_times),
     );
     Ok(())
 }
@@ -246,7 +233,7 @@ fn passes(arguments: &[String]) -> anyhow::Result<()> {
             }
         }
     }
-    let [at_once, stays] = &mut times;
+    let [at_once, stays] = &times;
     let (at_once, stays) = (median(at_once), median(stays));
     println!(
         "| {} | {at_once:.2} | {stays:.2} | {} | {} | {:.2} |",

@@ -30,8 +30,7 @@ impl BackendChoice {
     /// The best for this machine: a GPU if there is one, else the widest CPU kernel. Whoever chooses among the
     /// CPU's options means the CPU.
     pub fn auto(cpu: CpuOptions, gpu: GpuOptions) -> Self {
-        let is_fit = |adapter: &AdapterInfo| !adapter.is_software && adapter.lacks.is_none();
-        if cpu == CpuOptions::default() && adapters().iter().any(is_fit) {
+        if cpu == CpuOptions::default() && adapters().iter().any(AdapterInfo::is_fit) {
             BackendChoice::Gpu(gpu)
         } else {
             BackendChoice::Cpu(cpu)
@@ -57,12 +56,7 @@ impl BackendChoice {
                 BackendChoice::Cpu(CpuOptions { isa, lanes, ..CpuOptions::default() })
             }
             "reference" => BackendChoice::Reference { threads: None },
-            "gpu" => BackendChoice::Gpu(GpuOptions {
-                adapter: adapter.map(str::to_owned),
-                // Whoever names a software adapter wants it.
-                allow_software: adapter.is_some(),
-                ..GpuOptions::default()
-            }),
+            "gpu" => BackendChoice::Gpu(GpuOptions::of_adapter(adapter)),
             _ => return None,
         })
     }
@@ -122,7 +116,7 @@ pub fn list() -> Vec<BackendListing> {
     let levels = Isa::available();
     let best = levels.last().copied();
     let adapters = adapters();
-    let auto_adapter = adapters.iter().position(|adapter| !adapter.is_software && adapter.lacks.is_none());
+    let auto_adapter = adapters.iter().position(AdapterInfo::is_fit);
     let cpu = levels.into_iter().map(|isa| {
         let lanes: Vec<String> = isa.lane_counts().iter().map(usize::to_string).collect();
         let chosen = isa.native_lanes();

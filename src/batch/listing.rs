@@ -1,10 +1,10 @@
 //! `--list`: scenes, stages, devices.
 
-use super::print;
 use crate::backends;
 use crate::failure::Failure;
 use crate::scene::builtin::BuiltinScene;
 use crate::stages::Stage;
+use crate::terminal::print;
 use std::fmt::Write;
 use std::process::ExitCode;
 

@@ -1,11 +1,12 @@
 //! `weekender merge`: films of one picture, added.
 
-use super::{print, resuming};
+use super::resuming;
 use crate::cli::MergeOptions;
 use crate::failure::Failure;
 use crate::film::{SampleRanges, check_writable, merge_files};
 use crate::output::{OutputFormat, write_image};
 use crate::recipe::file;
+use crate::terminal::print;
 use std::process::ExitCode;
 
 /// Adds films and writes the sum.

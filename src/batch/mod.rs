@@ -14,15 +14,15 @@ pub use merging::merge;
 use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::{Film, check_writable, replace_file};
+use crate::film::{Film, check_writable, write_text};
 use crate::interrupt::Interrupt;
 use crate::progressive::{Phase, Progressive, Status, Work};
 use crate::recipe::{Recipe, file};
 use crate::render::Renderer;
+use crate::terminal::{print, print_beside, write_json};
 use anyhow::{Context, anyhow};
 use progress::Progress;
 use resuming::Resumed;
-use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -52,7 +52,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     for render in &options.renders {
         let begun = Begun { options: &options, interrupt: &interrupt };
         let (summary, outcome) = begun.render(render, &mut progressive, renderer.take(), resumed.take());
-        show(&format!("{summary}\n"), &options);
+        print_beside(options.json.as_ref(), &format!("{summary}\n"));
         summaries.push(summary);
         if let Err(error) = outcome {
             failure = Some(error);
@@ -62,7 +62,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
             break;
         }
     }
-    let json = write_json(&options, summaries);
+    let json = write_figures(&options, summaries);
     match (failure, json) {
         (Some(error), _) | (None, Err(error)) => Err(Failure::Run(error)),
         _ if interrupt.is_set() => Ok(ExitCode::from(INTERRUPTED)),
@@ -81,7 +81,7 @@ pub fn save_scene(options: &SaveSceneOptions) -> Result<ExitCode, Failure> {
 }
 
 fn write_scene(recipe: &Recipe, path: &Path) -> anyhow::Result<()> {
-    Ok(replace_file(path, |writer| writer.write_all(file::to_toml(recipe).as_bytes()))?)
+    Ok(write_text(path, &file::to_toml(recipe))?)
 }
 
 /// Finds out what would fail after the rendering.
@@ -181,29 +181,13 @@ fn outcome(status: &Status, film: Option<&Film>, writing: Option<anyhow::Error>)
     writing.map_or(Ok(()), Err)
 }
 
-fn write_json(options: &BatchOptions, mut summaries: Vec<Summary>) -> anyhow::Result<()> {
+fn write_figures(options: &BatchOptions, mut summaries: Vec<Summary>) -> anyhow::Result<()> {
     let Some(target) = &options.json else { return Ok(()) };
-    let json = match (&options.directory, summaries.pop()) {
-        (None, Some(summary)) => serde_json::to_string_pretty(&Report::of_one(summary)),
+    match (&options.directory, summaries.pop()) {
+        (None, Some(summary)) => write_json(&Report::of_one(summary), target),
         (_, last) => {
             summaries.extend(last);
-            serde_json::to_string_pretty(&Report::of_all(summaries))
+            write_json(&Report::of_all(summaries), target)
         }
-    };
-    let text = json.context("the figures cannot be put as JSON")? + "\n";
-    match target {
-        JsonTarget::StandardOutput => print(&text),
-        JsonTarget::File(path) => replace_file(path, |writer| writer.write_all(text.as_bytes()))?,
     }
-    Ok(())
-}
-
-/// Prints for a person: to standard output, unless JSON goes there.
-fn show(text: &str, options: &BatchOptions) {
-    if options.json == Some(JsonTarget::StandardOutput) { eprint!("{text}") } else { print(text) }
-}
-
-/// Prints to standard output. A reader who has gone away is no failure: the files are what counts.
-fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
 }

@@ -1,9 +1,8 @@
-//! Progress on standard error: a bar on a terminal, now and then a line elsewhere, or nothing.
+//! The progress of a picture: how far it is, how fast, and how long it will still take.
 
 use crate::cli::{ProgressChoice, RenderOptions};
 use crate::progressive::{Phase, Plan, Status};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{IsTerminal, stderr};
+use crate::terminal::Display;
 use std::time::{Duration, Instant};
 
 /// Time between lines where there is no terminal.
@@ -11,12 +10,6 @@ const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
-
-enum Display {
-    Bar(ProgressBar),
-    Lines { next: Instant },
-    Off,
-}
 
 /// The progress of one picture.
 pub(super) struct Progress {
@@ -27,18 +20,8 @@ pub(super) struct Progress {
 
 impl Progress {
     pub(super) fn new(choice: ProgressChoice, render: &RenderOptions) -> Self {
-        let display = match (choice, stderr().is_terminal()) {
-            (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
-            (ProgressChoice::On, false) => Display::Lines { next: Instant::now() },
-            (_, true) => {
-                let bar = ProgressBar::with_draw_target(Some(STEPS), ProgressDrawTarget::stderr());
-                if let Ok(style) = ProgressStyle::with_template("{prefix} [{bar:24}] {wide_msg}") {
-                    bar.set_style(style.progress_chars("=> "));
-                }
-                bar.set_prefix(render.recipe.name.clone());
-                Display::Bar(bar)
-            }
-        };
+        let (template, name) = ("{prefix} [{bar:24}] {wide_msg}", &render.recipe.name);
+        let display = Display::new(choice, STEPS, template, name, LINE_INTERVAL);
         Progress { display, plan: render.plan.clone(), begin: Instant::now() }
     }
 
@@ -59,48 +42,26 @@ impl Progress {
                 )
             }
         };
-        match &mut self.display {
-            Display::Bar(bar) => {
-                let share = left.map_or(0.0, |left| {
-                    let done = elapsed.as_secs_f64();
-                    done / (done + left).max(f64::MIN_POSITIVE)
-                });
-                bar.set_position((share * STEPS as f64) as u64);
-                bar.set_message(words());
-            }
-            Display::Lines { next } if Instant::now() >= *next => {
-                *next = Instant::now() + LINE_INTERVAL;
-                eprintln!("{}", words());
-            }
-            Display::Lines { .. } | Display::Off => {}
-        }
+        let share = left.map_or(0.0, |left| {
+            let done = elapsed.as_secs_f64();
+            done / (done + left).max(f64::MIN_POSITIVE)
+        });
+        self.display.update((share * STEPS as f64) as u64, words);
     }
 
     /// Says that the files are being written.
-    pub(super) fn writing(&self) {
-        match &self.display {
-            Display::Bar(bar) => {
-                bar.set_position(STEPS);
-                bar.set_message("write");
-            }
-            Display::Lines { .. } => eprintln!("write"),
-            Display::Off => {}
-        }
+    pub(super) fn writing(&mut self) {
+        self.display.announce(STEPS, || "write".to_owned());
     }
 
     /// Says something that must be read, whatever the display.
     pub(super) fn say(&self, message: &str) {
-        match &self.display {
-            Display::Bar(bar) => bar.suspend(|| eprintln!("{message}")),
-            Display::Lines { .. } | Display::Off => eprintln!("{message}"),
-        }
+        self.display.say(message);
     }
 
     /// Takes the bar away.
     pub(super) fn finish(&self) {
-        if let Display::Bar(bar) = &self.display {
-            bar.finish_and_clear();
-        }
+        self.display.clear();
     }
 }
 

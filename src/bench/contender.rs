@@ -4,9 +4,10 @@ use super::figures::{Kind, Row, Run};
 use crate::backends::{self, BackendChoice};
 use crate::cli::BenchOptions;
 use crate::control::{Control, ControlError};
+use crate::recipe::plain_name;
 use crate::render::{RenderError, RenderJob, Renderer};
 use crate::render_cpu::{CpuOptions, Isa};
-use crate::render_gpu::{GpuOptions, adapters};
+use crate::render_gpu::{AdapterInfo, GpuOptions, adapters};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -51,8 +52,7 @@ pub fn contenders(
             found.push(Contender::cpu(best, best.native_lanes(), options.threads, Kind::Threads, job));
         }
     }
-    let is_fit = adapters().iter().any(|adapter| !adapter.is_software && adapter.lacks.is_none());
-    if options.adapter.is_some() || is_fit {
+    if options.adapter.is_some() || adapters().iter().any(AdapterInfo::is_fit) {
         found.push(Contender::gpu(options, job));
     }
     found
@@ -83,7 +83,7 @@ impl Contender {
 
     fn control(name: &str, job: &RenderJob, control: &Result<Rc<Control>, ControlError>) -> Self {
         let made = control.as_ref().map_err(ToString::to_string).and_then(|control| {
-            let scene = control.write_scene(job, &name.replace(['/', '\\', ':'], "-"));
+            let scene = control.write_scene(job, &plain_name(name));
             let scene = scene.map_err(|error| error.to_string())?;
             Ok(Runner::Control { control: Rc::clone(control), scene })
         });
@@ -109,12 +109,7 @@ impl Contender {
     }
 
     fn gpu(options: &BenchOptions, job: &RenderJob) -> Self {
-        let gpu = GpuOptions {
-            adapter: options.adapter.clone(),
-            // Whoever names a software adapter wants it.
-            allow_software: options.adapter.is_some(),
-            ..GpuOptions::default()
-        };
+        let gpu = GpuOptions::of_adapter(options.adapter.as_deref());
         let made = prepared(&BackendChoice::Gpu(gpu), job);
         let info = match &made {
             Ok(Runner::Renderer(renderer)) => Some(renderer.info()),

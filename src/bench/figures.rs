@@ -1,6 +1,7 @@
 //! What was measured: runs, medians and ranges.
 
 use super::machine::Machine;
+use crate::statistics::median;
 use serde::Serialize;
 
 /// Version of the JSON: it grows when a key changes its meaning or goes away.
@@ -146,13 +147,10 @@ pub struct Spread {
 impl Spread {
     /// `None` without values.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
-        let mut sorted: Vec<f64> = values.into_iter().collect();
-        sorted.sort_by(f64::total_cmp);
-        let (min, max) = (*sorted.first()?, *sorted.last()?);
-        let middle = sorted.len() / 2;
-        let median =
-            if sorted.len() % 2 == 1 { sorted[middle] } else { 0.5 * (sorted[middle - 1] + sorted[middle]) };
-        Some(Spread { median, min, max })
+        let values: Vec<f64> = values.into_iter().collect();
+        let min = values.iter().copied().reduce(f64::min)?;
+        let max = values.iter().copied().reduce(f64::max)?;
+        Some(Spread { median: median(values)?, min, max })
     }
 
     /// Range as a share of the median.

@@ -12,15 +12,13 @@ use crate::chart;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
 use crate::control::{Control, ControlError};
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::{check_writable, replace_file};
+use crate::film::check_writable;
 use crate::interrupt::Interrupt;
-use anyhow::Context;
+use crate::terminal;
 use contender::{Cancelled, Contender, contenders};
-
 use figures::{Report, SCHEMA, SPREAD_LIMIT, SceneFigures};
 use machine::{LOAD_LIMIT, Machine};
 use progress::Progress;
-use std::io::Write;
 use std::process::ExitCode;
 use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
@@ -80,7 +78,7 @@ fn measure_scene(
     let job = &scene.job;
     let mut contenders = contenders(options, &scene.name, job, control);
     let ready = contenders.iter().filter(|contender| contender.is_ready()).count();
-    let progress = Progress::new(options.progress, (ready * (1 + options.runs)) as u64);
+    let mut progress = Progress::new(options.progress, (ready * (1 + options.runs)) as u64);
     let mut turns = || {
         for turn in 0..=options.runs {
             for contender in contenders.iter_mut().filter(|contender| contender.is_ready()) {
@@ -116,9 +114,9 @@ fn fields(
     report: &mut Report,
     cancel: &AtomicBool,
 ) -> anyhow::Result<()> {
-    let progress = Progress::new(options.progress, (counts.len() * options.runs) as u64);
+    let mut progress = Progress::new(options.progress, (counts.len() * options.runs) as u64);
     for count in counts {
-        match scale::measure(options, *count, &progress, cancel)? {
+        match scale::measure(options, *count, &mut progress, cancel)? {
             Some(figures) => report.scale.push(figures),
             None => break,
         }
@@ -160,22 +158,9 @@ fn warnings(report: &Report) -> Vec<String> {
 
 fn write(options: &BenchOptions, report: &Report) -> anyhow::Result<()> {
     let text = table::text(report);
-    let json = || -> anyhow::Result<String> {
-        Ok(serde_json::to_string_pretty(report).context("cannot put the figures into JSON")? + "\n")
-    };
-    let to_stdout =
-        |text: &str| std::io::stdout().write_all(text.as_bytes()).context("cannot print the figures");
-    match &options.json {
-        Some(JsonTarget::StandardOutput) => {
-            eprint!("{text}");
-            to_stdout(&json()?)?;
-        }
-        Some(JsonTarget::File(path)) => {
-            to_stdout(&text)?;
-            let json = json()?;
-            replace_file(path, |writer| writer.write_all(json.as_bytes()))?;
-        }
-        None => to_stdout(&text)?,
+    terminal::print_beside(options.json.as_ref(), &text);
+    if let Some(target) = &options.json {
+        terminal::write_json(report, target)?;
     }
     if let Some(path) = &options.plot {
         chart::save(path, &plot::figure(report))?;

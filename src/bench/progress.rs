@@ -1,49 +1,34 @@
-//! Progress on standard error: one line that counts runs, on a terminal; lines elsewhere if asked for.
+//! Counts runs on standard error.
 
 use crate::cli::ProgressChoice;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{IsTerminal, stderr};
+use crate::terminal::Display;
+use std::time::Duration;
 
-/// Counts runs.
+/// Runs that are done, of all.
 pub struct Progress {
-    bar: Option<ProgressBar>,
-    has_lines: bool,
+    display: Display,
+    done: u64,
 }
 
 impl Progress {
-    /// Of `steps` runs.
+    /// Of `steps` runs. Where there is no terminal, each has a line.
     pub fn new(choice: ProgressChoice, steps: u64) -> Self {
-        let is_terminal = stderr().is_terminal();
-        let bar = (is_terminal && choice != ProgressChoice::Off).then(|| {
-            let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
-            if let Ok(style) = ProgressStyle::with_template("[{bar:24}] {pos} of {len} runs, {wide_msg}") {
-                bar.set_style(style.progress_chars("=> "));
-            }
-            bar
-        });
-        Progress { bar, has_lines: !is_terminal && choice == ProgressChoice::On }
+        let template = "[{bar:24}] {pos} of {len} runs, {wide_msg}";
+        Progress { display: Display::new(choice, steps, template, "", Duration::ZERO), done: 0 }
     }
 
     /// `what` begins.
-    pub fn begin(&self, what: &str) {
-        match &self.bar {
-            Some(bar) => bar.set_message(what.to_owned()),
-            None if self.has_lines => eprintln!("{what}"),
-            None => {}
-        }
+    pub fn begin(&mut self, what: &str) {
+        self.display.announce(self.done, || what.to_owned());
     }
 
     /// A run is done.
-    pub fn step(&self) {
-        if let Some(bar) = &self.bar {
-            bar.inc(1);
-        }
+    pub fn step(&mut self) {
+        self.done += 1;
     }
 
-    /// Takes the line away.
+    /// Takes the bar away.
     pub fn clear(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+        self.display.clear();
     }
 }

@@ -18,7 +18,7 @@ use std::time::Instant;
 pub fn measure(
     options: &BenchOptions,
     count: u64,
-    progress: &Progress,
+    progress: &mut Progress,
     cancel: &AtomicBool,
 ) -> Result<Option<ScaleFigures>> {
     let name = format!("field:{count}");
@@ -67,7 +67,7 @@ fn run(
     contender: &mut Contender,
     job: &RenderJob,
     samples: u64,
-    progress: &Progress,
+    progress: &mut Progress,
     cancel: &AtomicBool,
 ) -> Result<(), Cancelled> {
     contender.warm_up(job, samples, options.run_limit_seconds, cancel)?;

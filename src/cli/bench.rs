@@ -1,9 +1,8 @@
 //! The flags of `weekender bench`, and what they mean together.
 
-use super::options::{JsonTarget, json_target};
 use super::raw::{ProgressChoice, RawSampler};
 use super::sources::{self, CliError};
-use super::values::{Levels, parse_counts, parse_levels, parse_seconds, parse_size};
+use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size};
 use crate::backends::BackendError;
 use crate::chart::ChartFormat;
 use crate::recipe::Recipe;
@@ -163,7 +162,7 @@ pub(super) fn bench(raw: RawBench) -> Result<BenchOptions, CliError> {
         adapter: raw.adapter,
         runs: raw.runs.map_or(if raw.quick { 3 } else { 5 }, |runs| runs as usize),
         run_limit_seconds: raw.run_limit.unwrap_or(if raw.quick { 1.0 } else { 10.0 }),
-        json: raw.json.map(json_target),
+        json: raw.json.map(JsonTarget::from),
         plot: raw.plot,
         progress: raw.progress,
         size: raw.size,

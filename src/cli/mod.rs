@@ -1,24 +1,28 @@
 //! The command line: what was typed, checked, as options that can be carried out.
 
 mod bench;
-mod options;
+mod compare;
+mod diff;
 mod raw;
+mod render;
+mod report;
 mod sources;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
-pub use options::{
-    BatchOptions, CompareOptions, CompareSide, DiffOptions, JsonTarget, MergeOptions, PathChoice,
-    ReferenceChoice, RenderOptions, ReportBackend, ReportOptions, SaveSceneOptions, SideChoice,
-    WindowOptions,
-};
+pub use compare::{CompareOptions, CompareSide};
+pub use diff::{DiffOptions, PathChoice, SideChoice};
 pub use raw::ProgressChoice;
+pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
+pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
 pub use sources::CliError;
+pub use values::JsonTarget;
 
 use crate::failure::Failure;
 use clap::Parser;
 use raw::{Raw, RawCommand};
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 /// What the program is asked to do.
 #[derive(Debug)]
@@ -43,6 +47,15 @@ pub enum Request {
     Batch(Box<BatchOptions>),
 }
 
+/// Films to be added.
+#[derive(Clone, Debug)]
+pub struct MergeOptions {
+    /// The films.
+    pub films: Vec<PathBuf>,
+    /// Where the sum goes.
+    pub out: PathBuf,
+}
+
 /// Reads the command line; the first argument is the program's name.
 ///
 /// # Errors
@@ -58,15 +71,15 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         }
         Some(RawCommand::Merge { films, out }) => Ok(Request::Merge(MergeOptions { films, out })),
         Some(RawCommand::Diff(raw)) => {
-            options::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)
+            diff::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)
         }
         Some(RawCommand::Compare(raw)) => {
-            options::compare(*raw).map(|options| Request::Compare(Box::new(options))).map_err(Failure::input)
+            compare::compare(*raw).map(|options| Request::Compare(Box::new(options))).map_err(Failure::input)
         }
-        Some(RawCommand::Report(raw)) => options::report(*raw, command)
+        Some(RawCommand::Report(raw)) => report::report(*raw, command)
             .map(|options| Request::Report(Box::new(options)))
             .map_err(Failure::input),
         None if raw.render.list => Ok(Request::List),
-        None => options::request(raw.render).map_err(Failure::input),
+        None => render::request(raw.render).map_err(Failure::input),
     }
 }

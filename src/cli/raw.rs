@@ -1,13 +1,14 @@
-//! The flags as they are typed. What they mean together is found out in `options`.
+//! The flags of rendering as they are typed, and those that subcommands share. A subcommand's own stand in its file.
 
 use super::bench::RawBench;
+use super::compare::RawCompare;
+use super::diff::RawDiff;
+use super::report::RawReport;
 use super::values::{
-    Level, RawSide, Simd, parse_isa, parse_number, parse_pixel, parse_rmse, parse_sample_range,
-    parse_seconds, parse_sides, parse_simd, parse_size, parse_tolerance, parse_vector,
+    Level, Simd, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds, parse_simd,
+    parse_size, parse_vector,
 };
-use crate::output::Encoding;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
-use crate::stages::Transfer;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use std::ops::Range;
@@ -198,184 +199,10 @@ pub(super) struct RawPicture {
     pub focus_distance: Option<f64>,
 }
 
-#[derive(Debug, Args)]
-pub(super) struct RawDiff {
-    /// The pixel, from 0,0 at the upper left
-    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "find",
-          conflicts_with = "find", help_heading = "Path")]
-    pub pixel: Option<[u32; 2]>,
-    /// The sample's number, from 0
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(0..SAMPLE_LIMIT),
-          allow_hyphen_values = true, default_value = "0", conflicts_with = "find", help_heading = "Path")]
-    pub sample: u64,
-    /// Look through this many samples of every pixel for the one that differs most; without --size the picture
-    /// is made at most 200 pixels wide for it
-    #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
-          num_args = 0..=1, default_missing_value = "4", help_heading = "Path")]
-    pub find: Option<u64>,
-
-    /// Who is compared: two of cpu (the level --isa), baseline (multiply and add rounded apart), reference (f64)
-    /// and gpu
-    #[arg(long, value_name = "A,B", value_parser = parse_sides, default_value = "cpu,gpu",
-          help_heading = "Comparison")]
-    pub sides: [RawSide; 2],
-    /// Largest difference that counts as none, as a share of the larger value
-    #[arg(long, value_name = "SHARE", value_parser = parse_tolerance, allow_hyphen_values = true,
-          default_value = "1e-4", help_heading = "Comparison")]
-    pub tolerance: f64,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
-    #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
-    pub adapter: Option<String>,
-    /// Instruction level of the side cpu: auto, baseline, sse4.2, avx2, avx512, neon
-    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
-          help_heading = "Comparison")]
-    pub isa: Level,
-    /// Write both paths and the verdict as JSON; - is standard output
-    #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
-    pub json: Option<PathBuf>,
-
-    #[command(flatten)]
-    pub picture: RawPicture,
-    /// As for rendering: whether samples are kept in two halves, which decides their numbers
-    /// [default: on, or the scene's]
-    #[arg(long, value_enum, help_heading = "Picture")]
-    pub estimate_error: Option<RawSwitch>,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct RawCompare {
-    /// A film or picture (.exr, .pfm, .png, .ppm) of any program, or what is to render it now: cpu, scalar,
-    /// baseline (multiply and add rounded apart), reference (f64) or gpu
-    #[arg(value_name = "FIRST")]
-    pub first: String,
-    /// As the first; a backend beside a film renders the same samples, beside a picture one of its size
-    #[arg(value_name = "SECOND")]
-    pub second: String,
-
-    /// Samples per pixel of what is rendered, 1 to 4294967296 [default: the film's, or 64]
-    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
-          allow_hyphen_values = true, help_heading = "Comparison")]
-    pub samples: Option<u64>,
-    /// What whole numbers in pictures of other programs stand for: the square root as in the book, linear, or sRGB
-    #[arg(long, value_enum, default_value = "gamma2", help_heading = "Comparison")]
-    pub encoding: RawEncoding,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
-    #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
-    pub adapter: Option<String>,
-    /// Write the differences as a picture, from dark (1e-4) to bright (1), the worst blocks framed
-    #[arg(long, value_name = "FILE.png", help_heading = "Comparison")]
-    pub heat_map: Option<PathBuf>,
-    /// Write the figures as JSON; - is standard output
-    #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
-    pub json: Option<PathBuf>,
-
-    #[command(flatten)]
-    pub picture: RawPicture,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct RawReport {
-    /// Where the report goes: report.md, .csv and .json, error-vs-time.png and .svg, references
-    #[arg(long, value_name = "DIRECTORY")]
-    pub out: PathBuf,
-
-    /// See whether the error that pictures tell of themselves is true. Unless said otherwise: 24 pictures of 96x54
-    /// a curve, 256 samples, no time limit; three-spheres, book, close-up, hollow glass from near by; cpu, and gpu
-    /// where there is one
-    #[arg(long, help_heading = "What is compared")]
-    pub calibration: bool,
-    /// Built-in scenes, field:N or scene files, with commas between them [default: three-spheres,book]
-    #[arg(
-        long = "scenes",
-        alias = "scene",
-        value_name = "A,B,...",
-        value_delimiter = ',',
-        help_heading = "What is compared"
-    )]
-    pub scenes: Vec<String>,
-    /// Backends: cpu (the widest packets), scalar (one lane), baseline, reference (f64), gpu,
-    /// c89 (the plain C program) [default: cpu,scalar, gpu where there is one, c89 where there is a C compiler]
-    #[arg(long, value_name = "A,B,...", value_delimiter = ',', help_heading = "What is compared")]
-    pub backends: Vec<String>,
-    /// Samplers
-    #[arg(
-        long,
-        value_enum,
-        value_name = "A,B",
-        value_delimiter = ',',
-        default_value = "sobol,independent",
-        help_heading = "What is compared"
-    )]
-    pub samplers: Vec<RawSampler>,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
-    #[arg(long, value_name = "SUBSTRING", help_heading = "What is compared")]
-    pub adapter: Option<String>,
-
-    /// Width and height of all pictures in pixels, each 1 to 16384 [default: 160x90]
-    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "How it is measured")]
-    pub size: Option<(u32, u32)>,
-    /// Pictures of each curve, which differ in their random numbers alone, 1 to 1000 [default: 8]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000),
-          allow_hyphen_values = true, help_heading = "How it is measured")]
-    pub seeds: Option<u32>,
-    /// Seconds of tracing for all pictures of a curve; a picture ends with the last doubling that fits in
-    /// [default: 12]
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_hyphen_values = true,
-          help_heading = "How it is measured")]
-    pub time_limit: Option<f64>,
-    /// Most samples per pixel, 2 to 4294967296 [default: 1024]
-    #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
-          allow_hyphen_values = true, help_heading = "How it is measured")]
-    pub max_samples: Option<u64>,
-    /// Keep samples in two halves, which tell the error; off makes one set of points of them
-    #[arg(
-        long,
-        value_enum,
-        default_value = "on",
-        conflicts_with = "calibration",
-        help_heading = "How it is measured"
-    )]
-    pub estimate_error: RawSwitch,
-    /// Tell the seconds to this RMSE, too, and mark it in the plot [default: 0.01]
-    #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
-          help_heading = "How it is measured")]
-    pub target: Option<f64>,
-    /// A film to measure against, of the one scene at this size and with two halves
-    #[arg(long, value_name = "FILM.exr", help_heading = "How it is measured")]
-    pub reference: Option<PathBuf>,
-    /// What renders the references otherwise: as --backends
-    #[arg(
-        long,
-        value_name = "BACKEND",
-        default_value = "reference",
-        conflicts_with = "reference",
-        help_heading = "How it is measured"
-    )]
-    pub reference_backend: String,
-    /// Samples per pixel of the references [default: 4 times --max-samples, for --calibration 16 times]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
-          allow_hyphen_values = true, conflicts_with = "reference", help_heading = "How it is measured")]
-    pub reference_samples: Option<u64>,
-
-    /// Progress on standard error; auto: when it is a terminal
-    #[arg(long, value_enum, default_value = "auto")]
-    pub progress: ProgressChoice,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum RawEncoding {
-    Gamma2,
-    Linear,
-    Srgb,
-}
-
-impl From<RawEncoding> for Encoding {
-    fn from(raw: RawEncoding) -> Self {
-        match raw {
-            RawEncoding::Gamma2 => Encoding::Book(Transfer::Gamma2),
-            RawEncoding::Linear => Encoding::Book(Transfer::Linear),
-            RawEncoding::Srgb => Encoding::Srgb,
-        }
+impl RawPicture {
+    /// Whether all stages are asked for, not one picture.
+    pub fn is_every_stage(&self) -> bool {
+        self.stage.as_deref() == Some("all")
     }
 }
 

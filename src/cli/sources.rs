@@ -138,6 +138,15 @@ pub(super) fn is_file(scene: &str) -> bool {
     path.extension().is_some() || path.components().count() > 1
 }
 
+/// Makes a picture at most `width` pixels wide, of the same shape, unless its size was asked for.
+pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
+    let settings = &mut recipe.settings;
+    if raw.size.is_none() && settings.width > width {
+        let height = f64::from(settings.height) * f64::from(width) / f64::from(settings.width);
+        (settings.width, settings.height) = (width, (height.round() as u32).max(1));
+    }
+}
+
 fn of_film(path: &Path) -> Result<Source, CliError> {
     let description = read_description(path)?;
     let name = description.get(key::SCENE).unwrap_or("film");

@@ -1,10 +1,26 @@
-//! Values of flags. A message says what is allowed; clap puts the value and the flag before it.
+//! Values of flags, and what they stand for. A message says what is allowed; clap puts the value and the flag before it.
 
 use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::render_cpu::Isa;
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
 use glam::DVec3;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// Where JSON goes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum JsonTarget {
+    /// Standard output.
+    StandardOutput,
+    /// A file.
+    File(PathBuf),
+}
+
+impl From<PathBuf> for JsonTarget {
+    fn from(path: PathBuf) -> Self {
+        if path == Path::new("-") { JsonTarget::StandardOutput } else { JsonTarget::File(path) }
+    }
+}
 
 /// Lanes as typed: `None` leaves the choice to the backend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,10 +12,10 @@ use crate::cli::{CompareOptions, JsonTarget};
 use crate::failure::Failure;
 use crate::film::{check_writable, replace_file};
 use crate::recipe::Recipe;
-use anyhow::{Context, Result, bail};
+use crate::terminal::{print_beside, write_json};
+use anyhow::{Result, bail};
 use serde::Serialize;
 use side::{Opened, Rendering};
-use std::io::Write;
 use std::process::ExitCode;
 
 /// Version of the JSON: it grows when a key changes its meaning or goes away.
@@ -74,7 +74,11 @@ pub fn run(options: &CompareOptions) -> Result<ExitCode, Failure> {
 }
 
 fn compared(options: &CompareOptions) -> Result<ExitCode> {
-    if let Some(path) = &options.heat_map {
+    let json = match &options.json {
+        Some(JsonTarget::File(path)) => Some(path),
+        _ => None,
+    };
+    for path in [json, options.heat_map.as_ref()].into_iter().flatten() {
         check_writable(path)?;
     }
     let (sides, paired) = sides(options)?;
@@ -93,11 +97,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
     let mut comparison = compare(a, b, paired);
     comparison.notes.extend(note_on_jobs(a, b));
     let text = text::told(&sides, &comparison);
-    if options.json == Some(JsonTarget::StandardOutput) {
-        eprint!("{text}")
-    } else {
-        print(&text)
-    }
+    print_beside(options.json.as_ref(), &text);
     if let Some(path) = &options.heat_map {
         replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
     }
@@ -225,19 +225,4 @@ fn report(sides: &[Side; 2], comparison: &Comparison) -> Report {
         reasons: comparison.reasons.clone(),
         notes: comparison.notes.clone(),
     }
-}
-
-fn write_json(report: &Report, target: &JsonTarget) -> Result<()> {
-    let mut text = serde_json::to_string_pretty(report).context("cannot make JSON of the comparison")?;
-    text.push('\n');
-    match target {
-        JsonTarget::StandardOutput => print(&text),
-        JsonTarget::File(path) => replace_file(path, |writer| writer.write_all(text.as_bytes()))?,
-    }
-    Ok(())
-}
-
-/// Prints to standard output; a reader that has gone away is none of our business.
-fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
 }

@@ -13,11 +13,11 @@ pub use words::Told;
 
 use crate::cli::{DiffOptions, JsonTarget, PathChoice};
 use crate::failure::Failure;
-use crate::film::replace_file;
+use crate::film::check_writable;
 use crate::record::PathRecord;
-use anyhow::Context;
+use crate::terminal::{is_taken, print_beside, write_json};
 use serde::Serialize;
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::process::ExitCode;
 use text::{Paint, Tone};
 
@@ -52,6 +52,9 @@ struct ReportedSide<'a> {
 /// # Errors
 /// [`Failure::Input`], also where a backend fails on the way: exit code 1 says that the paths differ.
 pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
+    if let Some(JsonTarget::File(path)) = &options.json {
+        check_writable(path).map_err(Failure::input)?;
+    }
     let [a, b] = &options.sides;
     let mut sides = [Side::open(a).map_err(Failure::input)?, Side::open(b).map_err(Failure::input)?];
     if sides[0].name == sides[1].name {
@@ -77,18 +80,18 @@ pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
         tolerance: options.tolerance,
     };
 
-    let to_stderr = options.json == Some(JsonTarget::StandardOutput);
+    let json = options.json.as_ref();
     let is_terminal =
-        if to_stderr { std::io::stderr().is_terminal() } else { std::io::stdout().is_terminal() };
+        if is_taken(json) { std::io::stderr().is_terminal() } else { std::io::stdout().is_terminal() };
     let paint =
         Paint { is_on: is_terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()) };
     let mut text = opening(options, &sides, pixel, sample, found, paint);
     text.push('\n');
     text.push_str(&text::bounces(&told, &comparison, paint));
     text.push_str(&text::closing(&told, &comparison, paint));
-    show(&text, to_stderr);
+    print_beside(json, &text);
 
-    if let Some(target) = &options.json {
+    if let Some(target) = json {
         let [about_a, about_b] = [0, 1].map(|side: usize| sides[side].about.as_str());
         let report = Report {
             schema: SCHEMA,
@@ -147,22 +150,4 @@ fn opening(
         format!("{}{content}\n", paint.paint(Tone::Strong, &format!("{label:<9}")))
     };
     lines.iter().map(line).collect()
-}
-
-/// Prints for a person. A reader who has gone away is no failure.
-fn show(text: &str, to_stderr: bool) {
-    let _ = if to_stderr {
-        std::io::stderr().lock().write_all(text.as_bytes())
-    } else {
-        std::io::stdout().lock().write_all(text.as_bytes())
-    };
-}
-
-fn write_json(report: &Report, target: &JsonTarget) -> anyhow::Result<()> {
-    let text = serde_json::to_string_pretty(report).context("the paths cannot be put as JSON")? + "\n";
-    match target {
-        JsonTarget::StandardOutput => show(&text, false),
-        JsonTarget::File(path) => replace_file(path, |writer| writer.write_all(text.as_bytes()))?,
-    }
-    Ok(())
 }

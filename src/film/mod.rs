@@ -15,7 +15,7 @@ pub use checkpoint::{CheckpointError, FilmFile};
 pub use description::{Description, RECIPE_KEY, key};
 pub use merge::{MergeError, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;
-pub use replace::{WriteError, check_writable, replace_file};
+pub use replace::{WriteError, check_writable, replace_file, write_text};
 
 use crate::stages::Transfer;
 use std::ops::Range;

@@ -44,6 +44,14 @@ pub fn replace_file(
     try_replace(path, write).map_err(|reason| WriteError { path: path.to_owned(), reason })
 }
 
+/// Writes a text in place of `path`, as [`replace_file`] does.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
+    replace_file(path, |writer| writer.write_all(text.as_bytes()))
+}
+
 /// Finds out whether [`replace_file`] could write `path`. It leaves nothing behind, and a file that is there as
 /// it is.
 ///

@@ -114,10 +114,7 @@ pub fn write_image(
 pub fn read_description(path: &Path) -> Result<Description, OutputError> {
     let unreadable = |reason| OutputError::Read { path: path.to_owned(), reason };
     let read = || {
-        let mut reader = BufReader::new(File::open(path)?);
-        let mut start = Vec::new();
-        reader.by_ref().take(8).read_to_end(&mut start)?;
-        reader.rewind()?;
+        let (reader, start) = opened(path)?;
         match start.as_slice() {
             [0x89, b'P', b'N', b'G', ..] => png::read_description(reader),
             [b'P', b'6', ..] => ppm::read_description(reader),
@@ -126,6 +123,15 @@ pub fn read_description(path: &Path) -> Result<Description, OutputError> {
         }
     };
     read().map_err(unreadable)?.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
+}
+
+/// A file from its beginning, and the first bytes of it, which tell what it is.
+fn opened(path: &Path) -> io::Result<(BufReader<File>, Vec<u8>)> {
+    let mut reader = BufReader::new(File::open(path)?);
+    let mut start = Vec::new();
+    reader.by_ref().take(8).read_to_end(&mut start)?;
+    reader.rewind()?;
+    Ok((reader, start))
 }
 
 /// All pixels, 8-bit RGB, a row at a time: a picture may be larger than one likes to have in memory again.

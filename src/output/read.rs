@@ -5,7 +5,7 @@ use super::pfm;
 use crate::film::checkpoint;
 use crate::stages::Transfer;
 use std::fs::File;
-use std::io::{self, BufReader, Read, Seek};
+use std::io::{self, BufReader};
 use std::path::Path;
 
 /// What numbers of 8 or 16 bits stand for.
@@ -52,10 +52,7 @@ pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
 /// [`OutputError::Read`].
 pub fn read_picture(path: &Path, encoding: Encoding) -> Result<ReadPicture, OutputError> {
     let read = || {
-        let mut reader = BufReader::new(File::open(path)?);
-        let mut start = Vec::new();
-        reader.by_ref().take(4).read_to_end(&mut start)?;
-        reader.rewind()?;
+        let (reader, start) = super::opened(path)?;
         match start.as_slice() {
             [b'P', b'F' | b'f', ..] => pfm::read(reader).map(float),
             start if start.starts_with(&checkpoint::MAGIC) => read_exr(reader).map(float),

@@ -7,8 +7,10 @@
 
 mod passes;
 mod plan;
+mod render;
 mod shared;
 mod status;
+mod upcoming;
 mod view;
 mod worker;
 

@@ -92,6 +92,11 @@ impl Recipe {
     }
 }
 
+/// A name as every file system takes it: other signs become dashes.
+pub fn plain_name(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_. ".contains(c) { c } else { '-' }).collect()
+}
+
 impl Stage {
     /// The picture that shows this stage.
     pub fn recipe(&self) -> Recipe {

@@ -69,6 +69,11 @@ impl AdapterInfo {
         }
     }
 
+    /// Whether it is chosen when none is named: a GPU that the path tracer can run on.
+    pub fn is_fit(&self) -> bool {
+        !self.is_software && self.lacks.is_none()
+    }
+
     /// Smaller is chosen first.
     fn rank(&self) -> (bool, bool, u8, u8) {
         let kind = match self.kind {

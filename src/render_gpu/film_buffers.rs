@@ -2,6 +2,7 @@
 //! buffers and cleared, and goes home while the device traces on.
 
 use super::device::Gpu;
+use super::failed;
 use super::layout::{GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, tile_size};
 use super::schedule::BLOCK_LIMIT;
 use crate::film::{Film, SampleRanges};
@@ -63,10 +64,6 @@ pub struct FilmBuffers {
     pub arrivals: u64,
     /// What that took the host, all together.
     pub arrivals_took: Duration,
-}
-
-fn failed(reason: String) -> RenderError {
-    RenderError::Backend { backend: "gpu", reason }
 }
 
 fn shape(settings: &RenderSettings, limit: u64) -> (u32, u32, usize, u64) {

@@ -1,9 +1,9 @@
 //! Kernels: a shader specialised by override constants, compiled once for each set of them, on a thread of its
 //! own.
 
-use super::Overrides;
 use super::device::Gpu;
 use super::shader_source::{EntryPoint, source};
+use super::{Overrides, failed};
 use crate::render::RenderError;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -68,7 +68,6 @@ impl Kernels {
         loop {
             match slot {
                 Slot::Done(kernel) => {
-                    let failed = |reason| RenderError::Backend { backend: "gpu", reason };
                     return kernel.clone().map_err(failed);
                 }
                 Slot::Compiling(kernel) => match kernel.recv_timeout(LOOK) {

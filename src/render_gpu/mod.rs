@@ -101,6 +101,17 @@ impl GpuRenderer {
         }
     }
 
+    /// Runs `work` on what is prepared, if anything is.
+    fn with_present<T: Default>(
+        &mut self,
+        work: impl FnOnce(&mut Self, &mut Prepared) -> Result<T, RenderError>,
+    ) -> Result<T, RenderError> {
+        let Some(mut prepared) = self.prepared.take() else { return Ok(T::default()) };
+        let result = work(self, &mut prepared);
+        self.prepared = Some(prepared);
+        result
+    }
+
     /// Runs `work` on the job. Where it fails, what was traced is forgotten.
     fn with_prepared<T>(
         &mut self,
@@ -193,16 +204,10 @@ impl Renderer for GpuRenderer {
     }
 
     fn fetch(&mut self) -> Result<(), RenderError> {
-        let Some(mut prepared) = self.prepared.take() else { return Ok(()) };
-        let result = self.send_for_film(&mut prepared);
-        self.prepared = Some(prepared);
-        result
+        self.with_present(Self::send_for_film)
     }
 
     fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
-        let Some(mut prepared) = self.prepared.take() else { return Ok(Stats::default()) };
-        let result = self.collect_all(&mut prepared, film);
-        self.prepared = Some(prepared);
-        result
+        self.with_present(|this, prepared| this.collect_all(prepared, film))
     }
 }

@@ -75,6 +75,17 @@ impl Default for GpuOptions {
     }
 }
 
+impl GpuOptions {
+    /// The adapter that `wanted` names, software too: whoever names it wants it. `None`: the best there is.
+    pub fn of_adapter(wanted: Option<&str>) -> Self {
+        GpuOptions {
+            adapter: wanted.map(str::to_owned),
+            allow_software: wanted.is_some(),
+            ..GpuOptions::default()
+        }
+    }
+}
+
 /// Why there is no GPU to render on.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum GpuError {

@@ -12,12 +12,13 @@ mod table;
 
 use crate::backends;
 use crate::chart;
-use crate::cli::{ReferenceChoice, ReportOptions};
+use crate::cli::{JsonTarget, ReferenceChoice, ReportOptions};
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::{Film, check_writable, replace_file};
+use crate::film::{Film, check_writable, write_text};
 use crate::interrupt::Interrupt;
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, plain_name};
 use crate::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
+use crate::terminal::write_json;
 use anyhow::{Context, Result};
 use calibration::Calibration;
 use contender::{Contender, Limits};
@@ -25,7 +26,6 @@ use data::{Curve, Data, SCHEMA, Settings};
 use progress::Progress;
 use reference::Reference;
 use serde::Serialize;
-use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
@@ -132,7 +132,7 @@ impl<'a> Report<'a> {
         let reference = match &self.options.reference {
             ReferenceChoice::File(path) => Some(reference::read(path, recipe)?),
             ReferenceChoice::Make { choice, samples, .. } => {
-                let path = self.options.out.join(format!("reference-{}.exr", plain(&recipe.name)));
+                let path = self.options.out.join(format!("reference-{}.exr", plain_name(&recipe.name)));
                 let what = format!("reference of {}", recipe.name);
                 reference::make(&path, recipe, choice, *samples, |share| {
                     progress.at(&what, share * EXPECTED_SECONDS);
@@ -211,9 +211,7 @@ impl<'a> Report<'a> {
             calibration: calibration::calibration(&self.data),
             sampler_ratios: summary::sampler_ratios(&curves),
         };
-        let mut text = serde_json::to_string_pretty(&written).context("cannot make JSON of the report")?;
-        text.push('\n');
-        write_text(&self.options.out.join("report.json"), &text)
+        write_json(&written, &JsonTarget::File(self.options.out.join("report.json")))
     }
 
     fn write(&self) -> Result<()> {
@@ -294,13 +292,4 @@ fn film(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Result<Fi
     let mut film = job.new_film();
     renderer.accumulate(job, 0..samples, &mut film, &AtomicBool::new(false))?;
     Ok(film)
-}
-
-/// A name that every file system takes.
-fn plain(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
-}
-
-fn write_text(path: &Path, text: &str) -> Result<()> {
-    Ok(replace_file(path, |writer| writer.write_all(text.as_bytes()))?)
 }

@@ -1,8 +1,8 @@
-//! Progress on standard error: a bar with the time left on a terminal, now and then a line elsewhere, or nothing.
+//! How far the report is, and how long it will still take.
 
 use crate::cli::ProgressChoice;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
-use std::io::{IsTerminal, stderr};
+use crate::terminal::Display;
+use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 
 /// Time between lines where there is no terminal.
@@ -13,8 +13,7 @@ const STEPS: f64 = 1000.0;
 
 /// How far the report is, by shares of its expected time.
 pub(super) struct Progress {
-    bar: Option<ProgressBar>,
-    next_line: Option<Instant>,
+    display: Display,
     begin: Instant,
     done: f64,
     total: f64,
@@ -23,16 +22,8 @@ pub(super) struct Progress {
 impl Progress {
     /// `total` is the expected time of everything, in any unit.
     pub(super) fn new(choice: ProgressChoice, total: f64) -> Self {
-        let is_terminal = stderr().is_terminal();
-        let bar = (is_terminal && choice != ProgressChoice::Off).then(|| {
-            let bar = ProgressBar::with_draw_target(Some(STEPS as u64), ProgressDrawTarget::stderr());
-            if let Ok(style) = ProgressStyle::with_template("[{bar:24}] {wide_msg}") {
-                bar.set_style(style.progress_chars("=> "));
-            }
-            bar
-        });
-        let next_line = (!is_terminal && choice == ProgressChoice::On).then(Instant::now);
-        Progress { bar, next_line, begin: Instant::now(), done: 0.0, total: total.max(f64::MIN_POSITIVE) }
+        let display = Display::new(choice, STEPS as u64, "[{bar:24}] {wide_msg}", "", LINE_INTERVAL);
+        Progress { display, begin: Instant::now(), done: 0.0, total: total.max(f64::MIN_POSITIVE) }
     }
 
     /// `within` of the expected time has been spent on `what`, which is not done yet.
@@ -40,14 +31,8 @@ impl Progress {
         let share = ((self.done + within) / self.total).clamp(0.0, 1.0);
         let left = (share > 0.02).then(|| self.begin.elapsed().mul_f64((1.0 - share) / share));
         let left = left.map_or_else(String::new, |left| format!(", {} left", HumanDuration(left)));
-        if let Some(bar) = &self.bar {
-            bar.set_position((share * STEPS) as u64);
-            bar.set_message(format!("{what}{left}"));
-        }
-        if let Some(next) = self.next_line.as_mut().filter(|next| Instant::now() >= **next) {
-            *next = Instant::now() + LINE_INTERVAL;
-            eprintln!("{:3.0} % {what}{left}", 100.0 * share);
-        }
+        let percent = if self.display.is_bar() { String::new() } else { format!("{:3.0} % ", 100.0 * share) };
+        self.display.update((share * STEPS) as u64, || format!("{percent}{what}{left}"));
     }
 
     /// What took `expected` is done.
@@ -57,8 +42,6 @@ impl Progress {
 
     /// Takes the bar away.
     pub(super) fn clear(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
+        self.display.clear();
     }
 }

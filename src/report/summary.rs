@@ -2,6 +2,7 @@
 
 use super::data::{Curve, Data, Measured, Run};
 use crate::statistics::fit::{Crossing, Point, PowerLaw, time_to};
+use crate::statistics::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -77,6 +78,7 @@ impl CurveSummary {
 fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
     let count = points.len() as f64;
     let mean = |of: fn(&Measured) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / count;
+    let median_of = |of: fn(&Measured) -> f64| median(points.iter().map(|p| of(p))).unwrap_or(f64::NAN);
     let mse = mean(|p| p.mse).max(f64::MIN_POSITIVE);
     let estimates: Option<Vec<f64>> = points.iter().map(|p| p.mse_estimate).collect();
     let device: Option<Vec<f64>> = points.iter().map(|p| p.device_seconds).collect();
@@ -84,25 +86,14 @@ fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
     CurvePoint {
         samples,
         seeds: points.len(),
-        trace_seconds: median(points.iter().map(|p| p.trace_seconds)),
-        wall_seconds: median(points.iter().map(|p| p.wall_seconds)),
-        device_seconds: device.map(|all| median(all.into_iter())),
+        trace_seconds: median_of(|p| p.trace_seconds),
+        wall_seconds: median_of(|p| p.wall_seconds),
+        device_seconds: device.and_then(median),
         rmse: mse.sqrt(),
         range: [roots().fold(f64::INFINITY, f64::min), roots().fold(0.0, f64::max)],
         rel_mse: mean(|p| p.rel_mse),
         flip: mean(|p| p.flip),
         estimate_ratio: estimates.map(|all| (all.iter().sum::<f64>() / count / mse).sqrt()),
-    }
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => f64::NAN,
-        count if !count.is_multiple_of(2) => values[middle],
-        _ => 0.5 * (values[middle - 1] + values[middle]),
     }
 }
 
@@ -228,11 +219,5 @@ mod tests {
         assert_eq!(ratios.len(), 9);
         assert!(ratios.iter().all(|r| (r.at_equal_samples - 4.0).abs() < 1e-9));
         assert!(ratios.iter().all(|r| (r.at_equal_time - 4.0 / 1.2).abs() < 1e-9));
-    }
-
-    #[test]
-    fn medians() {
-        assert_eq!(median([3.0, 1.0, 2.0].into_iter()), 2.0);
-        assert_eq!(median([4.0, 1.0, 2.0, 3.0].into_iter()), 2.5);
     }
 }

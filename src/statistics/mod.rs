@@ -4,3 +4,27 @@ pub mod blocks;
 pub mod fit;
 pub mod flip;
 pub mod normal;
+
+/// The value in the middle, or the mean of the two there; `None` of nothing. NaN counts as the largest.
+pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.into_iter().collect();
+    sorted.sort_by(f64::total_cmp);
+    let upper = sorted.len() / 2;
+    match sorted.len() {
+        0 => None,
+        count if count % 2 == 1 => Some(sorted[upper]),
+        _ => Some(0.5 * (sorted[upper - 1] + sorted[upper])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::median;
+
+    #[test]
+    fn medians() {
+        assert_eq!(median([3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median([4.0, 1.0, 2.0, 3.0]), Some(2.5));
+        assert_eq!(median([]), None);
+    }
+}

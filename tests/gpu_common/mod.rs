@@ -1,6 +1,7 @@
 //! What the GPU's tests share.
 #![allow(dead_code, reason = "each test uses some of it")]
 
+use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer};
@@ -8,8 +9,8 @@ use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{Rules, Stage};
 
-/// A renderer on any adapter, software too, or on that which `WEEKENDER_TEST_ADAPTER` names. Without one the test says so and passes, unless
-/// `WEEKENDER_REQUIRE_GPU=1`.
+/// A renderer on any adapter, software too, or on that which `WEEKENDER_TEST_ADAPTER` names. Without one the test
+/// says so and passes, unless `WEEKENDER_REQUIRE_GPU=1`.
 pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
     let adapter = std::env::var("WEEKENDER_TEST_ADAPTER").ok();
     match GpuRenderer::new(GpuOptions { adapter, allow_software: true, ..options }) {
@@ -41,24 +42,13 @@ pub fn job_of(
 
 /// Every stage and every built-in scene.
 pub fn jobs(width: u32, height: u32) -> Vec<(String, RenderJob)> {
-    let settings = |max_depth| RenderSettings {
-        width,
-        height,
-        max_depth,
-        sampler: SamplerKind::Sobol,
-        seed: 0,
-        estimate_error: false,
+    let job = |mut recipe: Recipe| {
+        (recipe.settings.width, recipe.settings.height) = (width, height);
+        recipe.settings.estimate_error = false;
+        recipe.job().unwrap()
     };
-    let mut jobs = Vec::new();
-    for stage in Stage::ALL {
-        let setup = &stage.setup;
-        let job = RenderJob::new((setup.scene)(), setup.camera, settings(setup.max_depth), setup.rules);
-        jobs.push((format!("stage {}", stage.id), job.unwrap()));
-    }
-    for scene in BuiltinScene::ALL.iter() {
-        let (spheres, camera) = (scene.build)();
-        let job = RenderJob::new(spheres, camera, settings(scene.max_depth), Rules::default());
-        jobs.push((format!("scene {}", scene.name), job.unwrap()));
-    }
-    jobs
+    let stages = Stage::ALL.iter().map(|stage| (format!("stage {}", stage.id), job(stage.recipe())));
+    let scenes = BuiltinScene::ALL.iter();
+    let scenes = scenes.map(|s| (format!("scene {}", s.name), job(Recipe::builtin(s.name).unwrap())));
+    stages.chain(scenes).collect()
 }

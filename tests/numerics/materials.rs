@@ -164,32 +164,16 @@ fn grazing<const FUSED: bool>() {
             // The largest coin there is.
             let coin = weekender::sampling::unit_float(u32::MAX);
             let zero = v3(l, DVec3::ZERO);
-            let bounced = scatter::<_, true>(
-                l,
-                &surface,
-                DielectricLaws::Schlick,
-                v3(l, direction),
-                v3(l, normal),
-                0.0,
-                front,
-                zero,
-                coin,
-            );
+            let scattered = |laws: DielectricLaws| {
+                let (direction, normal) = (v3(l, direction), v3(l, normal));
+                scatter::<_, true>(l, &surface, laws, direction, normal, 0.0, front, zero, coin)
+            };
+            let bounced = scattered(DielectricLaws::Schlick);
             assert!(!bounced.refracts, "index {index} lets light through at a grazing angle");
             let bounced = vector::<Scalar<FUSED>>(bounced.direction);
             assert!((bounced - direction).length() < 1e-6, "{bounced}, not {direction}");
             // And where the law is not asked whether it has a solution.
-            let wrong = scatter::<_, true>(
-                l,
-                &surface,
-                DielectricLaws::RefractOnly,
-                v3(l, direction),
-                v3(l, normal),
-                0.0,
-                front,
-                zero,
-                coin,
-            );
+            let wrong = scattered(DielectricLaws::RefractOnly);
             assert!(vector::<Scalar<FUSED>>(wrong.direction).is_finite());
         }
     }

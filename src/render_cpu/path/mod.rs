@@ -7,22 +7,26 @@
 //!
 //! Twin: shaders/path.wgsl
 
+mod draw;
+mod rows;
+mod simpler;
+mod single;
+
+pub use single::SinglePath;
+
 use super::bvh::{EMPTY_STACK, Stack, traverse};
 use super::camera::{lens_rays, pinhole_rays, screen};
-use super::lanes::{Lanes, V3, Wide, WideU, dot, mul_add3, select3, unit_float};
+use super::lanes::{Lanes, V3, dot, mul_add3, select3};
 use super::material::{Surface, hemisphere, scatter};
-use super::rng::{lens_stream_of, pcg4d, sobol_pair};
-use super::sphere::{
-    NONE, Nearest, Rays, Spheres, SurfacePoint, acne_root, anchored_root, anchored_surface_point, near_root,
-    nearest_root, surface_point,
-};
+use super::sphere::{NONE, Nearest, Rays, Spheres, acne_root, anchored_root, near_root, nearest_root};
 use super::wide::WideTables;
 use super::work::{LaneBlocks, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
-use crate::render::SamplerKind;
-use crate::sampling::GOLDEN_RATIO;
 use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
-use crate::tables::{NEAR_ZERO, Real, Tables};
+use crate::tables::NEAR_ZERO;
+use draw::{Draw, draw, has_lens, strides};
+use rows::{Rows, hit_points};
+use simpler::{shown_at_hit, strip_reflectance};
 
 /// Code that a kernel may carry, as bits of its constant parameter.
 pub mod needs {
@@ -43,19 +47,6 @@ pub mod needs {
 /// Packets that take turns. In a prototype with 16 lanes, fewer left the processor waiting (2: -10 %, 1: -35 %) and
 /// more gained nothing; not measured again here.
 const PACKETS: usize = 4;
-
-/// The numbers for a packet's next rays.
-#[derive(Clone, Copy)]
-struct Draw<L: Lanes> {
-    /// For a direction or a point on the lens.
-    pair: [L::F; 2],
-    /// Sine of the second of the pair, in turns.
-    sine: L::F,
-    /// Its cosine.
-    cosine: L::F,
-    /// For a point in the pixel where the pair is for the lens.
-    jitter: [L::F; 2],
-}
 
 struct Packet<L: Lanes> {
     rays: Rays<L>,
@@ -138,73 +129,6 @@ fn shade<L: Lanes, const NEEDS: u32>(
     }
 }
 
-/// A packet of one lane, for a record of what it does.
-pub struct SinglePath<L: Lanes> {
-    packet: Packet<L>,
-    stack: Stack,
-}
-
-impl<L: Lanes> SinglePath<L> {
-    /// Takes the first sample of `work`.
-    #[inline(always)]
-    pub fn start(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> Self {
-        let mut packet = Packet::idle(l);
-        shade::<L, { needs::ALL }>(
-            l,
-            wide,
-            std::slice::from_mut(&mut packet),
-            work,
-            &mut TileStats::default(),
-        );
-        SinglePath { packet, stack: EMPTY_STACK }
-    }
-
-    /// Whether there is a ray to trace.
-    pub fn is_alive(&self) -> bool {
-        L::bits(self.packet.alive) != 0
-    }
-
-    /// Whether the path was absorbed where it is.
-    pub fn is_absorbed(&self) -> bool {
-        L::bits(self.packet.absorbed) != 0
-    }
-
-    /// Where the ray starts.
-    pub fn origin(&self) -> V3<L::F> {
-        self.packet.rays.origin
-    }
-
-    /// Where it goes.
-    pub fn direction(&self) -> V3<L::F> {
-        self.packet.rays.direction
-    }
-
-    /// What its light counts for.
-    pub fn throughput(&self) -> V3<L::F> {
-        self.packet.throughput
-    }
-
-    /// Traces the ray and sends it on. Returns the number of the sphere that it met and the distance.
-    #[inline(always)]
-    pub fn advance(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) -> (u32, f64) {
-        let mut stats = TileStats::default();
-        intersect::<L, { needs::ALL }>(l, wide, &mut self.packet, &mut self.stack, &mut stats);
-        let (mut sphere, mut distance) = (WideU::default(), Wide::default());
-        L::store_u(self.packet.nearest.sphere, &mut sphere);
-        L::store(self.packet.nearest.distance(), &mut distance);
-        shade::<L, { needs::ALL }>(l, wide, std::slice::from_mut(&mut self.packet), work, &mut stats);
-        (sphere.0[0], distance.0[0].to_f64())
-    }
-
-    /// Ends an absorbed path.
-    #[inline(always)]
-    pub fn finish(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) {
-        if self.is_alive() {
-            self.advance(l, wide, work);
-        }
-    }
-}
-
 /// Finds what the rays of a packet meet first. Returns the lanes that are alive.
 #[inline(always)]
 fn intersect<L: Lanes, const NEEDS: u32>(
@@ -255,63 +179,6 @@ fn intersect<L: Lanes, const NEEDS: u32>(
     }
     packet.nearest = nearest;
     alive
-}
-
-/// Which row of the table each lane looks up.
-enum Rows<L: Lanes> {
-    /// Few enough that a column fits a register.
-    Permuted(L::U),
-    /// By their number in memory.
-    Gathered(WideU),
-}
-
-impl<L: Lanes> Rows<L> {
-    /// A lane without a `hit` gets some row.
-    #[inline(always)]
-    fn of(l: L, tables: &Tables<L::Real>, hit: L::U) -> Self {
-        if tables.rows.len() <= L::PERMUTED_ROWS {
-            return Rows::Permuted(hit);
-        }
-        let mut stored = WideU::default();
-        L::store_u(l.keep(!L::eq_u(hit, l.splat_u(NONE)), hit), &mut stored);
-        Rows::Gathered(stored)
-    }
-
-    /// Columns `4 group ..`.
-    #[inline(always)]
-    fn columns(&self, l: L, wide: &WideTables<L::Real>, group: usize) -> [L::F; 4] {
-        match self {
-            Rows::Permuted(numbers) => {
-                let column = |offset: usize| l.permute(&wide.columns[4 * group + offset], *numbers);
-                [column(0), column(1), column(2), column(3)]
-            }
-            Rows::Gathered(stored) => l.gather(&wide.tables.rows, stored, group),
-        }
-    }
-}
-
-/// The points that were hit, where anything was.
-#[inline(always)]
-fn hit_points<L: Lanes, const NEEDS: u32>(
-    l: L,
-    wide: &WideTables<L::Real>,
-    packet: &Packet<L>,
-    rows: &Rows<L>,
-) -> SurfacePoint<L> {
-    let [cx, cy, cz, curvature] = rows.columns(l, wide, 0);
-    let [radius, ..] = rows.columns(l, wide, 2);
-    let reference = V3 { x: cx, y: cy, z: cz };
-    let t = packet.nearest.distance();
-    let mut point = surface_point(l, &packet.rays, t, reference, curvature, radius);
-    if NEEDS & needs::ANCHORED != 0 && !wide.tables.anchored.is_empty() {
-        let [mx, my, mz, is_anchored] = rows.columns(l, wide, 3);
-        let inward = V3 { x: mx, y: my, z: mz };
-        let far = anchored_surface_point(l, &packet.rays, t, reference, inward, curvature);
-        let is_anchored = L::lt(l.constant(0.0), is_anchored);
-        point.position = select3::<L>(is_anchored, far.position, point.position);
-        point.outward = select3::<L>(is_anchored, far.outward, point.outward);
-    }
-    point
 }
 
 /// Adds the light that arrives, ends paths, starts the next sample where one has ended, and draws the numbers of
@@ -451,99 +318,10 @@ fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet:
     packet.throughput = select3::<L>(ended, V3 { x: one, y: one, z: one }, throughput);
 }
 
-/// What a ray brings back where the stage shows something simpler than light: `light` where it misses.
-#[inline(always)]
-fn shown_at_hit<L: Lanes, const NEEDS: u32>(
-    l: L,
-    wide: &WideTables<L::Real>,
-    packet: &Packet<L>,
-    miss: L::M,
-    light: V3<L::F>,
-) -> V3<L::F> {
-    let tables = &wide.tables;
-    let (zero, full) = (l.constant(0.0), l.constant(FIXED_POINT_SCALE));
-    let shown = match tables.rules.shading {
-        Shading::ImageGradient => {
-            let position = pixel_position(l, l.load_u(&packet.blocks.pixel));
-            // A single column or row has no far end: it is 0 everywhere.
-            let share = |position: L::F, pixels: u32| {
-                position / l.constant(f64::from(pixels.saturating_sub(1).max(1))) * full
-            };
-            let settings = &tables.settings;
-            return V3 {
-                x: share(position[0], settings.width),
-                y: share(position[1], settings.height),
-                z: zero,
-            };
-        }
-        Shading::FirstHitRed => V3 { x: full, y: zero, z: zero },
-        Shading::Normals | Shading::Path => {
-            let half = l.constant(0.5 * FIXED_POINT_SCALE);
-            let outward =
-                hit_points::<L, NEEDS>(l, wide, packet, &Rows::of(l, tables, packet.nearest.sphere)).outward;
-            let shade = |n: L::F| L::max(zero, L::mul_add(n, half, half));
-            V3 { x: shade(outward.x), y: shade(outward.y), z: shade(outward.z) }
-        }
-    };
-    select3::<L>(miss, light, shown)
-}
-
-/// The reflectance of the picture's strip that a pixel lies in: 10, 30, 50, 70, 90 %.
-#[inline(always)]
-fn strip_reflectance<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: L::U) -> L::F {
-    let [x, _] = pixel_position(l, pixel);
-    let strips = l.constant(5.0 / f64::from(tables.settings.width));
-    let strip = (x + l.constant(0.5)) * strips - l.constant(0.5);
-    let strip = L::float_of(l.fixed_point(L::max(l.constant(0.0), strip)));
-    L::mul_add(strip, l.constant(0.2), l.constant(0.1))
-}
-
 /// Column and row from `x | y << 16`.
 #[inline(always)]
 fn pixel_position<L: Lanes>(l: L, pixel: L::U) -> [L::F; 2] {
     [L::float_of(pixel & l.splat_u(0xFFFF)), L::float_of(L::shr(pixel, 16))]
-}
-
-/// By how much a path's stream grows with each ray, and by how much in all up to its last.
-#[inline(always)]
-fn strides<R>(tables: &Tables<R>) -> (u32, u32) {
-    let stride = match tables.settings.sampler {
-        SamplerKind::Independent => 1,
-        SamplerKind::Sobol => GOLDEN_RATIO,
-    };
-    (stride, stride.wrapping_mul(tables.settings.max_depth - 1))
-}
-
-/// Whether rays start on a lens.
-#[inline(always)]
-fn has_lens<L: Lanes, const NEEDS: u32>(tables: &Tables<L::Real>) -> bool {
-    NEEDS & needs::LENS != 0 && tables.camera.tau > L::Real::default()
-}
-
-/// Draws the numbers for the next rays.
-#[inline(always)]
-fn draw<L: Lanes, const NEEDS: u32>(l: L, tables: &Tables<L::Real>, packet: &Packet<L>) -> Draw<L> {
-    let (first, second) = match tables.settings.sampler {
-        SamplerKind::Independent => {
-            let (pixel, seed) = (l.load_u(&packet.blocks.pixel), l.splat_u(tables.settings.seed));
-            let [a, b, c, d] = pcg4d(l, [pixel, packet.counter, packet.stream, seed]);
-            ([a, b], [c, d])
-        }
-        SamplerKind::Sobol => {
-            let first = sobol_pair(l, packet.counter, packet.stream);
-            let second = if has_lens::<L, NEEDS>(tables) {
-                sobol_pair(l, packet.counter, lens_stream_of(l, packet.stream))
-            } else {
-                first
-            };
-            (first, second)
-        }
-    };
-    let unit = |u: [L::U; 2]| [unit_float(l, u[0]), unit_float(l, u[1])];
-    let pair = unit(first);
-    let (sine, cosine) = l.sin_cos_turns(pair[1]);
-    let jitter = if has_lens::<L, NEEDS>(tables) { unit(second) } else { packet.draw.jitter };
-    Draw { pair, sine, cosine, jitter }
 }
 
 /// Deals the lanes `done` their next blocks of samples.

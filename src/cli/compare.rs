@@ -1,0 +1,137 @@
+//! The flags of `weekender compare`, and what they mean together.
+
+use super::raw::RawPicture;
+use super::sources::{self, CliError, Source};
+use super::values::JsonTarget;
+use crate::backends::BackendChoice;
+use crate::output::Encoding;
+use crate::recipe::Recipe;
+use crate::render::SAMPLE_LIMIT;
+use crate::stages::Transfer;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct RawCompare {
+    /// A film or picture (.exr, .pfm, .png, .ppm) of any program, or what is to render it now: cpu, scalar,
+    /// baseline (multiply and add rounded apart), reference (f64) or gpu
+    #[arg(value_name = "FIRST")]
+    pub first: String,
+    /// As the first; a backend beside a film renders the same samples, beside a picture one of its size
+    #[arg(value_name = "SECOND")]
+    pub second: String,
+
+    /// Samples per pixel of what is rendered, 1 to 4294967296 [default: the film's, or 64]
+    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+          allow_hyphen_values = true, help_heading = "Comparison")]
+    pub samples: Option<u64>,
+    /// What whole numbers in pictures of other programs stand for: the square root as in the book, linear, or sRGB
+    #[arg(long, value_enum, default_value = "gamma2", help_heading = "Comparison")]
+    pub encoding: RawEncoding,
+    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
+    pub adapter: Option<String>,
+    /// Write the differences as a picture, from dark (1e-4) to bright (1), the worst blocks framed
+    #[arg(long, value_name = "FILE.png", help_heading = "Comparison")]
+    pub heat_map: Option<PathBuf>,
+    /// Write the figures as JSON; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
+    pub json: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub picture: RawPicture,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum RawEncoding {
+    Gamma2,
+    Linear,
+    Srgb,
+}
+
+impl From<RawEncoding> for Encoding {
+    fn from(raw: RawEncoding) -> Self {
+        match raw {
+            RawEncoding::Gamma2 => Encoding::Book(Transfer::Gamma2),
+            RawEncoding::Linear => Encoding::Book(Transfer::Linear),
+            RawEncoding::Srgb => Encoding::Srgb,
+        }
+    }
+}
+
+/// Two pictures that are compared.
+#[derive(Clone, Debug)]
+pub struct CompareOptions {
+    /// The pictures.
+    pub sides: [CompareSide; 2],
+    /// What backends render: what flags ask for, else what a file beside them says, at the size of that file.
+    pub recipe: Recipe,
+    /// Samples per pixel of what is rendered, if that was said.
+    pub samples: Option<u64>,
+    /// What whole numbers stand for where the file does not say.
+    pub encoding: Encoding,
+    /// Where the map of differences goes.
+    pub heat_map: Option<PathBuf>,
+    /// Where the figures go as JSON.
+    pub json: Option<JsonTarget>,
+}
+
+/// A picture that is compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum CompareSide {
+    /// It is there.
+    File(PathBuf),
+    /// It is to be rendered.
+    Backend {
+        /// One of [`BackendChoice::NAMES`].
+        name: String,
+        /// What renders.
+        choice: BackendChoice,
+    },
+}
+
+/// Samples that are compared unless a number is asked for.
+const COMPARE_SAMPLES: u64 = 64;
+
+/// Width that pictures which are rendered to be compared have at most, pixels, unless a size is asked for.
+const COMPARE_WIDTH: u32 = 400;
+
+/// What `weekender compare` is asked for.
+pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
+    if raw.picture.is_every_stage() {
+        let reason = "two pictures are compared; choose one stage";
+        return Err(CliError::Together { flag: "compare", other: "--stage all", reason });
+    }
+    let adapter = raw.adapter.as_deref();
+    let side = |name: String| match BackendChoice::named(&name, adapter) {
+        Some(choice) => CompareSide::Backend { name, choice },
+        None => CompareSide::File(PathBuf::from(name)),
+    };
+    let is_gpu = [&raw.first, &raw.second].into_iter().any(|name| name == "gpu");
+    if adapter.is_some() && !is_gpu {
+        let reason = "it chooses among GPUs; leave it out";
+        return Err(CliError::Needs { flag: "--adapter", other: "gpu as a side", reason });
+    }
+    let sides = [side(raw.first), side(raw.second)];
+    // Pictures of other programs do not say what they show.
+    let told = sides.iter().find_map(|side| match side {
+        CompareSide::File(path) => sources::find(&raw.picture, Some(path)).ok(),
+        CompareSide::Backend { .. } => None,
+    });
+    let Source { mut recipe, .. } = match told {
+        Some(source) => source,
+        None => sources::find(&raw.picture, None)?,
+    };
+    sources::change(&mut recipe, &raw.picture, None);
+    sources::narrow(&mut recipe, &raw.picture, COMPARE_WIDTH);
+    recipe.samples_per_pixel = COMPARE_SAMPLES;
+    recipe.job()?;
+    Ok(CompareOptions {
+        sides,
+        recipe,
+        samples: raw.samples,
+        encoding: raw.encoding.into(),
+        heat_map: raw.heat_map,
+        json: raw.json.map(JsonTarget::from),
+    })
+}

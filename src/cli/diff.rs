@@ -1,0 +1,150 @@
+//! The flags of `weekender diff`, and what they mean together.
+
+use super::raw::{RawPicture, RawSwitch};
+use super::sources::{self, CliError, Source};
+use super::values::{JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance};
+use crate::render::{RenderJob, SAMPLE_LIMIT};
+use crate::render_cpu::{CpuOptions, Isa};
+use crate::render_gpu::GpuOptions;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct RawDiff {
+    /// The pixel, from 0,0 at the upper left
+    #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "find",
+          conflicts_with = "find", help_heading = "Path")]
+    pub pixel: Option<[u32; 2]>,
+    /// The sample's number, from 0
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(0..SAMPLE_LIMIT),
+          allow_hyphen_values = true, default_value = "0", conflicts_with = "find", help_heading = "Path")]
+    pub sample: u64,
+    /// Look through this many samples of every pixel for the one that differs most; without --size the picture
+    /// is made at most 200 pixels wide for it
+    #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+          num_args = 0..=1, default_missing_value = "4", help_heading = "Path")]
+    pub find: Option<u64>,
+
+    /// Who is compared: two of cpu (the level --isa), baseline (multiply and add rounded apart), reference (f64)
+    /// and gpu
+    #[arg(long, value_name = "A,B", value_parser = parse_sides, default_value = "cpu,gpu",
+          help_heading = "Comparison")]
+    pub sides: [RawSide; 2],
+    /// Largest difference that counts as none, as a share of the larger value
+    #[arg(long, value_name = "SHARE", value_parser = parse_tolerance, allow_hyphen_values = true,
+          default_value = "1e-4", help_heading = "Comparison")]
+    pub tolerance: f64,
+    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
+    pub adapter: Option<String>,
+    /// Instruction level of the side cpu: auto, baseline, sse4.2, avx2, avx512, neon
+    #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
+          help_heading = "Comparison")]
+    pub isa: Level,
+    /// Write both paths and the verdict as JSON; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
+    pub json: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub picture: RawPicture,
+    /// As for rendering: whether samples are kept in two halves, which decides their numbers
+    /// [default: on, or the scene's]
+    #[arg(long, value_enum, help_heading = "Picture")]
+    pub estimate_error: Option<RawSwitch>,
+}
+
+/// A path that is traced twice and compared.
+#[derive(Clone, Debug)]
+pub struct DiffOptions {
+    /// What the job is called.
+    pub scene: String,
+    /// The job; that of a search is small unless a size was asked for.
+    pub job: RenderJob,
+    /// Which path.
+    pub path: PathChoice,
+    /// Who traces it.
+    pub sides: [SideChoice; 2],
+    /// Largest difference that counts as none, as a share of the larger value.
+    pub tolerance: f64,
+    /// Where both paths go as JSON.
+    pub json: Option<JsonTarget>,
+}
+
+/// Who traces a path that is compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SideChoice {
+    /// `f32` on the CPU.
+    Cpu(CpuOptions),
+    /// `f64` on the CPU.
+    Reference,
+    /// A compute shader.
+    Gpu(GpuOptions),
+}
+
+/// Which path is compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PathChoice {
+    /// This one.
+    Given {
+        /// Column and row, within the picture.
+        pixel: [u32; 2],
+        /// Index of the sample.
+        sample: u64,
+    },
+    /// That which differs most among samples `0 .. samples` of all pixels.
+    Find {
+        /// Samples of every pixel.
+        samples: u64,
+    },
+}
+
+/// Width that a search makes a picture at most, pixels.
+const FIND_WIDTH: u32 = 200;
+
+/// What `weekender diff` is asked for.
+pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
+    if raw.picture.is_every_stage() {
+        let reason = "one path is compared; choose one stage";
+        return Err(CliError::Together { flag: "diff", other: "--stage all", reason });
+    }
+    for (flag, is_given, side, other) in [
+        ("--adapter", raw.adapter.is_some(), RawSide::Gpu, "gpu among --sides"),
+        ("--isa", raw.isa.0.is_some(), RawSide::Cpu, "cpu among --sides"),
+    ] {
+        if is_given && !raw.sides.contains(&side) {
+            return Err(CliError::Needs { flag, other, reason: "it is for that side alone; leave it out" });
+        }
+    }
+    let Source { mut recipe, stage } = sources::find(&raw.picture, None)?;
+    sources::change(&mut recipe, &raw.picture, raw.estimate_error);
+    if raw.find.is_some() {
+        sources::narrow(&mut recipe, &raw.picture, FIND_WIDTH);
+    }
+    let (width, height) = (recipe.settings.width, recipe.settings.height);
+    let path = match (raw.find, raw.pixel) {
+        (Some(samples), _) => PathChoice::Find { samples },
+        (None, pixel) => {
+            let [x, y] = pixel.unwrap_or_default();
+            if x >= width || y >= height {
+                return Err(CliError::Pixel { x, y, width, height });
+            }
+            PathChoice::Given { pixel: [x, y], sample: raw.sample }
+        }
+    };
+    let sides = raw.sides.map(|side| match side {
+        RawSide::Cpu => SideChoice::Cpu(CpuOptions { isa: raw.isa.0, ..CpuOptions::default() }),
+        RawSide::Baseline => {
+            SideChoice::Cpu(CpuOptions { isa: Some(Isa::Baseline), ..CpuOptions::default() })
+        }
+        RawSide::Reference => SideChoice::Reference,
+        RawSide::Gpu => SideChoice::Gpu(GpuOptions::of_adapter(raw.adapter.as_deref())),
+    });
+    Ok(DiffOptions {
+        scene: stage.map_or(recipe.name.clone(), |stage| stage.id.to_owned()),
+        job: recipe.job()?,
+        path,
+        sides,
+        tolerance: raw.tolerance,
+        json: raw.json.map(JsonTarget::from),
+    })
+}

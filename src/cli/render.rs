@@ -1,0 +1,286 @@
+//! What the flags of rendering mean together, for the window and for files.
+
+use super::Request;
+use super::raw::{ProgressChoice, RawDevice, RawRender};
+use super::sources::{self, CliError, Source};
+use super::values::{JsonTarget, Level, Simd};
+use crate::backends::BackendChoice;
+use crate::output::OutputFormat;
+use crate::progressive::Plan;
+use crate::recipe::{Recipe, plain_name};
+use crate::render::{RenderJob, SAMPLE_LIMIT};
+use crate::render_cpu::CpuOptions;
+use crate::render_gpu::{Drill, Fault, GpuOptions};
+use crate::stages::Stage;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// What `--batch` renders.
+#[derive(Debug)]
+pub struct BatchOptions {
+    /// The pictures, one or those of all stages.
+    pub renders: Vec<RenderOptions>,
+    /// The directory of all stages' pictures, to be made if need be.
+    pub directory: Option<PathBuf>,
+    /// A scene file to be written besides.
+    pub save_scene: Option<SaveSceneOptions>,
+    /// Who renders.
+    pub backend: BackendChoice,
+    /// Whether progress is shown.
+    pub progress: ProgressChoice,
+    /// Where the closing figures go.
+    pub json: Option<JsonTarget>,
+}
+
+/// What the window opens with.
+#[derive(Clone, Debug)]
+pub struct WindowOptions {
+    /// What is rendered.
+    pub recipe: Recipe,
+    /// The stage that it is from.
+    pub stage: Option<&'static Stage>,
+    /// The scene file that it is from.
+    pub file: Option<PathBuf>,
+    /// Who renders.
+    pub backend: BackendChoice,
+    /// Whether flags said who renders.
+    pub is_device_given: bool,
+    /// When it ends, if that was said.
+    pub plan: Option<Plan>,
+    /// The film that goes on.
+    pub resume: Option<PathBuf>,
+    /// Where the times of the window's frames go.
+    pub frame_log: Option<PathBuf>,
+}
+
+/// One picture.
+#[derive(Clone, Debug)]
+pub struct RenderOptions {
+    /// What is rendered.
+    pub recipe: Recipe,
+    /// The recipe, checked.
+    pub job: RenderJob,
+    /// The stage that it is from.
+    pub stage: Option<&'static Stage>,
+    /// When it ends.
+    pub plan: Plan,
+    /// The picture's file.
+    pub out: PathBuf,
+    /// Where the film is kept.
+    pub checkpoint: Option<PathBuf>,
+    /// The film that goes on.
+    pub resume: Option<PathBuf>,
+}
+
+/// A scene file to be written.
+#[derive(Clone, Debug)]
+pub struct SaveSceneOptions {
+    /// What it will hold; it has been checked.
+    pub recipe: Recipe,
+    /// The file.
+    pub path: PathBuf,
+}
+
+/// What the flags ask for, but `--list` and the subcommands.
+pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
+    let backend = backend(&raw)?;
+    check_film_names(&raw)?;
+    if !raw.batch && raw.save_scene.is_none() {
+        return Ok(Request::Window(Box::new(window(&raw, backend)?)));
+    }
+    let (renders, directory) = if raw.picture.is_every_stage() {
+        let directory = directory_of_all(&raw)?;
+        let renders = Stage::ALL
+            .iter()
+            .map(|stage| {
+                let source = Source { recipe: stage.recipe(), stage: Some(stage) };
+                render(source, &raw, directory.join(format!("{}.png", stage.id)))
+            })
+            .collect::<Result<_, _>>()?;
+        (renders, Some(directory))
+    } else {
+        let source = sources::find(&raw.picture, raw.resume.as_deref())?;
+        let out = raw.out.clone().unwrap_or_else(|| default_name(&source));
+        (vec![render(source, &raw, out)?], None)
+    };
+    let save_scene = match (&raw.save_scene, renders.as_slice()) {
+        (Some(path), [only]) => Some(SaveSceneOptions { recipe: only.recipe.clone(), path: path.clone() }),
+        _ => None,
+    };
+    match save_scene {
+        Some(options) if !raw.batch => Ok(Request::SaveScene(Box::new(options))),
+        save_scene => Ok(Request::Batch(Box::new(BatchOptions {
+            renders,
+            directory,
+            save_scene,
+            backend,
+            progress: raw.progress,
+            json: raw.json.map(JsonTarget::from),
+        }))),
+    }
+}
+
+fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliError> {
+    if raw.picture.is_every_stage() {
+        return Err(CliError::Needs {
+            flag: "--stage all",
+            other: "--batch",
+            reason: "the window shows one stage at a time, and leads from each to the next",
+        });
+    }
+    for (flag, is_given) in [
+        ("--out", raw.out.is_some()),
+        ("--checkpoint", raw.checkpoint.is_some()),
+        ("--json", raw.json.is_some()),
+        ("--sample-range", raw.sample_range.is_some()),
+    ] {
+        if is_given {
+            let reason = "it is for rendering to files; in the window, use the File menu";
+            return Err(CliError::Needs { flag, other: "--batch", reason });
+        }
+    }
+    let mut source = sources::find(&raw.picture, raw.resume.as_deref())?;
+    sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
+    source.recipe.job()?;
+    let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
+    let is_file = raw.picture.scene.as_deref().is_some_and(sources::is_file);
+    Ok(WindowOptions {
+        plan: ends.then(|| plan(raw, &source.recipe)),
+        recipe: source.recipe,
+        stage: source.stage,
+        file: raw.picture.scene.as_ref().filter(|_| is_file).map(PathBuf::from),
+        backend,
+        is_device_given: raw.device != RawDevice::Auto
+            || raw.threads.is_some()
+            || raw.adapter.is_some()
+            || (raw.simd, raw.isa) != (Simd(None), Level(None)),
+        resume: raw.resume.clone(),
+        frame_log: raw.frame_log.clone(),
+    })
+}
+
+fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
+    sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
+    let job = source.recipe.job()?;
+    if raw.noise_target.is_some() && !source.recipe.settings.estimate_error {
+        return Err(CliError::Needs {
+            flag: "--noise-target",
+            other: "--estimate-error on",
+            reason: "the error is estimated from the film's two halves",
+        });
+    }
+    OutputFormat::from_path(&out)?;
+    check_distinct(raw, &out)?;
+    Ok(RenderOptions {
+        plan: plan(raw, &source.recipe),
+        recipe: source.recipe,
+        job,
+        stage: source.stage,
+        out,
+        checkpoint: raw.checkpoint.clone(),
+        resume: raw.resume.clone(),
+    })
+}
+
+fn check_film_names(raw: &RawRender) -> Result<(), CliError> {
+    for (flag, path) in [("--checkpoint", &raw.checkpoint), ("--resume", &raw.resume)] {
+        if let Some(path) = path
+            && !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
+        {
+            return Err(CliError::FilmEnding { flag, path: path.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses two outputs of one name: the second would replace the first.
+fn check_distinct(raw: &RawRender, out: &Path) -> Result<(), CliError> {
+    let json = raw.json.as_deref().filter(|path| *path != Path::new("-"));
+    let outputs = [
+        ("--out", Some(out)),
+        ("--checkpoint", raw.checkpoint.as_deref()),
+        ("--save-scene", raw.save_scene.as_deref()),
+        ("--json", json),
+    ];
+    for (index, (second, path)) in outputs.iter().enumerate() {
+        let Some(path) = path else { continue };
+        if let Some((first, _)) = outputs[..index].iter().find(|(_, other)| other.as_ref() == Some(path)) {
+            return Err(CliError::SameFile { first, second, path: path.to_path_buf() });
+        }
+    }
+    Ok(())
+}
+
+fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
+    let ends_otherwise = raw.time_limit.is_some() || raw.noise_target.is_some();
+    let samples = match (&raw.sample_range, raw.samples) {
+        (Some(range), _) => range.clone(),
+        (None, None) if ends_otherwise => 0..SAMPLE_LIMIT,
+        (None, _) => 0..recipe.samples_per_pixel,
+    };
+    Plan {
+        samples,
+        time_limit: raw.time_limit.map(Duration::from_secs_f64),
+        noise_target: raw.noise_target,
+        pass_target: Plan::BATCH_PASS,
+    }
+}
+
+fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
+    let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
+    let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
+    let cpu = CpuOptions { isa, lanes, threads, gives_way: false };
+    let drills = [
+        (raw.simulate_device_lost, Fault::Lost, "--simulate-device-lost"),
+        (raw.simulate_out_of_memory, Fault::OutOfMemory, "--simulate-out-of-memory"),
+        (raw.simulate_invalid_call, Fault::Invalid, "--simulate-invalid-call"),
+    ];
+    let drill =
+        drills.into_iter().find_map(|(after, fault, flag)| after.map(|after| (Drill { fault, after }, flag)));
+    let gpu =
+        GpuOptions { drill: drill.map(|(drill, _)| drill), ..GpuOptions::of_adapter(raw.adapter.as_deref()) };
+    let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { drill.map(|(_, flag)| flag) };
+    if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, raw.device) {
+        let other = if raw.device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
+        return Err(CliError::Together { flag, other, reason: "it is for the GPU; leave one of them out" });
+    }
+    match raw.device {
+        RawDevice::Auto if raw.adapter.is_some() => Ok(BackendChoice::Gpu(gpu)),
+        RawDevice::Auto => Ok(BackendChoice::auto(cpu, gpu)),
+        RawDevice::Cpu => Ok(BackendChoice::Cpu(cpu)),
+        RawDevice::Gpu => Ok(BackendChoice::Gpu(gpu)),
+        RawDevice::Both => Ok(BackendChoice::Both(cpu, gpu)),
+        RawDevice::Reference if lanes.is_some() || isa.is_some() => Err(CliError::Together {
+            flag: if lanes.is_some() { "--simd" } else { "--isa" },
+            other: "--device reference",
+            reason: "the reference is scalar; leave one of them out",
+        }),
+        RawDevice::Reference => Ok(BackendChoice::Reference { threads }),
+    }
+}
+
+/// The directory of `--stage all`, which goes with few other flags.
+fn directory_of_all(raw: &RawRender) -> Result<PathBuf, CliError> {
+    let single = [
+        ("--checkpoint", raw.checkpoint.is_some()),
+        ("--resume", raw.resume.is_some()),
+        ("--save-scene", raw.save_scene.is_some()),
+    ];
+    if let Some((flag, _)) = single.into_iter().find(|(_, is_given)| *is_given) {
+        let reason = "it stands for one picture; choose one stage";
+        return Err(CliError::Together { flag, other: "--stage all", reason });
+    }
+    raw.out.clone().ok_or(CliError::Needs {
+        flag: "--stage all",
+        other: "--out DIR",
+        reason: "it writes a picture for every stage",
+    })
+}
+
+/// `SCENE.png` in the current directory.
+fn default_name(source: &Source) -> PathBuf {
+    let name = source.stage.map_or(source.recipe.name.as_str(), |stage| stage.id);
+    PathBuf::from(format!("{}.png", plain_name(name)))
+}

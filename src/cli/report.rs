@@ -1,0 +1,291 @@
+//! The flags of `weekender report`, and what they mean together.
+
+use super::raw::{ProgressChoice, RawSampler, RawSwitch};
+use super::sources::{self, CliError};
+use super::values::{parse_rmse, parse_seconds, parse_size};
+use crate::backends::BackendChoice;
+use crate::recipe::Recipe;
+use crate::render::{SAMPLE_LIMIT, SamplerKind};
+use crate::render_cpu::CpuOptions;
+use crate::render_gpu::GpuOptions;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(super) struct RawReport {
+    /// Where the report goes: report.md, .csv and .json, error-vs-time.png and .svg, references
+    #[arg(long, value_name = "DIRECTORY")]
+    pub out: PathBuf,
+
+    /// See whether the error that pictures tell of themselves is true. Unless said otherwise: 24 pictures of 96x54
+    /// a curve, 256 samples, no time limit; three-spheres, book, close-up, hollow glass from near by; cpu, and gpu
+    /// where there is one
+    #[arg(long, help_heading = "What is compared")]
+    pub calibration: bool,
+    /// Built-in scenes, field:N or scene files, with commas between them [default: three-spheres,book]
+    #[arg(
+        long = "scenes",
+        alias = "scene",
+        value_name = "A,B,...",
+        value_delimiter = ',',
+        help_heading = "What is compared"
+    )]
+    pub scenes: Vec<String>,
+    /// Backends: cpu (the widest packets), scalar (one lane), baseline, reference (f64), gpu,
+    /// c89 (the plain C program) [default: cpu,scalar, gpu where there is one, c89 where there is a C compiler]
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',', help_heading = "What is compared")]
+    pub backends: Vec<String>,
+    /// Samplers
+    #[arg(
+        long,
+        value_enum,
+        value_name = "A,B",
+        value_delimiter = ',',
+        default_value = "sobol,independent",
+        help_heading = "What is compared"
+    )]
+    pub samplers: Vec<RawSampler>,
+    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    #[arg(long, value_name = "SUBSTRING", help_heading = "What is compared")]
+    pub adapter: Option<String>,
+
+    /// Width and height of all pictures in pixels, each 1 to 16384 [default: 160x90]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "How it is measured")]
+    pub size: Option<(u32, u32)>,
+    /// Pictures of each curve, which differ in their random numbers alone, 1 to 1000 [default: 8]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000),
+          allow_hyphen_values = true, help_heading = "How it is measured")]
+    pub seeds: Option<u32>,
+    /// Seconds of tracing for all pictures of a curve; a picture ends with the last doubling that fits in
+    /// [default: 12]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_hyphen_values = true,
+          help_heading = "How it is measured")]
+    pub time_limit: Option<f64>,
+    /// Most samples per pixel, 2 to 4294967296 [default: 1024]
+    #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
+          allow_hyphen_values = true, help_heading = "How it is measured")]
+    pub max_samples: Option<u64>,
+    /// Keep samples in two halves, which tell the error; off makes one set of points of them
+    #[arg(
+        long,
+        value_enum,
+        default_value = "on",
+        conflicts_with = "calibration",
+        help_heading = "How it is measured"
+    )]
+    pub estimate_error: RawSwitch,
+    /// Tell the seconds to this RMSE, too, and mark it in the plot [default: 0.01]
+    #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
+          help_heading = "How it is measured")]
+    pub target: Option<f64>,
+    /// A film to measure against, of the one scene at this size and with two halves
+    #[arg(long, value_name = "FILM.exr", help_heading = "How it is measured")]
+    pub reference: Option<PathBuf>,
+    /// What renders the references otherwise: as --backends
+    #[arg(
+        long,
+        value_name = "BACKEND",
+        default_value = "reference",
+        conflicts_with = "reference",
+        help_heading = "How it is measured"
+    )]
+    pub reference_backend: String,
+    /// Samples per pixel of the references [default: 4 times --max-samples, for --calibration 16 times]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
+          allow_hyphen_values = true, conflicts_with = "reference", help_heading = "How it is measured")]
+    pub reference_samples: Option<u64>,
+
+    /// Progress on standard error; auto: when it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
+}
+
+/// What a report measures.
+#[derive(Clone, Debug)]
+pub struct ReportOptions {
+    /// Scenes, at their size.
+    pub scenes: Vec<Recipe>,
+    /// Backends by their names.
+    pub backends: Vec<(String, ReportBackend)>,
+    /// Samplers.
+    pub samplers: Vec<SamplerKind>,
+    /// Pictures of each curve.
+    pub seeds: u32,
+    /// Width and height of all pictures.
+    pub size: (u32, u32),
+    /// Seconds of tracing for all pictures of a curve.
+    pub time_limit: f64,
+    /// Most samples per pixel.
+    pub max_samples: u64,
+    /// Whether samples are kept in two halves.
+    pub estimate_error: bool,
+    /// Errors that times are told for; the first is marked in the plot.
+    pub targets: Vec<f64>,
+    /// What errors are measured against.
+    pub reference: ReferenceChoice,
+    /// Where the report goes.
+    pub out: PathBuf,
+    /// Whether progress is shown.
+    pub progress: ProgressChoice,
+    /// What was typed.
+    pub command: String,
+}
+
+/// What a curve of a report is rendered by.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReportBackend {
+    /// A backend of this program.
+    Renderer(BackendChoice),
+    /// The plain C89 program.
+    Control {
+        /// Whether it was asked for by name; otherwise it may be missing.
+        is_asked_for: bool,
+    },
+}
+
+/// What errors are measured against.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ReferenceChoice {
+    /// A film that is there.
+    File(PathBuf),
+    /// One that is made.
+    Make {
+        /// The backend's name.
+        name: String,
+        /// What renders it.
+        choice: BackendChoice,
+        /// Samples per pixel.
+        samples: u64,
+    },
+}
+
+/// What a report's flags stand for when they are left out.
+struct ReportDefaults {
+    scenes: &'static [&'static str],
+    backends: &'static [&'static str],
+    seeds: u32,
+    size: (u32, u32),
+    time_limit: f64,
+    max_samples: u64,
+    /// Times as many samples as the longest curve's has the reference.
+    reference_factor: u64,
+}
+
+const RACE: ReportDefaults = ReportDefaults {
+    scenes: &["three-spheres", "book"],
+    backends: &["cpu", "scalar", "gpu", CONTROL],
+    seeds: 8,
+    size: (160, 90),
+    time_limit: 12.0,
+    max_samples: 1024,
+    reference_factor: 4,
+};
+
+const CALIBRATION: ReportDefaults = ReportDefaults {
+    scenes: &["three-spheres", "book", "close-up", sources::NEAR_GLASS],
+    backends: &["cpu", "gpu"],
+    seeds: 24,
+    size: (96, 54),
+    time_limit: 1e9,
+    max_samples: 256,
+    reference_factor: 16,
+};
+
+/// The control's name among a report's backends.
+const CONTROL: &str = "c89";
+
+/// Errors that times are told for in any case.
+const TARGETS: [f64; 2] = [0.01, 0.001];
+
+/// What `weekender report` is asked for; `command` is what was typed.
+pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, CliError> {
+    let defaults = if raw.calibration { CALIBRATION } else { RACE };
+    let backends = report_backends(&raw, &defaults)?;
+    let size = raw.size.unwrap_or(defaults.size);
+    let scenes = report_scenes(&raw, &defaults, size)?;
+    let max_samples = raw.max_samples.unwrap_or(defaults.max_samples);
+    let reference = match raw.reference {
+        Some(_) if scenes.len() > 1 => {
+            let reason = "one film is the reference of one scene; say which with --scenes";
+            return Err(CliError::Together { flag: "--reference", other: "several --scenes", reason });
+        }
+        Some(path) => ReferenceChoice::File(path),
+        None => {
+            let choice = backend_named(&raw.reference_backend, raw.adapter.as_deref(), &[])?;
+            let samples = (defaults.reference_factor * max_samples).min(SAMPLE_LIMIT);
+            let samples = raw.reference_samples.unwrap_or(samples);
+            ReferenceChoice::Make { name: raw.reference_backend, choice, samples }
+        }
+    };
+    let mut targets: Vec<f64> = raw.target.into_iter().collect();
+    targets.extend(TARGETS.into_iter().filter(|target| raw.target != Some(*target)));
+    Ok(ReportOptions {
+        scenes,
+        backends,
+        samplers: raw.samplers.into_iter().map(Into::into).collect(),
+        seeds: raw.seeds.unwrap_or(defaults.seeds),
+        size,
+        time_limit: raw.time_limit.unwrap_or(defaults.time_limit),
+        max_samples,
+        estimate_error: raw.estimate_error == RawSwitch::On,
+        targets,
+        reference,
+        out: raw.out,
+        progress: raw.progress,
+        command,
+    })
+}
+
+/// `more` are names that are possible besides.
+fn backend_named(name: &str, adapter: Option<&str>, more: &[&str]) -> Result<BackendChoice, CliError> {
+    BackendChoice::named(name, adapter).ok_or_else(|| {
+        let choices = [&BackendChoice::NAMES[..], more].concat().join(", ");
+        CliError::BackendName { name: name.to_owned(), choices }
+    })
+}
+
+fn report_backends(
+    raw: &RawReport,
+    defaults: &ReportDefaults,
+) -> Result<Vec<(String, ReportBackend)>, CliError> {
+    let adapter = raw.adapter.as_deref();
+    let is_asked_for = !raw.backends.is_empty();
+    let names = if is_asked_for {
+        raw.backends.clone()
+    } else {
+        let auto = || BackendChoice::auto(CpuOptions::default(), GpuOptions::default());
+        let has_gpu = adapter.is_some() || matches!(auto(), BackendChoice::Gpu(_));
+        let present = defaults.backends.iter().filter(|name| has_gpu || **name != "gpu");
+        present.map(|name| (*name).to_owned()).collect()
+    };
+    if adapter.is_some() && !names.iter().chain([&raw.reference_backend]).any(|name| name == "gpu") {
+        let reason = "it chooses among GPUs; leave it out";
+        return Err(CliError::Needs { flag: "--adapter", other: "gpu among --backends", reason });
+    }
+    let of_name = |name: String| {
+        let backend = match name.as_str() {
+            CONTROL => ReportBackend::Control { is_asked_for },
+            name => ReportBackend::Renderer(backend_named(name, adapter, &[CONTROL])?),
+        };
+        Ok((name, backend))
+    };
+    names.into_iter().map(of_name).collect()
+}
+
+fn report_scenes(
+    raw: &RawReport,
+    defaults: &ReportDefaults,
+    size: (u32, u32),
+) -> Result<Vec<Recipe>, CliError> {
+    let sized = |recipe: Result<Recipe, CliError>| {
+        let mut recipe = recipe?;
+        (recipe.settings.width, recipe.settings.height) = size;
+        recipe.job()?;
+        Ok(recipe)
+    };
+    if raw.scenes.is_empty() {
+        defaults.scenes.iter().map(|name| sized(sources::carried(name))).collect()
+    } else {
+        raw.scenes.iter().map(|name| sized(sources::scene(name))).collect()
+    }
+}

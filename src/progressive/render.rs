@@ -1,0 +1,382 @@
+//! The render at hand: a film, who adds to it, and what it says of itself.
+
+use super::shared::{Picture, Shared};
+use super::upcoming::Upcoming;
+use super::{EndReason, Factory, HistoryPoint, PassSizer, Phase, Plan, Status, View};
+use crate::backends::BackendChoice;
+use crate::film::{Film, SampleRanges};
+use crate::render::{RenderError, RenderJob, Renderer, Stats};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::TryRecvError;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A renderer and what it was made from.
+pub(super) type Backend = (BackendChoice, Box<dyn Renderer>);
+
+/// Estimating the error may take at most one part in this of the time.
+const ERROR_ESTIMATE_SHARE: u32 = 20;
+
+/// The render at hand.
+pub(super) struct Render {
+    job: RenderJob,
+    plan: Plan,
+    film: Film,
+    /// The samples of the film, and those that the renderer has not added to it yet.
+    dealt: SampleRanges,
+    cancel: Arc<AtomicBool>,
+    choice: BackendChoice,
+    is_prepared: bool,
+    upcoming: Option<Upcoming>,
+    sizer: PassSizer,
+    next_history_samples: u64,
+    estimated_samples: u64,
+    estimated_at: Instant,
+    estimate_took: Duration,
+    pictured_samples: Option<u64>,
+    pub status: Status,
+}
+
+impl Render {
+    pub fn new(
+        run: u64,
+        job: RenderJob,
+        choice: BackendChoice,
+        plan: Plan,
+        film: Film,
+        cancel: Arc<AtomicBool>,
+    ) -> Self {
+        let mut render = Render {
+            sizer: PassSizer::new(film.halves().len()),
+            next_history_samples: (film.sample_count() + 1).next_power_of_two(),
+            estimated_samples: 0,
+            estimated_at: Instant::now(),
+            estimate_took: Duration::ZERO,
+            pictured_samples: None,
+            is_prepared: false,
+            upcoming: None,
+            status: Status { run, phase: Phase::Preparing, ..Status::default() },
+            job,
+            plan,
+            dealt: film.samples().clone(),
+            film,
+            cancel,
+            choice,
+        };
+        render.status.planned_samples_per_pixel = render.planned_count();
+        render.note_film();
+        render
+    }
+
+    pub fn is_working(&self) -> bool {
+        matches!(self.status.phase, Phase::Preparing | Phase::Tracing)
+    }
+
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    pub fn into_film(self) -> (Film, Status) {
+        (self.film, self.status)
+    }
+
+    /// Has the next picture made even if the film has not changed.
+    pub fn forget_picture(&mut self) {
+        self.pictured_samples = None;
+    }
+
+    /// Changes when it ends; one that had ended goes on if there is something left to do.
+    pub fn set_plan(&mut self, plan: Plan) {
+        self.plan = plan;
+        self.status.planned_samples_per_pixel = self.planned_count();
+        if matches!(self.status.phase, Phase::Done(_)) {
+            self.go_on();
+        }
+    }
+
+    /// Samples per pixel that the film will hold.
+    fn planned_count(&self) -> u64 {
+        let mut samples = self.film.samples().clone();
+        while let Some(gap) = samples.first_gap(self.plan.samples.clone(), u64::MAX) {
+            // A gap does not overlap what is there.
+            if samples.insert(gap).is_err() {
+                break;
+            }
+        }
+        samples.count()
+    }
+
+    pub fn go_on(&mut self) {
+        self.status.phase = if self.is_prepared { Phase::Tracing } else { Phase::Preparing };
+    }
+
+    pub fn end(&mut self, reason: EndReason) {
+        self.estimate_error();
+        self.status.phase = Phase::Done(reason);
+    }
+
+    /// Ends because no pass is left: all samples are there, or the time is over.
+    fn end_of_plan(&mut self) {
+        let is_whole = self.dealt.first_gap(self.plan.samples.clone(), 1).is_none();
+        self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
+    }
+
+    /// Lets another backend take over once it is ready; until then the present one goes on.
+    pub fn switch(&mut self, choice: BackendChoice, factory: &Arc<Mutex<Factory>>) {
+        if self.upcoming.as_ref().is_some_and(|upcoming| upcoming.choice == choice) {
+            return;
+        }
+        self.upcoming = None;
+        if choice == self.choice {
+            return;
+        }
+        if self.is_prepared {
+            self.upcoming = Upcoming::start(choice.clone(), &self.job, factory, &self.cancel);
+        }
+        if self.upcoming.is_none() {
+            self.change_backend(choice);
+        }
+    }
+
+    /// Prepares if need be, else renders a pass.
+    pub fn step(
+        &mut self,
+        backend: &mut Option<Backend>,
+        factory: &Mutex<Factory>,
+        is_picture_wanted: bool,
+    ) -> Result<(), RenderError> {
+        self.welcome_upcoming(backend);
+        let begin = Instant::now();
+        let outcome = match backend {
+            _ if !self.is_prepared => self.prepare(backend, factory, begin),
+            Some((_, renderer)) => self.pass(renderer.as_mut(), is_picture_wanted, begin),
+            None => Ok(()),
+        };
+        self.status.elapsed += begin.elapsed();
+        outcome
+    }
+
+    /// Hands over to a backend that has become ready.
+    fn welcome_upcoming(&mut self, backend: &mut Option<Backend>) {
+        let Some(upcoming) = self.upcoming.take() else { return };
+        let outcome = match upcoming.outcome.try_recv() {
+            Ok(outcome) => outcome,
+            Err(TryRecvError::Empty) => {
+                self.upcoming = Some(upcoming);
+                return;
+            }
+            Err(TryRecvError::Disconnected) => Err("its preparation ended by a panic".to_owned()),
+        };
+        match outcome {
+            Ok(mut ready) => {
+                if let Some((_, old)) = backend
+                    && let Err(error) = self.collect(old.as_mut())
+                {
+                    self.status.say(vec![error.to_string()]);
+                    self.dealt = self.film.samples().clone();
+                }
+                self.status.backend = Some(ready.renderer.info());
+                self.status.say(ready.renderer.take_messages());
+                self.status.kernel = ready.renderer.kernel();
+                self.status.hierarchy += ready.renderer.hierarchy_time();
+                self.status.prepare += ready.took;
+                self.choice = upcoming.choice;
+                *backend = Some((self.choice.clone(), ready.renderer));
+                self.sizer.restart();
+            }
+            Err(reason) => {
+                self.status.say(vec![format!("{reason}; the {} goes on", self.choice.name())]);
+            }
+        }
+    }
+
+    fn change_backend(&mut self, choice: BackendChoice) {
+        self.upcoming = None;
+        if choice != self.choice {
+            self.choice = choice;
+            self.is_prepared = false;
+            self.sizer.restart();
+            if self.is_working() {
+                self.status.phase = Phase::Preparing;
+            }
+        }
+    }
+
+    /// Lets the fallback go on with the film, or gives up if that was the one that failed.
+    pub fn fail(&mut self, reason: &str) {
+        // What was not in the film is lost, and is rendered again.
+        self.dealt = self.film.samples().clone();
+        let fallback = BackendChoice::fallback();
+        if self.choice == fallback {
+            self.status.phase = Phase::Failed(reason.to_owned());
+        } else {
+            self.status.messages.push(format!("{reason}; the CPU goes on with the same picture"));
+            self.change_backend(fallback);
+        }
+    }
+
+    fn prepare(
+        &mut self,
+        backend: &mut Option<Backend>,
+        factory: &Mutex<Factory>,
+        begin: Instant,
+    ) -> Result<(), RenderError> {
+        // A film with everything in it needs no renderer.
+        if self.next_pass().is_none() {
+            self.end_of_plan();
+            return Ok(());
+        }
+        if backend.as_ref().is_none_or(|(choice, _)| *choice != self.choice) {
+            let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(&self.choice);
+            match (made, &backend) {
+                (Ok(renderer), _) => *backend = Some((self.choice.clone(), renderer)),
+                (Err(error), Some((old, _))) => {
+                    self.status.messages.push(format!("{error}; the {} goes on", old.name()));
+                    self.choice = old.clone();
+                }
+                (Err(error), None) => {
+                    self.fail(&error.to_string());
+                    return Ok(());
+                }
+            }
+        }
+        if let Some((_, renderer)) = backend {
+            renderer.prepare(&self.job, &self.cancel)?;
+            self.status.backend = Some(renderer.info());
+            self.status.say(renderer.take_messages());
+            self.status.kernel = renderer.kernel();
+            self.status.hierarchy += renderer.hierarchy_time();
+            self.is_prepared = true;
+            self.status.phase = Phase::Tracing;
+            self.status.prepare += begin.elapsed();
+        }
+        Ok(())
+    }
+
+    /// The samples that are next; `None` when none are missing or there is no time left for them.
+    fn next_pass(&self) -> Option<std::ops::Range<u64>> {
+        let time_left = match self.plan.time_limit {
+            // A picture without a sample is of no use to anyone.
+            Some(limit) if self.dealt.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
+            _ => None,
+        };
+        self.sizer.next(&self.dealt, self.plan.samples.clone(), time_left)
+    }
+
+    fn pass(
+        &mut self,
+        renderer: &mut dyn Renderer,
+        is_picture_wanted: bool,
+        begin: Instant,
+    ) -> Result<(), RenderError> {
+        if self.plan.noise_reached(self.film.sample_count(), self.status.error) {
+            self.collect(renderer)?;
+            self.end(EndReason::NoiseTarget);
+            return Ok(());
+        }
+        let Some(range) = self.next_pass() else {
+            self.collect(renderer)?;
+            self.end_of_plan();
+            return Ok(());
+        };
+        let added = range.end - range.start;
+        let held = self.film.sample_count();
+        let outcome = renderer.advance(&self.job, range.clone(), &mut self.film, &self.cancel);
+        self.note_added(renderer, held, &outcome);
+        outcome?;
+        self.dealt.insert(range)?;
+        let took = begin.elapsed();
+        self.sizer.measured(added, took, self.plan.pass_target);
+        self.status.trace += took;
+        // A renderer that changes with use (an adapter lost, threads given up) says so.
+        self.status.backend = Some(renderer.info());
+        self.status.say(renderer.take_messages());
+        if is_picture_wanted && self.film.sample_count() == 0 {
+            // The first picture is what someone waits for most.
+            self.collect(renderer)?;
+        } else if is_picture_wanted {
+            renderer.fetch()?;
+        }
+        Ok(())
+    }
+
+    /// Adds to the film what the renderer still has.
+    pub fn collect(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
+        if self.dealt != *self.film.samples() {
+            let begin = Instant::now();
+            let held = self.film.sample_count();
+            let outcome = renderer.collect(&mut self.film);
+            self.status.trace += begin.elapsed();
+            self.note_added(renderer, held, &outcome);
+            outcome?;
+        }
+        Ok(())
+    }
+
+    /// Notes who added to a film that held `held` samples, and what. Some can have come before a failure.
+    fn note_added(&mut self, renderer: &dyn Renderer, held: u64, outcome: &Result<Stats, RenderError>) {
+        let added = self.film.sample_count() - held;
+        if added > 0 {
+            if let Ok(stats) = outcome {
+                self.status.stats.add(stats);
+            }
+            for (info, samples) in renderer.credits(added) {
+                self.status.credit(&info, samples);
+            }
+            self.note_film();
+        }
+    }
+
+    /// Brings the status up to date with the film.
+    fn note_film(&mut self) {
+        let samples = self.film.sample_count();
+        self.status.samples_per_pixel = samples;
+        self.status.rejected_samples = self.film.rejected();
+        let is_history = samples >= self.next_history_samples;
+        let is_due = self.estimated_at.elapsed() >= self.estimate_took * ERROR_ESTIMATE_SHARE;
+        if is_history || is_due {
+            self.estimate_error();
+        }
+        if is_history {
+            self.next_history_samples = (samples + 1).next_power_of_two();
+            if let Some(error) = self.status.error {
+                let backend = self.status.backend.as_ref().map_or("", |backend| backend.name);
+                self.status.history.push(HistoryPoint {
+                    backend,
+                    samples_per_pixel: samples,
+                    trace_seconds: self.status.trace.as_secs_f64(),
+                    rmse_estimate: error.rmse,
+                    rel_mse_estimate: error.rel_mse,
+                });
+            }
+        }
+    }
+
+    fn estimate_error(&mut self) {
+        if self.estimated_samples != self.film.sample_count() {
+            let begin = Instant::now();
+            self.status.error = self.film.error();
+            self.estimated_samples = self.film.sample_count();
+            self.estimate_took = begin.elapsed();
+            self.estimated_at = Instant::now();
+        }
+    }
+
+    /// Resolves a picture if someone waits for one that he has not seen.
+    pub fn show(&mut self, shared: &Shared, view: &View, renderer: Option<&dyn Renderer>) {
+        let samples = self.film.sample_count();
+        let is_new = self.pictured_samples != Some(samples);
+        if is_new && samples > 0 && shared.is_picture_wanted() && !self.cancel.load(Ordering::Relaxed) {
+            self.pictured_samples = Some(samples);
+            let renderer = renderer.filter(|_| *view == View::Occupancy);
+            let occupancy = renderer.and_then(Renderer::tile_occupancy);
+            shared.put_picture(Picture {
+                run: self.status.run,
+                width: self.film.width(),
+                height: self.film.height(),
+                samples_per_pixel: samples,
+                rgb8: view.resolve(&self.film, self.job.rules().transfer, occupancy.as_ref()),
+            });
+        }
+    }
+}

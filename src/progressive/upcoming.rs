@@ -1,0 +1,48 @@
+//! A backend that gets ready on a thread of its own while the old one renders on.
+
+use super::Factory;
+use crate::backends::BackendChoice;
+use crate::render::{RenderJob, Renderer};
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{self, Receiver};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A backend that is to take over.
+pub(super) struct Upcoming {
+    pub choice: BackendChoice,
+    /// Comes once.
+    pub outcome: Receiver<Result<Ready, String>>,
+}
+
+/// A renderer that has prepared the job, and what that took.
+pub(super) struct Ready {
+    pub renderer: Box<dyn Renderer>,
+    pub took: Duration,
+}
+
+impl Upcoming {
+    /// Starts to prepare `job`; `None` if the system gives no thread.
+    pub fn start(
+        choice: BackendChoice,
+        job: &RenderJob,
+        factory: &Arc<Mutex<Factory>>,
+        cancel: &Arc<AtomicBool>,
+    ) -> Option<Self> {
+        let (sender, outcome) = mpsc::channel();
+        let (wanted, job, factory) = (choice.clone(), job.clone(), Arc::clone(factory));
+        let cancel = Arc::clone(cancel);
+        let prepare = move || {
+            let begin = Instant::now();
+            let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(&wanted);
+            let ready = made.map_err(|error| error.to_string()).and_then(|mut renderer| {
+                renderer.prepare(&job, &cancel).map_err(|error| error.to_string())?;
+                Ok(Ready { renderer, took: begin.elapsed() })
+            });
+            // Nobody waits any more if another backend was chosen meanwhile.
+            let _ = sender.send(ready);
+        };
+        std::thread::Builder::new().name("prepare".to_owned()).spawn(prepare).ok()?;
+        Some(Upcoming { choice, outcome })
+    }
+}

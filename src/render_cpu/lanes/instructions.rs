@@ -1,0 +1,84 @@
+//! What a level does in one instruction and the portable operations in more.
+
+use fearless_simd::prelude::*;
+use fearless_simd::{
+    f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
+};
+
+/// The operations, each with the portable form. A level without permutation has 0 rows, and is never asked for it.
+pub trait Instructions: Simd {
+    /// Rows for 4 lanes.
+    const ROWS_4: usize = 0;
+    /// Rows for 8 lanes.
+    const ROWS_8: usize = 0;
+    /// Rows for 16 lanes.
+    const ROWS_16: usize = 0;
+
+    /// Each lane's choice.
+    #[inline(always)]
+    fn permute_4(self, column: f32x4<Self>, _indices: u32x4<Self>) -> f32x4<Self> {
+        column
+    }
+    /// Each lane's choice.
+    #[inline(always)]
+    fn permute_8(self, column: f32x8<Self>, _indices: u32x8<Self>) -> f32x8<Self> {
+        column
+    }
+    /// Each lane's choice.
+    #[inline(always)]
+    fn permute_16(self, column: f32x16<Self>, _indices: u32x16<Self>) -> f32x16<Self> {
+        column
+    }
+
+    /// Transposes four rows of four numbers in the lower half, and four in the upper.
+    #[inline(always)]
+    fn transpose_8(self, rows: [f32x8<Self>; 4]) -> [f32x8<Self>; 4] {
+        let [a, b, c, d] = rows.map(|row| row.split());
+        let low = transpose4([a.0, b.0, c.0, d.0]);
+        let high = transpose4([a.1, b.1, c.1, d.1]);
+        [0, 1, 2, 3].map(|i| low[i].combine(high[i]))
+    }
+
+    /// To the nearest integer, ties to even; it must fit.
+    #[inline(always)]
+    fn to_nearest_4(self, x: f32x4<Self>) -> i32x4<Self> {
+        x.round_ties_even().to_int()
+    }
+    /// To the nearest integer, ties to even; it must fit.
+    #[inline(always)]
+    fn to_nearest_8(self, x: f32x8<Self>) -> i32x8<Self> {
+        x.round_ties_even().to_int()
+    }
+    /// To the nearest integer, ties to even; it must fit.
+    #[inline(always)]
+    fn to_nearest_16(self, x: f32x16<Self>) -> i32x16<Self> {
+        x.round_ties_even().to_int()
+    }
+
+    /// `u32::MAX` where `m`, else 0.
+    #[inline(always)]
+    fn ones_4(self, m: mask32x4<Self>) -> u32x4<Self> {
+        m.select(u32x4::splat(self, u32::MAX), u32x4::splat(self, 0))
+    }
+    /// `u32::MAX` where `m`, else 0.
+    #[inline(always)]
+    fn ones_8(self, m: mask32x8<Self>) -> u32x8<Self> {
+        m.select(u32x8::splat(self, u32::MAX), u32x8::splat(self, 0))
+    }
+    /// `u32::MAX` where `m`, else 0.
+    #[inline(always)]
+    fn ones_16(self, m: mask32x16<Self>) -> u32x16<Self> {
+        m.select(u32x16::splat(self, u32::MAX), u32x16::splat(self, 0))
+    }
+}
+
+#[cfg(target_arch = "aarch64")]
+impl Instructions for fearless_simd::Neon {}
+
+/// Four rows of four numbers, transposed.
+#[inline(always)]
+pub(super) fn transpose4<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 4] {
+    let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
+    let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
+    [ac_low.zip_low(bd_low), ac_low.zip_high(bd_low), ac_high.zip_low(bd_high), ac_high.zip_high(bd_high)]
+}

@@ -1,0 +1,276 @@
+//! Packets: rows in registers, or in several where a level's registers are shorter.
+
+use super::instructions::{Instructions, transpose4};
+use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
+use crate::tables::Row;
+use fearless_simd::prelude::*;
+use fearless_simd::{
+    f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
+};
+
+macro_rules! simd_lanes {
+    (
+        $name:ident, $width:literal, $f:ident, $u:ident, $i:ident, $m:ident,
+        $gather:ident, $rows:ident, $permute:ident, $to_nearest:ident, $ones:ident, $what:literal
+    ) => {
+        #[doc = $what]
+        #[derive(Clone, Copy)]
+        pub struct $name<S: Simd>(pub S);
+
+        impl<S: Instructions> Lanes for $name<S> {
+            const PERMUTED_ROWS: usize = S::$rows;
+
+            type Real = f32;
+            type F = $f<S>;
+            type U = $u<S>;
+            type M = $m<S>;
+            type Key = $i<S>;
+            const WIDTH: usize = $width;
+
+            #[inline(always)]
+            fn splat(self, x: f32) -> $f<S> {
+                $f::splat(self.0, x)
+            }
+            #[inline(always)]
+            fn splat_u(self, x: u32) -> $u<S> {
+                $u::splat(self.0, x)
+            }
+            #[inline(always)]
+            fn mask(self, bits: u32) -> $m<S> {
+                $m::from_bitmask(self.0, u64::from(bits))
+            }
+            #[inline(always)]
+            fn load(self, from: &Wide<f32>) -> $f<S> {
+                $f::from_slice(self.0, &from.0[..$width])
+            }
+            #[inline(always)]
+            fn load_u(self, from: &WideU) -> $u<S> {
+                $u::from_slice(self.0, &from.0[..$width])
+            }
+            #[inline(always)]
+            fn store_u(u: $u<S>, to: &mut WideU) {
+                u.store_slice(&mut to.0[..$width]);
+            }
+            #[inline(always)]
+            fn store(f: $f<S>, to: &mut Wide<f32>) {
+                f.store_slice(&mut to.0[..$width]);
+            }
+            #[inline(always)]
+            fn mul_add(a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
+                a.mul_add(b, c)
+            }
+            #[inline(always)]
+            fn neg_mul_add(a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
+                (-a).mul_add(b, c)
+            }
+            #[inline(always)]
+            fn sqrt(x: $f<S>) -> $f<S> {
+                x.sqrt()
+            }
+            #[inline(always)]
+            fn abs(x: $f<S>) -> $f<S> {
+                x.abs()
+            }
+            #[inline(always)]
+            fn copysign(size: $f<S>, sign: $f<S>) -> $f<S> {
+                size.copysign(sign)
+            }
+            #[inline(always)]
+            fn min(a: $f<S>, b: $f<S>) -> $f<S> {
+                a.min(b)
+            }
+            #[inline(always)]
+            fn max(a: $f<S>, b: $f<S>) -> $f<S> {
+                a.max(b)
+            }
+            #[inline(always)]
+            fn lt(a: $f<S>, b: $f<S>) -> $m<S> {
+                a.simd_lt(b)
+            }
+            #[inline(always)]
+            fn select(m: $m<S>, a: $f<S>, b: $f<S>) -> $f<S> {
+                m.select(a, b)
+            }
+            #[inline(always)]
+            fn is_negative(x: $f<S>) -> $m<S> {
+                let bits: $i<S> = x.bitcast();
+                bits.simd_lt(0)
+            }
+            #[inline(always)]
+            fn select_u(m: $m<S>, a: $u<S>, b: $u<S>) -> $u<S> {
+                m.select(a, b)
+            }
+            #[inline(always)]
+            fn keep(self, m: $m<S>, a: $u<S>) -> $u<S> {
+                self.0.$ones(m) & a
+            }
+            #[inline(always)]
+            fn fill(self, m: $m<S>, a: $u<S>) -> $u<S> {
+                self.0.$ones(m) | a
+            }
+            #[inline(always)]
+            fn eq_u(a: $u<S>, b: $u<S>) -> $m<S> {
+                a.simd_eq(b)
+            }
+            #[inline(always)]
+            fn min_u(a: $u<S>, b: $u<S>) -> $u<S> {
+                a.min(b)
+            }
+            #[inline(always)]
+            fn shl(a: $u<S>, n: u32) -> $u<S> {
+                a << n
+            }
+            #[inline(always)]
+            fn shr(a: $u<S>, n: u32) -> $u<S> {
+                a >> n
+            }
+            #[inline(always)]
+            fn bits(m: $m<S>) -> u32 {
+                m.to_bitmask() as u32
+            }
+            #[inline(always)]
+            fn key(negated: $f<S>) -> $i<S> {
+                negated.bitcast()
+            }
+            #[inline(always)]
+            fn from_key(k: $i<S>) -> $f<S> {
+                k.bitcast()
+            }
+            #[inline(always)]
+            fn exclude(self, m: $m<S>, k: $i<S>) -> $i<S> {
+                // -1 is a NaN's bits.
+                let bits: $u<S> = k.bitcast();
+                self.fill(m, bits).bitcast()
+            }
+            #[inline(always)]
+            fn min_key(a: $i<S>, b: $i<S>) -> $i<S> {
+                a.min(b)
+            }
+            #[inline(always)]
+            fn lt_key(a: $i<S>, b: $i<S>) -> $m<S> {
+                a.simd_lt(b)
+            }
+            #[inline(always)]
+            fn eq_key(a: $i<S>, b: $i<S>) -> $m<S> {
+                a.simd_eq(b)
+            }
+            #[inline(always)]
+            fn float_of(u: $u<S>) -> $f<S> {
+                let signed: $i<S> = u.bitcast();
+                signed.to_float()
+            }
+            #[inline(always)]
+            fn fixed_point(self, f: $f<S>) -> $u<S> {
+                self.0.$to_nearest(f).bitcast()
+            }
+            #[inline(always)]
+            fn permute(self, column: &Wide<f32>, indices: $u<S>) -> $f<S> {
+                self.0.$permute(self.load(column), indices)
+            }
+            #[inline(always)]
+            fn gather(self, rows: &[Row<f32>], indices: &WideU, group: usize) -> [$f<S>; 4] {
+                $gather(self.0, rows, indices, 0, group)
+            }
+            #[inline(always)]
+            fn sin_cos_turns(self, u: $f<S>) -> ($f<S>, $f<S>) {
+                polynomial_sin_cos_turns(self, u)
+            }
+        }
+    };
+}
+
+simd_lanes!(
+    Lanes4,
+    4,
+    f32x4,
+    u32x4,
+    i32x4,
+    mask32x4,
+    gather4,
+    ROWS_4,
+    permute_4,
+    to_nearest_4,
+    ones_4,
+    "Four lanes of `f32`."
+);
+simd_lanes!(
+    Lanes8,
+    8,
+    f32x8,
+    u32x8,
+    i32x8,
+    mask32x8,
+    gather8,
+    ROWS_8,
+    permute_8,
+    to_nearest_8,
+    ones_8,
+    "Eight lanes of `f32`."
+);
+simd_lanes!(
+    Lanes16,
+    16,
+    f32x16,
+    u32x16,
+    i32x16,
+    mask32x16,
+    gather16,
+    ROWS_16,
+    permute_16,
+    to_nearest_16,
+    ones_16,
+    "Sixteen lanes of `f32`."
+);
+
+#[inline(always)]
+fn gathered_row<S: Simd>(simd: S, rows: &[Row<f32>], index: u32, group: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &rows[index as usize].0[4 * group..4 * group + 4])
+}
+
+/// Four columns of the rows that four indices name.
+#[inline(always)]
+fn gather4<S: Simd>(
+    simd: S,
+    rows: &[Row<f32>],
+    indices: &WideU,
+    first: usize,
+    group: usize,
+) -> [f32x4<S>; 4] {
+    let a = gathered_row(simd, rows, indices.0[first], group);
+    let b = gathered_row(simd, rows, indices.0[first + 1], group);
+    let c = gathered_row(simd, rows, indices.0[first + 2], group);
+    let d = gathered_row(simd, rows, indices.0[first + 3], group);
+    transpose4([a, b, c, d])
+}
+
+#[inline(always)]
+fn gather8<S: Instructions>(
+    simd: S,
+    rows: &[Row<f32>],
+    indices: &WideU,
+    first: usize,
+    group: usize,
+) -> [f32x8<S>; 4] {
+    let a = gathered_row(simd, rows, indices.0[first], group);
+    let b = gathered_row(simd, rows, indices.0[first + 1], group);
+    let c = gathered_row(simd, rows, indices.0[first + 2], group);
+    let d = gathered_row(simd, rows, indices.0[first + 3], group);
+    let e = gathered_row(simd, rows, indices.0[first + 4], group);
+    let f = gathered_row(simd, rows, indices.0[first + 5], group);
+    let g = gathered_row(simd, rows, indices.0[first + 6], group);
+    let h = gathered_row(simd, rows, indices.0[first + 7], group);
+    simd.transpose_8([a.combine(e), b.combine(f), c.combine(g), d.combine(h)])
+}
+
+#[inline(always)]
+fn gather16<S: Instructions>(
+    simd: S,
+    rows: &[Row<f32>],
+    indices: &WideU,
+    first: usize,
+    group: usize,
+) -> [f32x16<S>; 4] {
+    let [a0, a1, a2, a3] = gather8(simd, rows, indices, first, group);
+    let [b0, b1, b2, b3] = gather8(simd, rows, indices, first + 8, group);
+    [a0.combine(b0), a1.combine(b1), a2.combine(b2), a3.combine(b3)]
+}

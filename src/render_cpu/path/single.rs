@@ -1,0 +1,75 @@
+//! One path, step by step, by the code that traces packets.
+
+use super::{Packet, intersect, needs, shade};
+use crate::render_cpu::bvh::{EMPTY_STACK, Stack};
+use crate::render_cpu::lanes::{Lanes, V3, Wide, WideU};
+use crate::render_cpu::wide::WideTables;
+use crate::render_cpu::work::{TileStats, Work};
+use crate::tables::Real;
+
+/// A packet of one lane, for a record of what it does.
+pub struct SinglePath<L: Lanes> {
+    packet: Packet<L>,
+    stack: Stack,
+}
+
+impl<L: Lanes> SinglePath<L> {
+    /// Takes the first sample of `work`.
+    #[inline(always)]
+    pub fn start(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> Self {
+        let mut packet = Packet::idle(l);
+        shade::<L, { needs::ALL }>(
+            l,
+            wide,
+            std::slice::from_mut(&mut packet),
+            work,
+            &mut TileStats::default(),
+        );
+        SinglePath { packet, stack: EMPTY_STACK }
+    }
+
+    /// Whether there is a ray to trace.
+    pub fn is_alive(&self) -> bool {
+        L::bits(self.packet.alive) != 0
+    }
+
+    /// Whether the path was absorbed where it is.
+    pub fn is_absorbed(&self) -> bool {
+        L::bits(self.packet.absorbed) != 0
+    }
+
+    /// Where the ray starts.
+    pub fn origin(&self) -> V3<L::F> {
+        self.packet.rays.origin
+    }
+
+    /// Where it goes.
+    pub fn direction(&self) -> V3<L::F> {
+        self.packet.rays.direction
+    }
+
+    /// What its light counts for.
+    pub fn throughput(&self) -> V3<L::F> {
+        self.packet.throughput
+    }
+
+    /// Traces the ray and sends it on. Returns the number of the sphere that it met and the distance.
+    #[inline(always)]
+    pub fn advance(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) -> (u32, f64) {
+        let mut stats = TileStats::default();
+        intersect::<L, { needs::ALL }>(l, wide, &mut self.packet, &mut self.stack, &mut stats);
+        let (mut sphere, mut distance) = (WideU::default(), Wide::default());
+        L::store_u(self.packet.nearest.sphere, &mut sphere);
+        L::store(self.packet.nearest.distance(), &mut distance);
+        shade::<L, { needs::ALL }>(l, wide, std::slice::from_mut(&mut self.packet), work, &mut stats);
+        (sphere.0[0], distance.0[0].to_f64())
+    }
+
+    /// Ends an absorbed path.
+    #[inline(always)]
+    pub fn finish(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) {
+        if self.is_alive() {
+            self.advance(l, wide, work);
+        }
+    }
+}
