@@ -1,0 +1,159 @@
+//! Every command, by menu, key and palette.
+
+use crate::common::{SMALL, control, has_samples, open, send, until};
+use eframe::egui::{self, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use weekender::app::{Command, Device, Window};
+
+#[test]
+fn every_command_is_carried_out_or_says_why_not() {
+    let mut harness = open(SMALL);
+    for command in Command::all() {
+        let useless = harness.state().useless(command);
+        send(&mut harness, command);
+        assert_eq!(harness.state().performed(), Some(command));
+        let told = harness.state().messages();
+        if let Some(reason) = useless {
+            let end = &reason[1..];
+            assert!(told.iter().any(|text| text.ends_with(end)), "{command:?}: {reason}; {told:?}");
+        }
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+        assert!(!harness.state().has_dialog(), "{command:?}");
+    }
+}
+
+#[test]
+fn every_shortcut_reaches_its_command() {
+    let mut harness = open(SMALL);
+    for command in Command::all() {
+        let Some(shortcut) = command.shortcut() else { continue };
+        harness.key_press_modifiers(shortcut.modifiers, shortcut.logical_key);
+        harness.run_steps(2);
+        assert_eq!(harness.state().performed(), Some(command), "{shortcut:?}");
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+    }
+}
+
+#[test]
+fn every_command_is_found_in_the_palette() {
+    let mut harness = open(SMALL);
+    for command in Command::all() {
+        let is_useless = harness.state().useless(command).is_some();
+        if command == Command::Palette || is_useless {
+            continue;
+        }
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+        harness.run_steps(3);
+        harness.get_by_label("Command").type_text(&command.name());
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(2);
+        assert_eq!(harness.state().performed(), Some(command));
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+    }
+}
+
+#[test]
+fn every_menu_lists_its_commands() {
+    let mut harness = open(SMALL);
+    for menu in ["File", "Edit", "View", "Render", "Help"] {
+        control(&harness, menu).click();
+        harness.run_steps(3);
+        for command in Command::all().into_iter().filter(|command| command.group().name() == menu) {
+            let name = command.name();
+            assert!(harness.query_all_by_label_contains(&name).next().is_some(), "{menu}: {name}");
+        }
+        harness.key_press(Key::Escape);
+        harness.run_steps(3);
+    }
+}
+
+/// What a command has to have changed, given the window as it was.
+fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Harness<'_, Window>) -> bool {
+    let copied =
+        harness.output().platform_output.commands.iter().any(
+            |output| matches!(output, egui::OutputCommand::CopyText(text) if text.starts_with("weekender")),
+        );
+    let window = harness.state_mut();
+    let remembered = window.remembered_mut().clone();
+    let document = window.document();
+    match command {
+        Command::Open
+        | Command::Save(_)
+        | Command::SaveScene
+        | Command::LoadReference
+        | Command::Palette
+        | Command::Help => window.has_dialog(),
+        Command::CopyCommand => copied || window.messages().iter().any(|text| text.starts_with("Copied")),
+        Command::Undo | Command::Redo | Command::Home | Command::ResetAll => {
+            document.camera != before.camera || document.settings != before.settings
+        }
+        Command::AddBookmark => remembered.bookmarks.len() == 1,
+        Command::Show(show) => window.show() == show,
+        Command::Wipe | Command::WipeDifference => window.is_comparing(),
+        Command::Panels => !remembered.has_panels,
+        Command::Controls => !remembered.has_controls,
+        Command::Info => !remembered.has_info,
+        Command::Plot => remembered.has_plot,
+        Command::Theme(theme) => remembered.theme == theme,
+        Command::Pause => window.is_paused(),
+        Command::Restart => window.status().run > 1,
+        Command::SwitchDevice => remembered.device == Device::Gpu,
+        Command::Device(device) => remembered.device == device,
+        Command::PreviousStage => document.stage() == before.stage().and_then(|stage| stage.previous()),
+        Command::NextStage => document.stage() == before.stage().and_then(|stage| stage.next()),
+        Command::Stage(stage) => document.stage() == Some(stage),
+        // The next two are the window system's, the others the viewport's, which has tests of its own.
+        Command::Quit | Command::Book | Command::FullScreen => true,
+        Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
+    }
+}
+
+#[test]
+fn every_command_does_what_it_says() {
+    for command in Command::all() {
+        let mut harness = open(SMALL);
+        until(&mut harness, "a picture", has_samples(1));
+        // Something to take back, and something to make again.
+        if matches!(command, Command::Undo | Command::Redo | Command::Home | Command::ResetAll) {
+            harness.run_steps(90);
+            harness.state_mut().document_mut().camera.vfov_degrees = 33.0;
+            harness.run_steps(90);
+        }
+        if command == Command::Redo {
+            send(&mut harness, Command::Undo);
+        }
+        if harness.state().useless(command).is_some() {
+            continue;
+        }
+        let before = harness.state().document().clone();
+        harness.state_mut().send(command);
+        harness.step();
+        assert!(is_done(command, &before, &mut harness), "{command:?}");
+    }
+}
+
+#[test]
+fn escape_leaves_a_control_before_tab_hides_the_panels() {
+    let mut harness = open(SMALL);
+    control(&harness, "Seed").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::Tab);
+    harness.run_steps(2);
+    assert!(harness.state_mut().remembered_mut().has_panels, "Tab goes to the next control");
+    send(&mut harness, Command::FullScreen);
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(harness.state().performed(), Some(Command::FullScreen));
+    assert!(harness.state().is_full_screen(), "the first Escape leaves the control");
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert!(!harness.state().is_full_screen());
+    harness.key_press(Key::Tab);
+    harness.run_steps(2);
+    assert!(!harness.state_mut().remembered_mut().has_panels);
+}

@@ -1,0 +1,85 @@
+//! A window without a display, and how to use it.
+
+use eframe::egui::{self, Modifiers, PointerButton, Pos2};
+use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::{Harness, Node};
+use std::time::{Duration, Instant};
+use weekender::app::{Command, Window};
+use weekender::cli::{self, Request};
+
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The usual small picture.
+pub const SMALL: &str = "--stage glass-schlick --size 32x18";
+
+pub fn window(arguments: &str) -> Window {
+    let words = std::iter::once("weekender").chain(arguments.split_whitespace());
+    match cli::parse(words.map(Into::into)).unwrap() {
+        Request::Window(options) => Window::new(*options, None).unwrap(),
+        other => panic!("{arguments}: {other:?}"),
+    }
+}
+
+pub fn open_sized(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
+    Harness::builder()
+        .with_size(size)
+        .with_step_dt(1.0 / 60.0)
+        .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), window(arguments))
+}
+
+pub fn open(arguments: &str) -> Harness<'static, Window> {
+    let mut harness = open_sized(arguments, [1280.0, 1400.0]);
+    harness.run_steps(2);
+    harness
+}
+
+/// Draws frames until it is so.
+pub fn until(harness: &mut Harness<'_, Window>, what: &str, is_so: impl Fn(&Window) -> bool) {
+    let begin = Instant::now();
+    while !is_so(harness.state()) {
+        let state = harness.state();
+        let phase = &state.status().phase;
+        assert!(begin.elapsed() < PATIENCE, "never: {what}; {phase:?}; {:?}", state.messages());
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+}
+
+pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
+    move |window| window.shown().is_some_and(|(samples, divisor)| samples >= at_least && divisor == 1)
+}
+
+pub fn send(harness: &mut Harness<'_, Window>, command: Command) {
+    harness.state_mut().send(command);
+    harness.run_steps(2);
+}
+
+/// The control of this name, not the text that says the name.
+pub fn control<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> {
+    let mut named = harness.get_all_by_label(name);
+    named
+        .find(|node| node.accesskit_node().role() != egui::Role::Label)
+        .unwrap_or_else(|| panic!("no control {name}"))
+}
+
+pub fn middle(harness: &Harness<'_, Window>) -> Pos2 {
+    harness.get_by_label("Picture").rect().center()
+}
+
+pub fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, modifiers: Modifiers) {
+    let start = middle(harness);
+    let press = |pos: Pos2, pressed| egui::Event::PointerButton { pos, button, pressed, modifiers };
+    harness.event(egui::Event::PointerMoved(start));
+    harness.step();
+    harness.event_modifiers(press(start, true), modifiers);
+    harness.step();
+    for step in 1..=10 {
+        harness.event_modifiers(
+            egui::Event::PointerMoved(start + egui::vec2(6.0, 3.0) * step as f32),
+            modifiers,
+        );
+        harness.step();
+    }
+    harness.event_modifiers(press(start + egui::vec2(60.0, 30.0), false), modifiers);
+    harness.step();
+}

@@ -1,0 +1,127 @@
+//! What is saved, opened, dropped and copied.
+
+use crate::common::{SMALL, has_samples, open, send, until};
+use eframe::egui::{self, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use weekender::app::{Command, Window};
+use weekender::output::{OutputFormat, read_description};
+use weekender::progressive::{Plan, Progressive, Work};
+use weekender::recipe::file;
+use weekender::stages::Stage;
+
+/// Saves through the path box and waits for the file.
+fn save(harness: &mut Harness<'_, Window>, format: OutputFormat, path: &Path) {
+    send(harness, Command::Save(format));
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    let saved = format!("Saved {}", path.display());
+    until(harness, &saved, |window| window.messages().contains(&saved));
+}
+
+/// The bytes of the picture that a file's recipe gives with as many samples as it says.
+fn rendered_again(path: &Path) -> Vec<u8> {
+    let description = read_description(path).unwrap();
+    let recipe = file::parse(description.recipe(), "again").unwrap();
+    let samples = description.get("Samples").unwrap().parse().unwrap();
+    let mut progressive = Progressive::spawn().unwrap();
+    let job = recipe.job().unwrap();
+    let backend = weekender::backends::BackendChoice::fallback();
+    progressive.start(Work::new(job, backend, Plan::samples(samples)));
+    progressive.wait_until_over();
+    progressive.finish().unwrap().to_rgb8(recipe.rules.transfer)
+}
+
+#[test]
+fn what_is_saved_is_the_film_and_can_be_opened_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut harness = open("--stage defocus --size 48x27 --samples 40");
+    harness.state_mut().document_mut().camera.vfov_degrees = 31.0;
+    harness.run_steps(2);
+    until(&mut harness, "the end", has_samples(40));
+    let shown = harness.state().document().clone();
+    for format in OutputFormat::ALL {
+        let path = directory.path().join(format!("saved{}", format.ending()));
+        save(&mut harness, format, &path);
+        if format != OutputFormat::Exr {
+            let pixels = image::open(&path).unwrap().to_rgb8().into_raw();
+            assert!(pixels == rendered_again(&path), "{format:?} differs from a render of its recipe");
+        }
+        send(&mut harness, Command::Stage(&Stage::ALL[0]));
+        harness.input_mut().dropped_files.push(Arc::new(Dropped(path.clone())));
+        let opened = format!("Opened {}", path.display());
+        until(&mut harness, &opened, |window| window.messages().contains(&opened));
+        let document = harness.state().document();
+        assert_eq!(document.stage(), shown.stage());
+        assert_eq!((document.camera, document.settings), (shown.camera, shown.settings));
+        until(&mut harness, "forty samples", has_samples(40));
+    }
+}
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn failures_are_told_in_words() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    for (name, content, told) in [
+        ("missing.png", None, "cannot read"),
+        ("broken.png", Some("nothing of the kind"), "does not say how it was made"),
+        ("broken.toml", Some("[camera"), "broken.toml"),
+        ("broken.exr", Some("nothing"), "is no EXR file"),
+    ] {
+        let path = directory.path().join(name);
+        if let Some(content) = content {
+            std::fs::write(&path, content).unwrap();
+        }
+        harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+        until(&mut harness, told, |window| window.messages().iter().any(|text| text.contains(told)));
+    }
+    let document = harness.state().document();
+    assert_eq!(document.stage().unwrap().id, "glass-schlick", "what was shown stays");
+
+    send(&mut harness, Command::Save(OutputFormat::Png));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.get_by_label("File name").type_text(directory.path().join("no/such/place.png").to_str().unwrap());
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    until(&mut harness, "refused", |window| {
+        window.messages().iter().any(|text| text.starts_with("Not saved"))
+    });
+}
+
+#[test]
+fn the_command_is_copied() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    harness.state_mut().send(Command::CopyCommand);
+    harness.step();
+    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let copied = copied.unwrap();
+    assert!(
+        copied.starts_with("weekender --batch --stage=glass-schlick --size=32x18 --samples="),
+        "{copied}"
+    );
+}

@@ -1,0 +1,12 @@
+//! The window, driven through its real state as by a person: every command, key and control.
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+
+mod commands;
+mod common;
+mod device;
+mod files;
+mod panels;
+mod remembered;
+mod snapshots;
+mod stages;
+mod viewport;

@@ -1,0 +1,157 @@
+//! The hand on the picture, and what the picture shows.
+
+use crate::common::{SMALL, control, drag, has_samples, middle, open, send, until};
+use eframe::egui::{self, Key, Modifiers, PointerButton};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use weekender::app::{Command, Show, Window};
+use weekender::stages::Stage;
+
+#[test]
+fn drags_move_the_camera_and_undo_brings_it_back() {
+    let mut harness = open("--stage view-distant");
+    until(&mut harness, "a picture", has_samples(1));
+    let before = harness.state().document().camera;
+    // The state has to stand still for a moment to be one that undo comes back to.
+    harness.run_steps(90);
+
+    drag(&mut harness, PointerButton::Primary, Modifiers::NONE);
+    let orbited = harness.state().document().camera;
+    assert_eq!(orbited.look_at, before.look_at);
+    assert_ne!(orbited.look_from, before.look_from);
+    until(&mut harness, "the full size", has_samples(1));
+
+    drag(&mut harness, PointerButton::Secondary, Modifiers::NONE);
+    let looked = harness.state().document().camera;
+    assert_eq!(looked.look_from, orbited.look_from);
+    assert_ne!(looked.look_at, orbited.look_at);
+
+    harness.key_press(Key::Home);
+    harness.run_steps(2);
+    assert_eq!(harness.state().document().camera, before);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(2);
+    assert_ne!(harness.state().document().camera, before);
+
+    let camera = harness.state().document().camera;
+    drag(&mut harness, PointerButton::Primary, Modifiers::SHIFT);
+    assert_eq!(harness.state().document().camera, camera, "the picture moves, not the camera");
+}
+
+#[test]
+fn the_wheel_and_keys_move_and_clicks_aim() {
+    let mut harness = open("--stage defocus");
+    until(&mut harness, "a picture", has_samples(1));
+    let before = harness.state().document().camera;
+    let at = middle(&harness);
+    harness.event(egui::Event::PointerMoved(at));
+    harness.step();
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Line,
+        delta: egui::vec2(0.0, 2.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(20);
+    let closer = harness.state().document().camera;
+    assert!(closer.look_from.distance(closer.look_at) < before.look_from.distance(before.look_at));
+
+    harness.key_down(Key::W);
+    harness.run_steps(3);
+    harness.key_up(Key::W);
+    harness.run_steps(2);
+    let flown = harness.state().document().camera;
+    assert_ne!(flown.look_at, closer.look_at);
+
+    let click = |harness: &mut Harness<'_, Window>, modifiers| {
+        for pressed in [true, false] {
+            let button = PointerButton::Primary;
+            harness.event_modifiers(
+                egui::Event::PointerButton { pos: at, button, pressed, modifiers },
+                modifiers,
+            );
+            harness.step();
+        }
+    };
+    click(&mut harness, Modifiers::NONE);
+    let focused = harness.state().document().camera;
+    assert_eq!(focused.look_at, flown.look_at);
+    assert_ne!(focused.focus_distance, flown.focus_distance);
+    click(&mut harness, Modifiers::NONE);
+    harness.run_steps(2);
+    assert_ne!(harness.state().document().camera.look_at, focused.look_at, "a second click at once centres");
+
+    harness.run_steps(60);
+    click(&mut harness, Modifiers::ALT);
+    until(&mut harness, "sixteen paths", |window| window.listed_paths() == 16);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("Paths of pixel").is_some());
+    let is_open = |harness: &Harness<'_, Window>, index: usize| {
+        let header = control(harness, &format!("Path of sample {index}")).rect();
+        let next = control(harness, &format!("Path of sample {}", index + 1)).rect();
+        next.top() - header.bottom() > 40.0
+    };
+    harness.run_steps(30);
+    assert!(is_open(&harness, 0) && !is_open(&harness, 1));
+    harness.get_by_label("Path of the sample after").click();
+    harness.run_steps(30);
+    assert!(is_open(&harness, 1) && !is_open(&harness, 0));
+    control(&harness, "Path of sample 3").click();
+    harness.run_steps(30);
+    assert!(is_open(&harness, 3) && !is_open(&harness, 1));
+    control(&harness, "Paths listed").set_value_accesskit(64.0);
+    until(&mut harness, "sixty-four paths", |window| window.listed_paths() == 64);
+    control(&harness, "Paths listed").set_value_accesskit(1000.0);
+    harness.run_steps(3);
+    assert_eq!(harness.state().listed_paths(), 64, "no more than that");
+    harness.state_mut().document_mut().settings.seed += 1;
+    until(&mut harness, "the paths of another seed", |window| window.listed_paths() == 64);
+    // The list may still change, and with it the button's place.
+    harness.get_by_label("Clear paths").click_accesskit();
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("Paths of pixel").is_none());
+}
+
+#[test]
+fn zoom_commands_change_what_is_seen_and_not_the_picture() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    let (fitting, run) = (harness.state().picture_rect(), harness.state().status().run);
+    send(&mut harness, Command::ActualSize);
+    let actual = harness.state().picture_rect();
+    assert_eq!(actual.size(), egui::vec2(32.0, 18.0));
+    send(&mut harness, Command::ZoomIn);
+    assert_eq!(harness.state().picture_rect().size(), actual.size() * 1.25);
+    send(&mut harness, Command::ZoomOut);
+    assert!((harness.state().picture_rect().width() - actual.width()).abs() < 1e-3);
+    send(&mut harness, Command::Fit);
+    assert_eq!(harness.state().picture_rect(), fitting);
+    assert_eq!(harness.state().status().run, run);
+}
+
+#[test]
+fn views_are_shown_and_follow_the_camera() {
+    let mut harness = open("--stage defocus --size 64x36");
+    until(&mut harness, "a picture", has_samples(2));
+    for show in [Show::Normals, Show::Albedo, Show::Bounces] {
+        send(&mut harness, Command::Show(show));
+        until(&mut harness, "sixteen samples", |window| window.layer_samples() == 16);
+        harness.state_mut().document_mut().camera.vfov_degrees += 1.0;
+        harness.run_steps(2);
+        until(&mut harness, "the moved layer", |window| window.layer_samples() == 16);
+        assert_eq!(harness.state().show(), show);
+    }
+    for show in [Show::Occupancy, Show::Error] {
+        send(&mut harness, Command::Show(show));
+        assert_eq!((harness.state().show(), harness.state().layer_samples()), (show, 0));
+    }
+    // A stage that sends no rays has no such views: it says so and shows its picture.
+    send(&mut harness, Command::Show(Show::Albedo));
+    send(&mut harness, Command::Stage(&Stage::ALL[0]));
+    harness.run_steps(2);
+    assert_eq!(harness.state().show(), Show::Picture);
+    assert!(harness.state().messages().iter().any(|text| text.starts_with("No albedo here")));
+    send(&mut harness, Command::Show(Show::Bounces));
+    assert_eq!(harness.state().show(), Show::Picture);
+}
