@@ -162,7 +162,7 @@ impl Compare {
             self.mode = None;
         }
         let is_difference = self.mode == Some(Mode::Difference);
-        if is_difference && is_new && tracer.is_full(&document) {
+        if is_difference && is_new.is_some() && tracer.is_full(&document) {
             self.measured_samples = tracer.status().samples_per_pixel.max(1);
             let (sender, context) = (sender.clone(), context.clone());
             tracer.inspect(move |film| {

@@ -16,13 +16,14 @@ pub struct FrameTimes {
     pub picture: Duration,
 }
 
-/// Lines `frame,since_start_ms,since_last_ms,cpu_ms,ui_ms,picture_ms`, `latency,since_start_ms,ms` from a change
-/// to its first picture, `command,since_start_ms,NAME` and `tracing,since_start_ms,RUN,BACKEND`.
+/// Lines `frame,since_start_ms,since_last_ms,cpu_ms,ui_ms,picture_ms`, `latency,since_start_ms,ms` from each change
+/// to the frame that draws its first picture, `command,since_start_ms,NAME` and `tracing,since_start_ms,RUN,BACKEND`.
 pub struct FrameLog {
     file: BufWriter<File>,
     start: Instant,
     last: Option<Instant>,
-    changed: Option<Instant>,
+    /// Changes that no picture has shown yet.
+    changes: Vec<Instant>,
     tracing: Option<(u64, String)>,
 }
 
@@ -33,7 +34,7 @@ fn milliseconds(time: Duration) -> f64 {
 impl FrameLog {
     pub fn create(path: &Path) -> std::io::Result<Self> {
         let file = BufWriter::new(File::create(path)?);
-        Ok(FrameLog { file, start: Instant::now(), last: None, changed: None, tracing: None })
+        Ok(FrameLog { file, start: Instant::now(), last: None, changes: Vec::new(), tracing: None })
     }
 
     /// A frame begins; the one before took `times`.
@@ -70,14 +71,15 @@ impl FrameLog {
 
     /// The user has changed the picture.
     pub fn changed(&mut self) {
-        self.changed.get_or_insert_with(Instant::now);
+        self.changes.push(Instant::now());
     }
 
-    /// The first picture of what was changed is there.
-    pub fn pictured(&mut self) {
-        if let Some(changed) = self.changed.take() {
+    /// There is a picture of what was begun then.
+    pub fn pictured(&mut self, begun: Instant) {
+        let shown = self.changes.partition_point(|change| *change <= begun);
+        for change in self.changes.drain(..shown).collect::<Vec<_>>() {
             let since_start = milliseconds(self.start.elapsed());
-            self.line(format_args!("latency,{since_start:.3},{:.3}", milliseconds(changed.elapsed())));
+            self.line(format_args!("latency,{since_start:.3},{:.3}", milliseconds(change.elapsed())));
         }
     }
 

@@ -37,7 +37,7 @@ pub use remembered::Theme;
 pub use viewport::Show;
 pub use window::Window;
 
-use crate::cli::WindowOptions;
+use crate::cli::{DrawWith, WindowOptions};
 use anyhow::{Result, anyhow, bail};
 use eframe::egui;
 use std::process::ExitCode;
@@ -56,7 +56,34 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); {REMEDY}"
         );
     }
-    let native = eframe::NativeOptions {
+    let mut failures = Vec::new();
+    for &renderer in renderers(options.draw_with) {
+        let (native, options) = (native_options(renderer), options.clone());
+        let create = Box::new(|context: &eframe::CreationContext<'_>| {
+            Ok(Box::new(Window::new(options, context.storage)?) as Box<dyn eframe::App>)
+        });
+        match eframe::run_native("weekender", native, create) {
+            Ok(()) => return Ok(ExitCode::SUCCESS),
+            Err(error) => failures.push(format!("with {renderer}: {error}")),
+        }
+    }
+    Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
+}
+
+/// What may draw the window, to be tried in turn. A processor takes several times as long for a frame by way of wgpu
+/// as by way of OpenGL, since egui's shader for wgpu computes all that it might need.
+fn renderers(wish: DrawWith) -> &'static [eframe::Renderer] {
+    use eframe::Renderer::{Glow, Wgpu};
+    match wish {
+        DrawWith::Wgpu => &[Wgpu],
+        DrawWith::Gl => &[Glow],
+        DrawWith::Auto if device::adapter().is_ok_and(|adapter| !adapter.is_software) => &[Wgpu, Glow],
+        DrawWith::Auto => &[Glow, Wgpu],
+    }
+}
+
+fn native_options(renderer: eframe::Renderer) -> eframe::NativeOptions {
+    eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Weekender")
             .with_app_id("weekender")
@@ -64,20 +91,10 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             .with_min_inner_size([480.0, 320.0])
             .with_icon(theme::icon())
             .with_drag_and_drop(true),
+        renderer,
         dithering: false,
-        renderer: if std::env::var_os("W_GLOW").is_some() {
-            eframe::Renderer::Glow
-        } else {
-            eframe::Renderer::Wgpu
-        },
         ..Default::default()
-    };
-    let create = Box::new(|context: &eframe::CreationContext<'_>| {
-        Ok(Box::new(Window::new(options, context.storage)?) as Box<dyn eframe::App>)
-    });
-    eframe::run_native("weekender", native, create)
-        .map_err(|error| anyhow!("the window cannot be opened: {error}; {REMEDY}"))?;
-    Ok(ExitCode::SUCCESS)
+    }
 }
 
 /// Whether the system has somewhere to put a window.

@@ -7,10 +7,10 @@ use super::widgets::compact;
 use super::window::Window;
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use crate::statistics::fit::{Point, Prediction, predict};
-use eframe::egui::{self, Color32, CursorIcon, DragValue, Rect, RichText, Sense, Ui, WidgetInfo};
+use eframe::egui::{self, Color32, CursorIcon, DragValue, Rangef, Rect, RichText, Sense, Ui, WidgetInfo};
 use egui_plot::{
-    GridInput, GridMark, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints, PlotTransform,
-    PlotUi, Points,
+    AxisHints, GridInput, GridMark, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints,
+    PlotTransform, PlotUi, Points,
 };
 use std::fmt::Write;
 
@@ -22,6 +22,9 @@ const MOST_DECADES: f64 = 40.0;
 
 /// Seconds from now beyond which nothing is drawn.
 const FARTHEST: f64 = 1e6;
+
+/// Points between lines of the scale at the left: from the least that has labels, to that which has them in full.
+const LABEL_SPACING: Rangef = Rangef { min: 8.0, max: 14.0 };
 
 /// How near the pointer must be to the target to take hold of it, points.
 const GRIP: f32 = 8.0;
@@ -92,7 +95,9 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
         .sense(Sense::hover())
         .set_margin_fraction(egui::vec2(0.03, 0.12))
         .x_axis_formatter(|mark, _| power(mark.value, " s"))
-        .y_axis_formatter(|mark, _| power(mark.value, ""))
+        .custom_y_axes(vec![
+            AxisHints::new_y().formatter(|mark, _| power(mark.value, "")).label_spacing(LABEL_SPACING),
+        ])
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
         .grid_color(weak.gamma_multiply(GRID_SHARE))

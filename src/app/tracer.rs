@@ -164,14 +164,14 @@ impl Tracer {
         self.start(want, 1, Some(film))
     }
 
-    /// Fetches what is new. Returns whether there is a new picture.
-    pub fn poll(&mut self, context: &egui::Context) -> bool {
+    /// Fetches what is new. Returns when the render of a new picture has begun.
+    pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
         self.status = self.progressive.status();
         if self.status.stats.paths > 0 && !self.status.trace.is_zero() {
             self.speed = self.status.paths_per_second();
         }
-        let Some(started) = &mut self.started else { return false };
-        let mut is_new = false;
+        let started = self.started.as_mut()?;
+        let mut pictured = None;
         if let Some(picture) = self.progressive.newest_picture()
             && picture.run == started.run
         {
@@ -183,7 +183,7 @@ impl Tracer {
                 document: started.document.clone(),
             });
             started.is_pictured = true;
-            is_new = true;
+            pictured = Some(started.at);
         }
         // A picture that has been refined for long changes slowly.
         let interval = match self.moving_divisor {
@@ -197,7 +197,7 @@ impl Tracer {
         if matches!(self.status.phase, Phase::Preparing | Phase::Tracing) {
             context.request_repaint_after(interval.max(Duration::from_millis(16)));
         }
-        is_new
+        pictured
     }
 
     /// Brings what runs in line with what is wanted, at once or as soon as there was a picture.

@@ -258,11 +258,11 @@ impl Window {
         self.dress(&context);
         self.receive(&context);
         let begin = Instant::now();
-        let is_pictured = self.main.poll(&context);
+        let pictured = self.main.poll(&context);
         self.frame_times.picture = begin.elapsed();
         if let Some(log) = &mut self.frame_log {
-            if is_pictured {
-                log.pictured();
+            if let Some(begun) = pictured {
+                log.pictured(begun);
             }
             let status = self.main.status();
             if let Some(backend) = status.backend.as_ref().filter(|_| status.samples_per_pixel > 0) {

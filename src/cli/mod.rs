@@ -12,7 +12,7 @@ mod values;
 pub use bench::{BenchOptions, BenchScene};
 pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice, SideChoice};
-pub use raw::ProgressChoice;
+pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
 pub use sources::CliError;

@@ -139,6 +139,10 @@ pub(super) struct RawRender {
     #[arg(long, value_name = "FILE|-", help_heading = "Files")]
     pub json: Option<PathBuf>,
 
+    /// What draws the window; auto: wgpu, but gl where no adapter is hardware
+    #[arg(long, value_enum, default_value = "auto")]
+    pub draw_with: DrawWith,
+
     /// Write the times of the window's frames
     #[arg(long, value_name = "FILE", hide = true)]
     pub frame_log: Option<PathBuf>,
@@ -204,6 +208,18 @@ impl RawPicture {
     pub fn is_every_stage(&self) -> bool {
         self.stage.as_deref() == Some("all")
     }
+}
+
+/// What draws the window; it has nothing to do with what traces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, ValueEnum)]
+pub enum DrawWith {
+    /// What is faster on this machine.
+    #[default]
+    Auto,
+    /// Vulkan, Metal or DX12.
+    Wgpu,
+    /// OpenGL.
+    Gl,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

@@ -1,7 +1,7 @@
 //! What the flags of rendering mean together, for the window and for files.
 
 use super::Request;
-use super::raw::{ProgressChoice, RawDevice, RawRender};
+use super::raw::{DrawWith, ProgressChoice, RawDevice, RawRender};
 use super::sources::{self, CliError, Source};
 use super::values::{JsonTarget, Level, Simd};
 use crate::backends::BackendChoice;
@@ -49,6 +49,8 @@ pub struct WindowOptions {
     pub plan: Option<Plan>,
     /// The film that goes on.
     pub resume: Option<PathBuf>,
+    /// What draws the window.
+    pub draw_with: DrawWith,
     /// Where the times of the window's frames go.
     pub frame_log: Option<PathBuf>,
 }
@@ -156,6 +158,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
             || raw.adapter.is_some()
             || (raw.simd, raw.isa) != (Simd(None), Level(None)),
         resume: raw.resume.clone(),
+        draw_with: raw.draw_with,
         frame_log: raw.frame_log.clone(),
     })
 }

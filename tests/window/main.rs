@@ -6,6 +6,7 @@ mod common;
 mod device;
 mod files;
 mod panels;
+mod plot;
 mod remembered;
 mod snapshots;
 mod stages;

@@ -1,33 +1,10 @@
-//! The plot of error against time, driven as by a person.
-#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+//! The plot of error against time.
 
+use super::common::{open, send, until};
 use eframe::egui::{self, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::time::{Duration, Instant};
 use weekender::app::{Command, Window};
-use weekender::cli::{self, Request};
-
-fn open(arguments: &str) -> Harness<'static, Window> {
-    let words = std::iter::once("weekender").chain(arguments.split_whitespace());
-    let Request::Window(options) = cli::parse(words.map(Into::into)).unwrap() else { panic!("{arguments}") };
-    let window = Window::new(*options, None).unwrap();
-    let mut harness = Harness::builder()
-        .with_size([1280.0, 1400.0])
-        .with_step_dt(1.0 / 60.0)
-        .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), window);
-    harness.run_steps(2);
-    harness
-}
-
-fn until(harness: &mut Harness<'_, Window>, what: &str, is_so: impl Fn(&Window) -> bool) {
-    let begin = Instant::now();
-    while !is_so(harness.state()) {
-        assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}");
-        std::thread::sleep(Duration::from_millis(2));
-        harness.step();
-    }
-}
 
 fn target(harness: &Harness<'_, Window>) -> f64 {
     harness.state().document().stop.noise.unwrap()
@@ -61,10 +38,9 @@ fn drag(harness: &mut Harness<'_, Window>, from: Pos2, to: Pos2) {
 #[test]
 fn the_target_is_dragged() {
     let mut harness = open("--scene three-spheres --size 64x36 --device cpu --noise-target 0.002");
-    harness.state_mut().send(Command::Plot);
+    send(&mut harness, Command::Plot);
     until(&mut harness, "an estimate", |window| window.status().samples_per_pixel >= 16);
-    harness.state_mut().send(Command::Pause);
-    harness.run_steps(3);
+    send(&mut harness, Command::Pause);
     assert_eq!(target(&harness), 0.002);
     // Taken hold of some points beside it: it moves as far as the pointer, and does not jump.
     let beside = line(&harness) + vec2(40.0, 5.0);
@@ -81,15 +57,14 @@ fn the_target_is_dragged() {
     drag(&mut harness, away, away - vec2(0.0, 30.0));
     assert_eq!(target(&harness), moved);
 
-    harness.state_mut().send(Command::Undo);
-    harness.run_steps(2);
+    send(&mut harness, Command::Undo);
     assert_eq!(target(&harness), 0.002, "a whole drag is one change");
 }
 
 #[test]
 fn a_render_ends_at_the_target_and_goes_on_to_a_lower_one() {
     let mut harness = open("--scene three-spheres --size 64x36 --device cpu --noise-target 0.01");
-    harness.state_mut().send(Command::Plot);
+    send(&mut harness, Command::Plot);
     until(&mut harness, "the end", |window| window.status().phase.is_over());
     let done = harness.state().status().samples_per_pixel;
     harness.run_steps(3);
@@ -117,16 +92,13 @@ fn the_points_are_copied_and_saved() {
 
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("error.csv");
-    harness.state_mut().send(Command::SavePlot);
-    harness.run_steps(3);
-    let name = harness.get_by_label("File name");
-    name.focus();
+    send(&mut harness, Command::SavePlot);
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::A);
     harness.get_by_label("File name").type_text(path.to_str().unwrap());
     harness.run_steps(2);
-    harness.get_by_label("Save").click();
-    harness.run_steps(3);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(2);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), copied);
     assert!(has_nothing || copied.lines().count() > 1);
 }
