@@ -15,9 +15,11 @@ const MOVING_PASS: Duration = Duration::from_millis(10);
 /// What a pass should take else.
 const STILL_PASS: Duration = Duration::from_millis(40);
 
-/// What the first pass of a preview should take, seconds: together with a frame or two of the window it is the
-/// time from the hand to the eye.
-const PREVIEW_SECONDS: f64 = 0.025;
+/// What a preview should take until it is drawn, seconds: the time from the hand to the eye.
+const PREVIEW_SECONDS: f64 = 0.05;
+
+/// Beyond this, seconds, the next preview is coarser.
+const PREVIEW_SECONDS_LIMIT: f64 = 0.07;
 
 /// A preview is no coarser than this.
 const DIVISOR_LIMIT: u32 = 8;
@@ -81,8 +83,8 @@ pub struct Tracer {
     asked: Instant,
     backend: Option<BackendChoice>,
     plan: Option<Plan>,
-    /// Paths a second, as last measured.
-    speed: f64,
+    /// Pixels a second of the last preview, from its wish to its picture: drawing the window takes its part, too.
+    preview_speed: Option<f64>,
     moving_divisor: Option<u32>,
 }
 
@@ -96,7 +98,7 @@ impl Tracer {
             asked: Instant::now(),
             backend: None,
             plan: None,
-            speed: 5e6,
+            preview_speed: None,
             moving_divisor: None,
         })
     }
@@ -167,9 +169,6 @@ impl Tracer {
     /// Fetches what is new. Returns when the render of a new picture has begun.
     pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
         self.status = self.progressive.status();
-        if self.status.stats.paths > 0 && !self.status.trace.is_zero() {
-            self.speed = self.status.paths_per_second();
-        }
         let started = self.started.as_mut()?;
         let mut pictured = None;
         if let Some(picture) = self.progressive.newest_picture()
@@ -182,6 +181,17 @@ impl Tracer {
                 divisor: started.divisor,
                 document: started.document.clone(),
             });
+            if let Some(divisor) = &mut self.moving_divisor
+                && !started.is_pictured
+            {
+                let took = started.at.elapsed().as_secs_f64().max(1e-3);
+                self.preview_speed = Some(f64::from(picture.width) * f64::from(picture.height) / took);
+                // A move that is under way gets coarser if it must; to get finer it would have to flicker.
+                if took > PREVIEW_SECONDS_LIMIT {
+                    let coarser = f64::from(started.divisor) * (took / PREVIEW_SECONDS).sqrt();
+                    *divisor = (coarser.ceil() as u32).clamp(*divisor, DIVISOR_LIMIT.max(*divisor));
+                }
+            }
             started.is_pictured = true;
             pictured = Some(started.at);
         }
@@ -212,9 +222,10 @@ impl Tracer {
         if want.is_moving {
             self.moving_divisor = Some(divisor);
         }
-        let is_at_it = self.started.as_ref().is_some_and(|run| {
-            run.document.has_same_film(want.document) && (run.divisor == divisor || run.divisor == 1)
-        });
+        let is_at_it = self
+            .started
+            .as_ref()
+            .is_some_and(|run| run.document.has_same_film(want.document) && run.divisor <= divisor);
         if is_at_it {
             self.adjust(want);
             return Ok(());
@@ -268,7 +279,9 @@ impl Tracer {
     fn divisor(&self, document: &Document) -> u32 {
         self.moving_divisor.unwrap_or_else(|| {
             let pixels = f64::from(document.settings.width) * f64::from(document.settings.height);
-            let affordable = (self.speed * PREVIEW_SECONDS).max(1.0);
+            // Before the first preview: drawing takes its part of what tracing has to itself now.
+            let speed = self.preview_speed.unwrap_or_else(|| (0.5 * self.status.paths_per_second()).max(1e6));
+            let affordable = (speed * PREVIEW_SECONDS).max(1.0);
             ((pixels / affordable).sqrt().ceil() as u32).clamp(1, DIVISOR_LIMIT)
         })
     }
