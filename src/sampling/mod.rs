@@ -21,7 +21,9 @@ use crate::render::{RenderSettings, SamplerKind};
 /// `pixel` is `x | y << 16`, `bounce` 0 for the ray from the camera.
 pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -> [u32; 4] {
     match settings.sampler {
-        SamplerKind::Independent => pcg4d([pixel, index.reverse_bits(), bounce, settings.seed]),
+        // The index as it is. The hash carries differences upwards and folds them down once: samples whose numbers
+        // differ in the uppermost bits alone, as reversed ones do, would not be independent.
+        SamplerKind::Independent => pcg4d([pixel, index, bounce, settings.seed]),
         SamplerKind::Sobol => {
             let half_count = settings.half_count() as u32;
             let key = pixel_key(settings.seed, index % half_count, pixel);
@@ -57,7 +59,7 @@ pub fn unit_float(u: u32) -> f32 {
 }
 
 /// `count` samples `first ..` of one half, `first` a multiple of `count`, a power of two. A kernel walks through
-/// them in bit-reversed order, which costs one addition a sample.
+/// them, those of Sobol's in bit-reversed order, at the cost of one addition a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleBlock {
     /// Half of the film.
@@ -87,14 +89,13 @@ impl SampleBlock {
         blocks
     }
 
-    /// The sampler's counter of the first sample, and what to add to it for each next.
+    /// The sampler's counter of the first sample, and what to add to it for each next: for independent samples the
+    /// index, for Sobol's the reversed index within the half.
     pub fn counter(&self, settings: &RenderSettings) -> (u32, u32) {
         let half_count = settings.half_count() as u32;
-        let (first, stride) = match settings.sampler {
+        match settings.sampler {
             SamplerKind::Independent => (self.first * half_count + self.half, half_count),
-            SamplerKind::Sobol => (self.first, 1),
-        };
-        let step = (1_u64 << 32) / (u64::from(self.count) * u64::from(stride));
-        (first.reverse_bits(), step as u32)
+            SamplerKind::Sobol => (self.first.reverse_bits(), ((1_u64 << 32) / u64::from(self.count)) as u32),
+        }
     }
 }

@@ -22,6 +22,34 @@ fn case_26_no_draw_repeats() {
     }
 }
 
+/// The mean of `n` independent samples has an `n`th of one sample's variance, whatever it is the mean of.
+#[test]
+fn independent_samples_are_independent() {
+    const SAMPLES: u32 = 64;
+    const PIXELS: u32 = 20_000;
+    let waves = [0.5, 1.0, 2.0, 8.0];
+    let settings = settings(SamplerKind::Independent, true, 3);
+    for which in 0..4 {
+        for turns in waves {
+            let (mut squares, mut squares_of_means) = (0.0, 0.0);
+            for pixel in 0..PIXELS {
+                let value = |index| {
+                    let word = sampling::numbers(&settings, pixel % 200 | (pixel / 200) << 16, index, 0)[which];
+                    // Its mean over all numbers is 0.
+                    (f64::from(sampling::unit_float(word)) * turns * std::f64::consts::TAU).cos()
+                };
+                let values = (0..SAMPLES).map(value);
+                squares += values.clone().map(|x| x * x).sum::<f64>();
+                squares_of_means += values.sum::<f64>().powi(2);
+            }
+            let ratio = squares_of_means / squares;
+            println!("number {which}, {turns} turns: variance of the mean {ratio:.3} of the expected");
+            // The deviation is the root of 2 / PIXELS, .01.
+            assert!((ratio - 1.0).abs() < 0.05, "number {which}, {turns} turns: {ratio}");
+        }
+    }
+}
+
 #[test]
 fn case_27_the_largest_number_is_below_1() {
     fn largest<L: Lanes>(l: L) -> f64 {
@@ -164,13 +192,14 @@ proptest! {
             prop_assert_eq!(block.first % block.count, 0);
             let (mut counter, step) = block.counter(&settings);
             for _ in 0..block.count {
-                let index = u64::from(counter.reverse_bits());
                 seen.push(match sampler {
                     SamplerKind::Independent => {
-                        prop_assert_eq!(index % u64::from(halves), u64::from(block.half));
-                        index
+                        prop_assert_eq!(counter % halves, block.half);
+                        u64::from(counter)
                     }
-                    SamplerKind::Sobol => index * u64::from(halves) + u64::from(block.half),
+                    SamplerKind::Sobol => {
+                        u64::from(counter.reverse_bits()) * u64::from(halves) + u64::from(block.half)
+                    }
                 });
                 counter = counter.wrapping_add(step);
             }
