@@ -279,8 +279,8 @@ impl Tracer {
     fn divisor(&self, document: &Document) -> u32 {
         self.moving_divisor.unwrap_or_else(|| {
             let pixels = f64::from(document.settings.width) * f64::from(document.settings.height);
-            // Before the first preview: drawing takes its part of what tracing has to itself now.
-            let speed = self.preview_speed.unwrap_or_else(|| (0.5 * self.status.paths_per_second()).max(1e6));
+            // Before the first preview: what runs must be stopped, and drawing takes its part.
+            let speed = self.preview_speed.unwrap_or_else(|| (0.1 * self.status.paths_per_second()).max(1e6));
             let affordable = (speed * PREVIEW_SECONDS).max(1.0);
             ((pixels / affordable).sqrt().ceil() as u32).clamp(1, DIVISOR_LIMIT)
         })

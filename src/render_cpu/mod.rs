@@ -32,7 +32,7 @@ use work::{DealtBlock, TileStats, Work, dealing_order};
 
 /// By how much threads that give way are nicer: each step is a tenth of the time, where there is not enough.
 #[cfg(target_os = "linux")]
-const NICENESS: i32 = 5;
+const NICENESS: i32 = 10;
 
 /// What a CPU backend is to use; `None` leaves the choice to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -86,8 +86,10 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         | Command::Save(_)
         | Command::SaveScene
         | Command::LoadReference
+        | Command::SavePlot
         | Command::Palette
         | Command::Help => window.has_dialog(),
+        Command::CopyPlot => window.messages().iter().any(|text| text.starts_with("Copied")),
         Command::CopyCommand => copied || window.messages().iter().any(|text| text.starts_with("Copied")),
         Command::Undo | Command::Redo | Command::Home | Command::ResetAll => {
             document.camera != before.camera || document.settings != before.settings
