@@ -324,3 +324,23 @@ fn many_spheres_and_large_radiance() {
     let parted = a.means().iter().zip(b.means()).filter(|(a, b)| (a[0] - b[0]).abs() > 1e-3).count();
     assert!(parted <= 4, "{parted}");
 }
+
+#[test]
+fn a_camera_that_moves_keeps_the_scene_on_the_device() {
+    let Some(mut moved) = gpu(GpuOptions::default()) else { return };
+    let job = job_of(&field(300).0, BOOK_CAMERA, [64, 36], 8, SamplerKind::Sobol, false);
+    rendered(&mut moved, &job, 2);
+    assert!(!moved.report().hierarchy_time.is_zero());
+    let camera = Camera { look_from: BOOK_CAMERA.look_from * 1.1, ..BOOK_CAMERA };
+    let settings = RenderSettings { width: 48, height: 27, ..*job.settings() };
+    let next = job.seen_by(camera, settings).unwrap();
+    let film = rendered(&mut moved, &next, 2);
+    assert!(moved.report().hierarchy_time.is_zero(), "{:?}", moved.report());
+    let Some(mut fresh) = gpu(GpuOptions::default()) else { return };
+    assert!(film.halves() == rendered(&mut fresh, &next, 2).halves());
+
+    // Another scene is another matter.
+    let other = job_of(&field(200).0, BOOK_CAMERA, [48, 27], 8, SamplerKind::Sobol, false);
+    let film = rendered(&mut moved, &other, 2);
+    assert!(film.halves() == rendered(&mut fresh, &other, 2).halves());
+}

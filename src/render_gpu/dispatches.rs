@@ -125,7 +125,7 @@ impl GpuRenderer {
                 (slab.first_row, slab.row_count)
             };
             let tiles = settings.width.div_ceil(tile_width) * row_count.div_ceil(tile_height);
-            let mut left = Blocks::of_range(range.clone(), &settings, prepared.block_limit);
+            let mut left = Blocks::of_range(range.clone(), &settings, prepared.scene.tables.block_limit);
             loop {
                 let affordable = self.dispatches.budget(&prepared.overrides).paths();
                 let pixels = u64::from(tiles) * tile_pixels;
@@ -191,7 +191,7 @@ impl GpuRenderer {
                 timestamp_writes: timer.map(Timer::writes),
             });
             pass.set_pipeline(&prepared.kernel.pipeline);
-            pass.set_bind_group(0, &prepared.job_group, &[]);
+            pass.set_bind_group(0, &prepared.scene.group, &[]);
             pass.set_bind_group(1, &prepared.film.slabs[slab].group, &[]);
             pass.set_bind_group(2, &self.words_group, &[]);
             let [x, y] = groups(order.tile_count);

@@ -9,20 +9,27 @@ use super::{GpuRenderer, HierarchyKind, Overrides, failed};
 use crate::render::{RenderError, RenderJob};
 use crate::tables::Tables;
 use std::sync::atomic::AtomicBool;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A job on the device.
 pub(super) struct Prepared {
     pub(super) job: RenderJob,
-    /// Most samples whose sum fits 32 bits.
-    pub(super) block_limit: u32,
-    /// By number, the sphere's index in the scene.
-    pub(super) scene_index: Vec<u32>,
+    pub(super) scene: SceneOnDevice,
     pub(super) overrides: Overrides,
     pub(super) kernel: Kernel,
-    /// Group 0.
-    pub(super) job_group: wgpu::BindGroup,
     pub(super) film: FilmBuffers,
+}
+
+/// A scene in buffers, seen by a camera.
+pub(super) struct SceneOnDevice {
+    pub(super) tables: Tables<f32>,
+    /// By number, the sphere's index in the scene.
+    pub(super) scene_index: Vec<u32>,
+    /// Nodes of the hierarchy.
+    node_count: u32,
+    job_buffer: wgpu::Buffer,
+    /// Group 0: the job's buffer and the scene's.
+    pub(super) group: wgpu::BindGroup,
 }
 
 impl GpuRenderer {
@@ -42,28 +49,40 @@ impl GpuRenderer {
         cancel: &AtomicBool,
     ) -> Result<Prepared, RenderError> {
         self.gpu.faults.check().map_err(failed)?;
-        let tables = Tables::<f32>::new(job);
-        let overrides = self.overrides(job, &tables);
+        let (mut seen, old_film) =
+            old.map_or((None, None), |old| (Some((old.scene, old.job)), Some(old.film)));
+        let follows = seen.as_mut().is_some_and(|(scene, before)| scene.tables.follow(before, job));
+        let scene = match seen {
+            Some((scene, _)) if follows => {
+                let data = GpuJob::new(&scene.tables, scene.node_count);
+                self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::bytes_of(&data));
+                self.report.hierarchy_time = Duration::ZERO;
+                scene
+            }
+            other => {
+                // Both need not fit into the device.
+                drop(other);
+                self.scene_on_device(job)?
+            }
+        };
+        let overrides = self.overrides(job, &scene.tables);
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &overrides, 0);
-        let begin = Instant::now();
-        let scene = SceneData::new(job, &tables, self.options.hierarchy).map_err(failed)?;
-        self.report.hierarchy_time = tables.hierarchy_time + begin.elapsed();
-        let scene_index = scene.scene_index.clone();
-        let job_group = self.job_group(&tables, scene).map_err(failed)?;
-        let film = self.film_buffers(job, old).map_err(failed)?;
+        let film = self.film_buffers(job, old_film).map_err(failed)?;
         let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &overrides, 0, cancel)?;
         self.gpu.faults.check().map_err(failed)?;
         self.report.features = overrides.summary();
         self.report.compile_time = kernel.compile_time;
-        Ok(Prepared {
-            job: job.clone(),
-            block_limit: tables.block_limit,
-            scene_index,
-            overrides,
-            kernel,
-            job_group,
-            film,
-        })
+        Ok(Prepared { job: job.clone(), scene, overrides, kernel, film })
+    }
+
+    /// Builds tables and hierarchy, while the kernel is compiled, and copies them to the device.
+    fn scene_on_device(&mut self, job: &RenderJob) -> Result<SceneOnDevice, RenderError> {
+        let tables = Tables::<f32>::new(job);
+        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.overrides(job, &tables), 0);
+        let begin = Instant::now();
+        let data = SceneData::new(job, &tables, self.options.hierarchy).map_err(failed)?;
+        self.report.hierarchy_time = tables.hierarchy_time + begin.elapsed();
+        self.copied(tables, data).map_err(failed)
     }
 
     fn overrides(&self, job: &RenderJob, tables: &Tables<f32>) -> Overrides {
@@ -87,7 +106,7 @@ impl GpuRenderer {
         self.options.film_limit.map_or(limit, |wanted| wanted.min(limit))
     }
 
-    fn job_group(&self, tables: &Tables<f32>, scene: SceneData) -> Result<wgpu::BindGroup, String> {
+    fn copied(&self, tables: Tables<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
         let gpu = &self.gpu;
         let limit = self.binding_limit();
         let storage = |label, data: &[u8]| {
@@ -101,22 +120,29 @@ impl GpuRenderer {
             gpu.filled(label, data, wgpu::BufferUsages::STORAGE)
         };
         let anchored: Vec<GpuAnchoredSphere> = tables.anchored.iter().map(Into::into).collect();
-        let job = GpuJob::new(tables, scene.node_count);
+        let job = GpuJob::new(&tables, scene.node_count);
+        let job_buffer = gpu.filled("job", bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM)?;
         let buffers = [
-            gpu.filled("job", bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM)?,
             storage("spheres", bytemuck::cast_slice(&scene.spheres))?,
             // At least one element of each, as the shader's types ask for.
             storage("anchored spheres", bytemuck::cast_slice(&at_least_one(anchored)))?,
             storage("rows", bytemuck::cast_slice(&scene.rows))?,
             storage("nodes", bytemuck::cast_slice(&at_least_one(scene.nodes)))?,
         ];
-        Ok(gpu.bind(&gpu.layouts.job, &buffers.each_ref()))
+        let bound: Vec<&wgpu::Buffer> = std::iter::once(&job_buffer).chain(&buffers).collect();
+        Ok(SceneOnDevice {
+            group: gpu.bind(&gpu.layouts.job, &bound),
+            scene_index: scene.scene_index,
+            node_count: scene.node_count,
+            job_buffer,
+            tables,
+        })
     }
 
     /// Empty buffers for a film of `job`: those of the old job where they fit.
-    fn film_buffers(&self, job: &RenderJob, old: Option<Prepared>) -> Result<FilmBuffers, String> {
+    fn film_buffers(&self, job: &RenderJob, old: Option<FilmBuffers>) -> Result<FilmBuffers, String> {
         let limit = self.film_limit();
-        match old.map(|prepared| prepared.film) {
+        match old {
             Some(mut film) if film.fit(job.settings(), limit) => {
                 film.forget(&self.gpu);
                 Ok(film)

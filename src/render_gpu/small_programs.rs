@@ -76,7 +76,8 @@ impl GpuRenderer {
             let kernel = this.small_kernel(EntryPoint::PathRecord, &prepared.overrides, 0)?;
             let buffers = this.own_film(prepared)?;
             let settings = job.settings();
-            let (blocks, _) = Blocks::of_range(index..index + 1, settings, prepared.block_limit).take(1);
+            let (blocks, _) =
+                Blocks::of_range(index..index + 1, settings, prepared.scene.tables.block_limit).take(1);
             let order = GpuDispatch {
                 block_count: blocks.len() as u32,
                 // One turn besides to start the path.
@@ -88,7 +89,7 @@ impl GpuRenderer {
             this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
             let words = record::words_for(pixel, settings.max_depth);
             let words = this.run(prepared, &buffers, &kernel, &words, 1)?;
-            Ok(record::from_words(&words, &prepared.scene_index))
+            Ok(record::from_words(&words, &prepared.scene.scene_index))
         })
     }
 
@@ -124,7 +125,7 @@ impl GpuRenderer {
         {
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(&kernel.pipeline);
-            pass.set_bind_group(0, &prepared.job_group, &[]);
+            pass.set_bind_group(0, &prepared.scene.group, &[]);
             pass.set_bind_group(1, &slab.group, &[]);
             pass.set_bind_group(2, &group, &[]);
             let [x, y] = groups(group_count);

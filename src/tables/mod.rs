@@ -207,9 +207,9 @@ impl<R: Real> Tables<R> {
         Tables::new(job)
     }
 
-    /// Makes the tables of `before` those of `job`, if the hierarchy would be the same; else does nothing and
-    /// returns false.
-    fn follow(&mut self, before: &RenderJob, job: &RenderJob) -> bool {
+    /// Makes the tables of `before` those of `job`, if they have a hierarchy and it would be the same, so that camera
+    /// and settings alone differ; else does nothing and returns false.
+    pub fn follow(&mut self, before: &RenderJob, job: &RenderJob) -> bool {
         let is_same = self.hierarchy.is_some() && job.shares_scene_with(before);
         if !is_same || Groups::of(job) != self.groups {
             return false;

@@ -34,7 +34,8 @@ fn independent_samples_are_independent() {
             let (mut squares, mut squares_of_means) = (0.0, 0.0);
             for pixel in 0..PIXELS {
                 let value = |index| {
-                    let word = sampling::numbers(&settings, pixel % 200 | (pixel / 200) << 16, index, 0)[which];
+                    let word =
+                        sampling::numbers(&settings, pixel % 200 | (pixel / 200) << 16, index, 0)[which];
                     // Its mean over all numbers is 0.
                     (f64::from(sampling::unit_float(word)) * turns * std::f64::consts::TAU).cos()
                 };
