@@ -195,6 +195,22 @@ fn the_error_is_right_for_halves_of_different_counts() {
 }
 
 #[test]
+fn the_estimate_knows_how_far_off_it_may_be() {
+    // 400 small films of other samples each: the spread of their estimates against what each says of itself.
+    let errors: Vec<_> =
+        (0..400).map(|k| noisy_film(16, 12, 2, &[8 * k..8 * k + 8]).error().unwrap()).collect();
+    let mean = |of: &dyn Fn(usize) -> f64| (0..errors.len()).map(of).sum::<f64>() / errors.len() as f64;
+    let middle = mean(&|k| errors[k].rmse);
+    let spread = mean(&|k| (errors[k].rmse - middle).powi(2)).sqrt();
+    let said = mean(&|k| errors[k].rmse_deviation);
+    assert!((said / spread - 1.0).abs() < 0.15, "said {said}, was {spread}");
+    assert_eq!(Film::new(4, 3, 2).error(), None);
+    let mut same = Film::new(4, 3, 2);
+    same.record(0..2, 0).unwrap();
+    assert_eq!(same.error().unwrap().rmse_deviation, 0.0);
+}
+
+#[test]
 fn films_that_do_not_go_together_are_left_as_they_were() {
     let mut film = noisy_film(4, 3, 2, &[0..10]);
     let before = film.clone();

@@ -387,7 +387,7 @@ mod tests {
             samples_per_pixel: 100,
             phase: Phase::Tracing,
             trace: Duration::from_secs(10),
-            error: Some(ErrorEstimate { rmse: 0.004, rel_mse: 0.0 }),
+            error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 0.0, rel_mse: 0.0 }),
             ..Status::default()
         };
         let found = prediction(&status, Some(0.002)).unwrap();

@@ -112,7 +112,7 @@ mod tests {
             planned_samples_per_pixel: 1100,
             trace: Duration::from_secs(10),
             elapsed: Duration::from_secs(10),
-            error: Some(ErrorEstimate { rmse: 0.02, rel_mse: 0.1 }),
+            error: Some(ErrorEstimate { rmse: 0.02, rmse_deviation: 0.0, rel_mse: 0.1 }),
             ..Status::default()
         };
         let mut plan = Plan::samples(1100);

@@ -2,7 +2,7 @@
 
 use super::progress::seconds;
 use crate::cli::RenderOptions;
-use crate::film::Film;
+use crate::film::{ErrorEstimate, Film};
 use crate::progressive::{Contribution, HistoryPoint, Phase, Status};
 use serde::Serialize;
 use std::fmt;
@@ -72,11 +72,14 @@ pub(super) struct Summary {
     rays_per_second: f64,
     lane_occupancy: Option<f64>,
     rmse_estimate: Option<f64>,
+    rmse_deviation: Option<f64>,
     rel_mse_estimate: Option<f64>,
     rejected_samples: u64,
     ended_by: &'static str,
     #[serde(skip)]
     ended_by_words: String,
+    #[serde(skip)]
+    error: Option<ErrorEstimate>,
     backends: Vec<Contribution>,
     history: Vec<HistoryPoint>,
     warnings: Vec<String>,
@@ -121,10 +124,12 @@ impl Summary {
             rays_per_second: status.rays_per_second(),
             lane_occupancy: status.lane_occupancy(),
             rmse_estimate: status.error.map(|error| error.rmse),
+            rmse_deviation: status.error.map(|error| error.rmse_deviation),
             rel_mse_estimate: status.error.map(|error| error.rel_mse),
             rejected_samples: status.rejected_samples,
             ended_by,
             ended_by_words,
+            error: status.error,
             backends: status.contributions.clone(),
             history: status.history.clone(),
             warnings: status.messages.clone(),
@@ -184,10 +189,12 @@ impl fmt::Display for Summary {
             Some(share) => writeln!(f, ", {:.1} % of lanes in use", 100.0 * share)?,
             None => writeln!(f)?,
         }
-        match self.rmse_estimate {
-            Some(rmse) => writeln!(
+        match &self.error {
+            Some(error) => writeln!(
                 f,
-                "error    {rmse:.3e} RMSE (estimated), {} rejected samples",
+                "error    {:.3e} {} RMSE (estimated from the two halves), {} rejected samples",
+                error.rmse,
+                error.uncertainty(),
                 self.rejected_samples
             )?,
             None => writeln!(f, "error    not estimated, {} rejected samples", self.rejected_samples)?,

@@ -64,8 +64,19 @@ pub fn fixed_point(radiance: [f64; 3]) -> Option<PixelSum> {
 pub struct ErrorEstimate {
     /// Root of the mean squared error over pixels and channels, linear radiance.
     pub rmse: f64,
+    /// How far `rmse` may be off by chance, one deviation: from the spread of the squared errors over the pixels. What
+    /// no sample has met yet is in neither.
+    pub rmse_deviation: f64,
     /// `mean(error^2 / (mean^2 + 0.01))`: errors in the dark count for more.
     pub rel_mse: f64,
+}
+
+impl ErrorEstimate {
+    /// How far off it may be by chance, as "± 0.2 %": one deviation.
+    pub fn uncertainty(&self) -> String {
+        let share = if self.rmse > 0.0 { self.rmse_deviation / self.rmse } else { 0.0 };
+        format!("± {:.1} %", (100.0 * share).max(0.1))
+    }
 }
 
 /// Sums of samples for every pixel, top row first.
@@ -303,19 +314,32 @@ impl Film {
         let (scale_a, scale_b) = (1.0 / (count_a * FIXED_POINT_SCALE), 1.0 / (count_b * FIXED_POINT_SCALE));
         let scale = 1.0 / (count * FIXED_POINT_SCALE);
         let weight = (count_a / count) * (count_b / count);
-        let (mut square_sum, mut relative_sum) = ([0.0; 3], [0.0; 3]);
+        let (mut square_sum, mut relative_sum, mut fourth_power_sum) = (0.0, 0.0, 0.0);
         for (a, b) in half_a.iter().zip(half_b) {
+            let (mut squares, mut relative) = ([0.0; 3], [0.0; 3]);
             for channel in 0..3 {
                 let (a, b) = (a.0[channel], b.0[channel]);
                 let mean = (a + b) as f64 * scale;
                 let difference = a as f64 * scale_a - b as f64 * scale_b;
                 let square = difference * difference * weight;
-                square_sum[channel] += square;
-                relative_sum[channel] += square / (mean * mean + 1e-2);
+                squares[channel] = square;
+                relative[channel] = square / (mean * mean + 1e-2);
             }
+            // Channels of a pixel share their noise.
+            let of_pixel = squares.iter().sum::<f64>();
+            square_sum += of_pixel;
+            fourth_power_sum += of_pixel * of_pixel;
+            relative_sum += relative.iter().sum::<f64>();
         }
-        let mean = |sums: [f64; 3]| sums.iter().sum::<f64>() / (half_a.len() * 3) as f64;
-        Some(ErrorEstimate { rmse: mean(square_sum).sqrt(), rel_mse: mean(relative_sum) })
+        let pixels = half_a.len() as f64;
+        let [square, fourth_power] = [square_sum / (3.0 * pixels), fourth_power_sum / (9.0 * pixels)];
+        let deviation_of_square = ((fourth_power - square * square).max(0.0) / pixels).sqrt();
+        let rmse = square.sqrt();
+        Some(ErrorEstimate {
+            rmse,
+            rmse_deviation: if rmse > 0.0 { 0.5 * deviation_of_square / rmse } else { 0.0 },
+            rel_mse: relative_sum / (3.0 * pixels),
+        })
     }
 
     /// Adds another film of the same size.
