@@ -233,35 +233,18 @@ fn a_scene_that_became_another_is_measured_again() {
 }
 
 /// A reference of many samples and little besides.
-const LONG: [&str; 20] = [
-    "--out",
-    "found",
-    "--scenes",
-    "three-spheres",
-    "--size",
-    "48x27",
-    "--seeds",
-    "1",
-    "--max-samples",
-    "2",
-    "--time-limit",
-    "600",
-    "--backends",
-    "cpu",
-    "--samplers",
-    "sobol",
-    "--reference-backend",
-    "cpu",
-    "--reference-samples",
-    "16384",
-];
+fn long() -> Vec<&'static str> {
+    let flags = "--out found --scenes three-spheres --size 48x27 --seeds 1 --max-samples 2 --time-limit 600 \
+                 --backends cpu --samplers sobol --reference-backend cpu --reference-samples 16384";
+    flags.split(' ').collect()
+}
 
 /// Begins a report and presses Ctrl-C while its reference is rendered. Returns the film that is kept.
 #[cfg(unix)]
 fn interrupted_reference(directory: &Path, film: &Path, samples: u64) -> FilmFile {
     // Where the key comes before the first pass or after the last, it is pressed again.
     for _ in 0..30 {
-        let mut command = command(&[&["--progress", "on"], &LONG[..]].concat(), directory);
+        let mut command = command(&[&["--progress", "on"], &long()].concat(), directory);
         let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
         // Its first words come when the reference begins.
         let mut stderr = std::io::BufReader::new(child.stderr.take().unwrap());
@@ -291,7 +274,7 @@ fn an_interrupted_reference_goes_on_with_the_samples_that_were_kept() {
     let at = at.path();
     let path = at.join("found/reference-three-spheres.exr");
     let kept = interrupted_reference(at, &path, 16_384);
-    let (code, _, errors) = report(&LONG, at);
+    let (code, _, errors) = report(&long(), at);
     assert_eq!(code, 0, "{errors}");
     let whole = checkpoint::load(&path).unwrap();
     let job = parse(whole.description.recipe(), "the reference").unwrap().job().unwrap();
@@ -304,7 +287,7 @@ fn an_interrupted_reference_goes_on_with_the_samples_that_were_kept() {
     let mut black = kept.film.clone();
     black.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum::default());
     checkpoint::save(&path, &black, &kept.description).unwrap();
-    let (code, _, errors) = report(&LONG, at);
+    let (code, _, errors) = report(&long(), at);
     assert_eq!(code, 0, "{errors}");
     let rest = checkpoint::load(&path).unwrap().film;
     assert_eq!(rest.samples(), uninterrupted.samples());
