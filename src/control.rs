@@ -64,9 +64,9 @@ pub struct Control {
 /// What the control said of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlRun {
-    /// Wall time of tracing.
+    /// Wall time of tracing, seconds.
     pub seconds: f64,
-    /// Processor time of tracing, as the control measures it.
+    /// Processor time of tracing, seconds, as the control measures it.
     pub processor_seconds: f64,
     /// Pixels times samples.
     pub paths: u64,
@@ -121,8 +121,8 @@ impl Control {
         self.directory.path().join(name)
     }
 
-    /// Renders `samples` of every pixel of a scene file, or of the three spheres. `out` gets the picture, .ppm as shown or .pfm linear. Ends early when
-    /// `is_cancelled` says so.
+    /// Renders `samples` of every pixel of a scene file, or of the three spheres. `out` gets the picture, .ppm as
+    /// shown or .pfm linear. Ends early when `is_cancelled` says so.
     ///
     /// # Errors
     /// [`ControlError::Run`] or [`ControlError::Cancelled`].

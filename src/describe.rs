@@ -1,8 +1,9 @@
 //! What a picture says about itself, from its recipe, its film and how it was rendered.
 
 use crate::film::{Description, Film, key};
-use crate::progressive::Status;
+use crate::progressive::{Contribution, Status};
 use crate::recipe::{Recipe, file};
+use crate::render::BackendInfo;
 use crate::scene::Camera;
 use crate::stages::Stage;
 
@@ -16,7 +17,7 @@ pub fn describe(
     seconds_before: Option<f64>,
 ) -> Description {
     let settings = &recipe.settings;
-    let mut description = Description::new(&file::to_toml(recipe));
+    let mut description = Description::new(&file::to_picture_toml(recipe));
     description.set(key::SOFTWARE, concat!("Weekender ", env!("CARGO_PKG_VERSION")));
     description.set(key::SCENE, &recipe.name);
     if let Some(stage) = stage {
@@ -29,11 +30,27 @@ pub fn describe(
     if let Some(seconds) = seconds_before {
         description.set(key::SECONDS, seconds + status.trace.as_secs_f64());
     }
-    if let Some(backend) = &status.backend {
-        description
-            .set(key::BACKEND, format!("{} {}, {} lanes", backend.name, backend.device, backend.lanes));
+    if let Some(backends) = backend_words(film, status) {
+        description.set(key::BACKEND, backends);
     }
     description
+}
+
+/// Who rendered it: if several did, that at work first, each with its samples, and how many were there before.
+fn backend_words(film: &Film, status: &Status) -> Option<String> {
+    let words = |info: &BackendInfo| format!("{} {}, {} lanes", info.name, info.device, info.lanes);
+    let mut parts: Vec<&Contribution> = status.contributions.iter().collect();
+    let earlier = film.sample_count().saturating_sub(parts.iter().map(|part| part.samples_per_pixel).sum());
+    match parts.as_slice() {
+        [] => return status.backend.as_ref().map(words),
+        [only] if earlier == 0 => return Some(words(&only.backend)),
+        _ => {}
+    }
+    parts.sort_by_key(|part| Some(&part.backend) != status.backend.as_ref());
+    let told =
+        parts.iter().map(|part| format!("{} ({} samples)", words(&part.backend), part.samples_per_pixel));
+    let before = (earlier > 0).then(|| format!("earlier runs ({earlier} samples)"));
+    Some(told.chain(before).collect::<Vec<_>>().join("; "))
 }
 
 fn camera_words(camera: &Camera) -> String {
@@ -50,4 +67,33 @@ fn camera_words(camera: &Camera) -> String {
         camera.defocus_angle_degrees,
         camera.effective_focus_distance()
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_who_rendered_are_named() {
+        let info = |name: &'static str, lanes| BackendInfo { name, device: "x".into(), lanes, threads: 1 };
+        let part =
+            |name, lanes, samples_per_pixel| Contribution { backend: info(name, lanes), samples_per_pixel };
+        let mut film = Film::new(1, 1, 1);
+        film.record(0..10, 0).expect("empty");
+        let words = |contributions: &[Contribution]| {
+            let status = Status {
+                backend: Some(info("gpu", 64)),
+                contributions: contributions.to_vec(),
+                ..Status::default()
+            };
+            backend_words(&film, &status).expect("a backend")
+        };
+        assert_eq!(words(&[]), "gpu x, 64 lanes");
+        assert_eq!(words(&[part("cpu", 8, 10)]), "cpu x, 8 lanes");
+        let two = [part("cpu", 8, 6), part("gpu", 64, 1)];
+        assert_eq!(
+            words(&two),
+            "gpu x, 64 lanes (1 samples); cpu x, 8 lanes (6 samples); earlier runs (3 samples)"
+        );
+    }
 }

@@ -165,6 +165,12 @@ impl RenderJob {
         Film::new(self.settings.width, self.settings.height, self.settings.half_count())
     }
 
+    /// Whether a film has the shape of this job's.
+    pub fn fits(&self, film: &Film) -> bool {
+        let RenderSettings { width, height, .. } = self.settings;
+        (film.width(), film.height(), film.halves().len()) == (width, height, self.settings.half_count())
+    }
+
     /// What this job needs of a kernel.
     pub fn features(&self) -> Features {
         let occurs =

@@ -24,7 +24,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("layers", &["scene", "render", "record", "render_cpu"]),
     ("backends", &["film", "render", "render_cpu", "render_gpu"]),
     ("progressive", &["stages", "film", "heat", "render", "backends"]),
-    ("describe", &["scene", "stages", "film", "recipe", "progressive"]),
+    ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
     ("control", &["scene", "render"]),
     ("failure", &[]),
     ("interrupt", &["failure"]),

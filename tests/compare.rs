@@ -127,8 +127,10 @@ fn what_cannot_be_compared_exits_with_2() {
     render(at, "a.exr", &["--samples", "2"]);
     render(at, "small.exr", &["--samples", "2", "--size", "80x45"]);
     fs::write(at.join("text.png"), "no picture").unwrap();
-    let cases: [(&[&str], &[&str]); 6] = [
+    let cases: [(&[&str], &[&str]); 8] = [
         (&["a.exr"], &["SECOND"]),
+        (&["a.exr", "cpu", "--heat-map", "map.jpg"], &["--heat-map", "map.jpg", ".png"]),
+        (&["a.exr", "cpu", "--json", "nowhere/a.json"], &["a.json", "create its directory"]),
         (&["a.exr", "nowhere.exr"], &["nowhere.exr"]),
         (&["a.exr", "text.png"], &["text.png", "no PFM, EXR, PNG or PPM"]),
         (&["a.exr", "small.exr"], &["160x90", "80x45", "one size"]),

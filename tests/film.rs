@@ -419,7 +419,9 @@ fn merged_files_are_the_film_of_one_run() {
         .into_iter()
         .map(|range: Range<u64>| {
             let path = directory.path().join(format!("{}.exr", range.start));
-            checkpoint::save(&path, &noisy_film(5, 3, 2, &[range]), &description()).unwrap();
+            let mut description = description();
+            description.set(key::BACKEND, if range.start == 9 { "gpu" } else { "cpu" });
+            checkpoint::save(&path, &noisy_film(5, 3, 2, &[range]), &description).unwrap();
             path
         })
         .collect();
@@ -427,6 +429,7 @@ fn merged_files_are_the_film_of_one_run() {
     assert_eq!(merged.film, noisy_film(5, 3, 2, &[0..12]));
     assert_eq!(merged.description.get(key::SAMPLES), Some("12"));
     assert_eq!(merged.description.get(key::SECONDS), Some("4.5"));
+    assert_eq!(merged.description.get(key::BACKEND), Some("cpu; gpu"));
     assert_eq!(merged.description.recipe(), RECIPE);
 
     // Overlap: both files and the samples are named.

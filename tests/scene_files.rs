@@ -4,7 +4,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 use std::path::Path;
 use weekender::recipe::Recipe;
-use weekender::recipe::file::{FileError, load, parse, to_toml};
+use weekender::recipe::file::{FileError, load, parse, to_picture_toml, to_toml};
 use weekender::render::{RenderSettings, SamplerKind};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Camera, Material, Scene, Sky};
@@ -482,4 +482,34 @@ fn large_scenes_are_written_compactly() {
 #[test]
 fn a_hundred_thousand_spheres_are_read_back() {
     assert_round_trip(&Recipe::builtin("field:100000").expect("a field"));
+}
+
+#[test]
+fn a_picture_names_a_large_field_and_restores_it() {
+    let field = Recipe::builtin("field:20000").expect("a field");
+    let text = to_picture_toml(&field);
+    assert!(text.len() < 1000 && text.starts_with("scene = \"field:20000\""), "{text}");
+    assert_eq!(parse(&text, "field:20000").expect("valid"), field);
+    // One that was changed is listed.
+    let mut changed = field.clone();
+    std::sync::Arc::make_mut(&mut changed.scene).spheres[3].radius = 0.25;
+    assert_eq!(parse(&to_picture_toml(&changed), "field:20000").expect("valid"), changed);
+    assert!(to_picture_toml(&changed).len() > 1_000_000);
+
+    let message = |text: &str| parse(text, "x").expect_err("refused").to_string();
+    let mark = text.lines().nth(1).expect("a mark");
+    let other = message(&text.replace(mark, "scene_mark = \"0123456789abcdef\""));
+    assert!(
+        other.starts_with("x:2:1: ") && other.contains("field:20000") && other.contains("scene_mark"),
+        "{other}"
+    );
+    let named = CAMERA.replace("[camera]", "scene = \"three-spheres\"\n[camera]");
+    assert_eq!(
+        parse(&named, "x").expect("valid").scene,
+        Recipe::builtin("three-spheres").expect("one").scene
+    );
+    let unknown = message(&named.replace("three-spheres", "three-sphere"));
+    assert!(unknown.starts_with("x:1:1: ") && unknown.contains("did you mean three-spheres"), "{unknown}");
+    let both = message(&format!("{named}\n[sky]\ntop = [1, 1, 1]\n"));
+    assert!(both.contains("sky cannot stand beside scene"), "{both}");
 }

@@ -147,17 +147,18 @@ fn pair(arguments: &[String]) -> anyhow::Result<()> {
 
 fn hierarchy(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
-    let spheres = Tables::<f32>::new(&job).spheres_of_hierarchy(&job);
+    let tables = Tables::<f32>::new(&job);
+    let spheres: Vec<_> = tables.spheres_of_hierarchy(&job).collect();
     let [mut bvh2_times, mut cwbvh_times] = [Vec::new(), Vec::new()];
     let count = spheres.len() as f64;
     let ms = |start: Instant| start.elapsed().as_secs_f64() * 1e3;
     let mut sizes = [0, 0];
     for _ in 0..5 {
         let start = Instant::now();
-        let (bvh2, _) = Hierarchy::<f32>::build(&spheres);
+        let (bvh2, _) = Hierarchy::<f32>::build(spheres.iter().copied());
         bvh2_times.push(ms(start));
         let start = Instant::now();
-        let cwbvh = Cwbvh::build(&spheres);
+        let cwbvh = Cwbvh::build(spheres.iter().copied());
         cwbvh_times.push(ms(start));
         sizes = [bvh2.nodes.len() * size_of::<Node<f32>>(), cwbvh.nodes.len() * size_of::<CwBvhNode>()];
     }

@@ -22,6 +22,8 @@ struct Member {
 pub struct Together {
     members: Vec<Member>,
     messages: Vec<String>,
+    /// What members added to the last range before they failed.
+    departed: Vec<(BackendInfo, u64)>,
 }
 
 /// What a member did with its pieces of a range.
@@ -83,14 +85,19 @@ impl Together {
     /// All of these at once; at least one.
     pub fn new(renderers: Vec<Box<dyn Renderer>>) -> Self {
         let member = |renderer| Member { renderer, samples_per_second: None, added: 0 };
-        Together { members: renderers.into_iter().map(member).collect(), messages: Vec::new() }
+        Together {
+            members: renderers.into_iter().map(member).collect(),
+            messages: Vec::new(),
+            departed: Vec::new(),
+        }
     }
 
     /// Leaves out the members that failed; their last error if none is left.
     fn leave_out(&mut self, failed: Vec<(usize, RenderError)>) -> Result<(), RenderError> {
         let mut last = None;
         for (index, error) in failed.into_iter().rev() {
-            self.members.remove(index);
+            let member = self.members.remove(index);
+            self.departed.extend((member.added > 0).then(|| (member.renderer.info(), member.added)));
             if !self.members.is_empty() {
                 let names: Vec<&str> = self.members.iter().map(|m| m.renderer.info().name).collect();
                 self.messages.push(format!("{error}; {} goes on with the same picture", names.join(", ")));
@@ -119,7 +126,8 @@ impl Renderer for Together {
     }
 
     fn credits(&self, _: u64) -> Vec<(BackendInfo, u64)> {
-        self.members.iter().map(|member| (member.renderer.info(), member.added)).collect()
+        let present = self.members.iter().map(|member| (member.renderer.info(), member.added));
+        present.chain(self.departed.iter().cloned()).collect()
     }
 
     fn take_messages(&mut self) -> Vec<String> {
@@ -166,6 +174,7 @@ impl Renderer for Together {
         // that an error leaves it as it was.
         let mut films: Vec<Film> = Vec::new();
         self.members.iter_mut().for_each(|member| member.added = 0);
+        self.departed.clear();
         loop {
             let speeds: Vec<Option<f64>> = self.members.iter().map(|m| m.samples_per_second).collect();
             let outcomes: Vec<Outcome> = std::thread::scope(|scope| {

@@ -25,10 +25,7 @@ pub(super) fn load(render: &RenderOptions) -> Result<Option<Resumed>> {
              or render without --resume"
         );
     }
-    let settings = render.job.settings();
-    let is_shaped = (read.film.width(), read.film.height()) == (settings.width, settings.height)
-        && read.film.halves().len() == settings.half_count();
-    if !is_shaped {
+    if !render.job.fits(&read.film) {
         bail!("{name} holds a film of another shape than its recipe says; render without --resume");
     }
     let seconds = read.description.get(key::SECONDS).and_then(|seconds| seconds.parse().ok());

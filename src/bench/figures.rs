@@ -85,7 +85,7 @@ pub struct Row {
     pub lanes_in_use: Option<f64>,
     /// Median against that of the control.
     pub ratio_to_control: Option<f64>,
-    /// 1 / (mean squared error times seconds), as the film estimates it.
+    /// 1 / (mean squared error times seconds), as the film estimates it; `None` where it sees no error.
     pub efficiency: Option<f64>,
     /// Why it was not measured.
     pub skipped: Option<String>,
@@ -170,7 +170,8 @@ impl Row {
         let offered = total(|run| run.offered_lanes);
         let has_lanes = offered > 0 && self.kind != Kind::Gpu;
         self.lanes_in_use = has_lanes.then(|| total(|run| run.busy_lanes) as f64 / offered as f64);
-        let efficiency = |run: &Run| Some(1.0 / (run.rmse?.powi(2) * run.seconds));
+        let error = |run: &Run| run.rmse.filter(|rmse| *rmse > 0.0);
+        let efficiency = |run: &Run| Some(1.0 / (error(run)?.powi(2) * run.seconds));
         self.efficiency = Spread::of(self.runs.iter().filter_map(efficiency)).map(|spread| spread.median);
     }
 }

@@ -115,14 +115,19 @@ fn fields(
     cancel: &AtomicBool,
 ) -> anyhow::Result<()> {
     let mut progress = Progress::new(options.progress, (counts.len() * options.runs) as u64);
+    let mut outcome = Ok(());
     for count in counts {
-        match scale::measure(options, *count, &mut progress, cancel)? {
-            Some(figures) => report.scale.push(figures),
-            None => break,
+        match scale::measure(options, *count, &mut progress, cancel) {
+            Ok(Some(figures)) => report.scale.push(figures),
+            Ok(None) => break,
+            Err(error) => {
+                outcome = Err(error);
+                break;
+            }
         }
     }
     progress.clear();
-    Ok(())
+    outcome
 }
 
 /// What puts the figures in doubt.

@@ -47,8 +47,8 @@ pub enum ChartError {
         /// The file.
         path: PathBuf,
     },
-    /// The figure's size or its texts.
-    #[error("cannot draw {}: {reason}; choose another size", path.display())]
+    /// What plotters, the font or the encoder said.
+    #[error("cannot draw {}: {reason}; the figures are in the text and the JSON besides", path.display())]
     Draw {
         /// The file.
         path: PathBuf,

@@ -102,6 +102,9 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         let reason = "two pictures are compared; choose one stage";
         return Err(CliError::Together { flag: "compare", other: "--stage all", reason });
     }
+    if let Some(path) = &raw.heat_map {
+        sources::check_ending("--heat-map", path, "a map of differences", ".png")?;
+    }
     let adapter = raw.adapter.as_deref();
     let side = |name: String| match BackendChoice::named(&name, adapter) {
         Some(choice) => CompareSide::Backend { name, choice },

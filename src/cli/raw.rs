@@ -1,4 +1,5 @@
-//! The flags of rendering as they are typed, and those that subcommands share. A subcommand's own stand in its file.
+//! The flags of rendering as they are typed, and those that subcommands share. A subcommand's own stand in its
+//! file.
 
 use super::bench::RawBench;
 use super::compare::RawCompare;

@@ -189,10 +189,8 @@ fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOpt
 
 fn check_film_names(raw: &RawRender) -> Result<(), CliError> {
     for (flag, path) in [("--checkpoint", &raw.checkpoint), ("--resume", &raw.resume)] {
-        if let Some(path) = path
-            && !path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"))
-        {
-            return Err(CliError::FilmEnding { flag, path: path.clone() });
+        if let Some(path) = path {
+            sources::check_ending(flag, path, "a film file", ".exr")?;
         }
     }
     Ok(())

@@ -281,11 +281,16 @@ fn report_scenes(
         let mut recipe = recipe?;
         (recipe.settings.width, recipe.settings.height) = size;
         recipe.job()?;
-        Ok(recipe)
+        Ok::<Recipe, CliError>(recipe)
     };
-    if raw.scenes.is_empty() {
-        defaults.scenes.iter().map(|name| sized(sources::carried(name))).collect()
+    let scenes: Vec<Recipe> = if raw.scenes.is_empty() {
+        defaults.scenes.iter().map(|name| sized(sources::carried(name))).collect::<Result<_, CliError>>()?
     } else {
-        raw.scenes.iter().map(|name| sized(sources::scene(name))).collect()
+        raw.scenes.iter().map(|name| sized(sources::scene(name))).collect::<Result<_, CliError>>()?
+    };
+    let twice = |(index, scene): &(usize, &Recipe)| scenes[..*index].iter().any(|s| s.name == scene.name);
+    match scenes.iter().enumerate().find(twice) {
+        Some((_, scene)) => Err(CliError::SameScene { name: scene.name.clone() }),
+        None => Ok(scenes),
     }
 }

@@ -82,13 +82,23 @@ pub enum CliError {
         /// Their file.
         path: PathBuf,
     },
-    /// A film file of another name.
-    #[error("{flag} is {}, but a film file's name must end in .exr", path.display())]
-    FilmEnding {
+    /// A file whose name says that it is something else.
+    #[error("{flag} is {}, but the name of {what} must end in {ending}", path.display())]
+    Ending {
         /// The flag.
         flag: &'static str,
         /// The file.
         path: PathBuf,
+        /// What the file is.
+        what: &'static str,
+        /// What its name must end in, with the dot.
+        ending: &'static str,
+    },
+    /// Two scenes of one name, which the report could not tell apart.
+    #[error("--scenes has two of the name {name}; leave one out, or give its file another name")]
+    SameScene {
+        /// Their name.
+        name: String,
     },
 }
 
@@ -136,6 +146,17 @@ pub(super) fn carried(name: &str) -> Result<Recipe, CliError> {
 pub(super) fn is_file(scene: &str) -> bool {
     let path = Path::new(scene);
     path.extension().is_some() || path.components().count() > 1
+}
+
+/// Refuses a file whose name does not end in `ending`, with the dot, in capitals or not.
+pub(super) fn check_ending(
+    flag: &'static str,
+    path: &Path,
+    what: &'static str,
+    ending: &'static str,
+) -> Result<(), CliError> {
+    let is_so = path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending.trim_start_matches('.')));
+    if is_so { Ok(()) } else { Err(CliError::Ending { flag, path: path.to_owned(), what, ending }) }
 }
 
 /// Makes a picture at most `width` pixels wide, of the same shape, unless its size was asked for.

@@ -1,4 +1,5 @@
-//! Values of flags, and what they stand for. A message says what is allowed; clap puts the value and the flag before it.
+//! Values of flags, and what they stand for. A message says what is allowed; clap puts the value and the flag
+//! before it.
 
 use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::render_cpu::Isa;

@@ -66,6 +66,7 @@ pub fn merge_files<P: AsRef<Path>>(
     let first = first.as_ref();
     let mut merged = checkpoint::load(first)?;
     let mut seconds = seconds_of(&merged);
+    let mut backends = Vec::from_iter(backend_of(&merged));
     let mut added: Vec<(&Path, SampleRanges)> = vec![(first, merged.film.samples().clone())];
     for other in others {
         let other = other.as_ref();
@@ -84,14 +85,22 @@ pub fn merge_files<P: AsRef<Path>>(
             other: other.to_owned(),
             reason,
         })?;
+        backends.extend(backend_of(&part).filter(|backend| !backends.contains(backend)));
         seconds = seconds.zip(seconds_of(&part)).map(|(sum, more)| sum + more);
         added.push((other, part.film.samples().clone()));
     }
     merged.description.set(key::SAMPLES, merged.film.sample_count());
+    if !backends.is_empty() {
+        merged.description.set(key::BACKEND, backends.join("; "));
+    }
     if let Some(seconds) = seconds {
         merged.description.set(key::SECONDS, seconds);
     }
     Ok(merged)
+}
+
+fn backend_of(file: &FilmFile) -> Option<String> {
+    file.description.get(key::BACKEND).map(str::to_owned)
 }
 
 fn seconds_of(file: &FilmFile) -> Option<f64> {

@@ -80,9 +80,15 @@ fn read_exr(reader: BufReader<File>) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
         .no_deep_data()
         .largest_resolution_level()
         .rgb_channels(
-            |size: Vec2<usize>, _: &RgbChannels| (size.x(), vec![[0.0_f32; 3]; size.area()]),
+            // What the header promises beyond the limit is not made room for; it is refused below.
+            |size: Vec2<usize>, _: &RgbChannels| {
+                let fits = size.x().checked_mul(size.y()).filter(|count| *count as u64 <= PIXEL_LIMIT);
+                (size.x(), vec![[0.0_f32; 3]; fits.unwrap_or(0)])
+            },
             |(width, pixels): &mut Pixels, at: Vec2<usize>, (r, g, b): (f32, f32, f32)| {
-                pixels[at.y() * *width + at.x()] = [r, g, b];
+                if let Some(pixel) = pixels.get_mut(at.y() * *width + at.x()) {
+                    *pixel = [r, g, b];
+                }
             },
         )
         .first_valid_layer()

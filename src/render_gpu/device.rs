@@ -261,7 +261,9 @@ impl Gpu {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| noted.note(error.to_string())));
         let noted = Arc::clone(&faults);
         device.set_device_lost_callback(move |reason, message| {
-            noted.note(format!("the device was lost ({reason:?}): {message}"));
+            let message = message.trim();
+            let colon = if message.is_empty() { "" } else { ": " };
+            noted.note(format!("the device was lost ({reason:?}){colon}{message}"));
         });
         let layouts = Layouts::new(&device);
         let gpu = Gpu { adapter: info.clone(), device, queue, layouts, faults };

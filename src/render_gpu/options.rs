@@ -115,7 +115,7 @@ pub enum GpuError {
         lacks: String,
     },
     /// It would not open.
-    #[error("{adapter} could not be opened: {reason}")]
+    #[error("{adapter} could not be opened: {reason}; choose another adapter, or render on the CPU")]
     Device {
         /// The adapter.
         adapter: String,

@@ -26,7 +26,7 @@ pub struct Calibration {
     pub actual_rmse: f64,
     /// The one over the other.
     pub ratio: f64,
-    /// Its standard deviation, from leaving out each picture in turn.
+    /// Its standard deviation, from leaving out each picture in turn; NaN where one outweighs all others.
     pub deviation: f64,
 }
 

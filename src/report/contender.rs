@@ -163,7 +163,8 @@ impl<'a> Growing<'a> {
         self.wall += begin.elapsed();
         self.trace += stats.trace;
         self.rejected += stats.rejected;
-        let device = self.renderer.device_time().zip(self.device_begin).map(|(now, begin)| now - begin);
+        let device =
+            self.renderer.device_time().zip(self.device_begin).map(|(now, begin)| now.saturating_sub(begin));
         let errors = reference.errors(&film_means(&self.film));
         Ok(Some(Measured {
             samples,

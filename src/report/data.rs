@@ -12,12 +12,27 @@ pub struct Data {
     pub schema: u32,
     /// What the figures depend on: runs of other settings are not mixed.
     pub settings: Settings,
-    /// One for each scene.
+    /// One for each scene that has runs.
     pub references: Vec<ReferenceUsed>,
     /// One for each curve and seed.
     pub runs: Vec<Run>,
     /// One for each scene and backend.
     pub rounding: Vec<Rounding>,
+}
+
+impl Data {
+    /// Sets what errors are measured against, and forgets what was measured against anything else: a scene of the
+    /// same name may have become another.
+    pub fn take_references(&mut self, references: Vec<ReferenceUsed>) {
+        let is_other =
+            |old: &ReferenceUsed| references.iter().any(|new| new.scene == old.scene && new != old);
+        let stale: Vec<String> =
+            self.references.iter().filter(|old| is_other(old)).map(|old| old.scene.clone()).collect();
+        self.runs.retain(|run| !stale.contains(&run.curve.scene));
+        self.rounding.retain(|row| !stale.contains(&row.scene));
+        self.references.retain(|old| references.iter().all(|new| new.scene != old.scene));
+        self.references.splice(..0, references);
+    }
 }
 
 /// What all runs have in common.

@@ -30,7 +30,7 @@ pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {
 
 fn chart(scene: &str, data: &Data, curves: &[CurveSummary], target: f64) -> LineChart {
     let of_scene: Vec<&CurveSummary> = curves.iter().filter(|c| c.curve.scene == scene).collect();
-    let points = || of_scene.iter().flat_map(|c| &c.points);
+    let points = || of_scene.iter().flat_map(|c| &c.points).filter(|p| p.rmse > 0.0);
     let least = |of: fn(&super::summary::CurvePoint) -> f64| points().map(of).fold(f64::INFINITY, f64::min);
     let most = |of: fn(&super::summary::CurvePoint) -> f64| points().map(of).fold(0.0, f64::max);
     let times = [least(|p| p.wall_seconds), most(|p| p.wall_seconds)];

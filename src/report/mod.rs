@@ -107,7 +107,7 @@ impl<'a> Report<'a> {
                 None => return Ok(()),
             }
         }
-        self.data.references = references.iter().map(|reference| reference.used.clone()).collect();
+        self.data.take_references(references.iter().map(|reference| reference.used.clone()).collect());
         // Seeds outside, curves inside: what else the machine does is shared by all curves.
         for seed in 0..self.options.seeds {
             for (recipe, reference) in self.options.scenes.iter().zip(&references) {

@@ -139,7 +139,7 @@ const PASS: Duration = Duration::from_millis(500);
 /// share that is done, said no; what is done is kept.
 ///
 /// # Errors
-/// If the backend fails or the film cannot be kept.
+/// If the backend fails, which what is done survives, or if the film cannot be kept.
 pub fn make(
     path: &Path,
     recipe: &Recipe,
@@ -155,22 +155,27 @@ pub fn make(
     let mut film = kept(path, &job, &about).unwrap_or_else(|| job.new_film());
     let mut sizer = PassSizer::new(job.settings().half_count());
     let before = film.sample_count();
+    let mut outcome = Ok(());
     while let Some(pass) = sizer.next(film.samples(), 0..samples, None) {
         if !go_on(film.sample_count() as f64 / samples as f64) {
             break;
         }
         let begin = Instant::now();
         let count = pass.end - pass.start;
-        renderer.accumulate(&job, pass, &mut film, &AtomicBool::new(false))?;
+        if let Err(error) = renderer.accumulate(&job, pass, &mut film, &AtomicBool::new(false)) {
+            outcome = Err(error);
+            break;
+        }
         sizer.measured(count, begin.elapsed(), PASS);
     }
     if film.sample_count() > before {
-        let mut description = Description::new(&file::to_toml(&recipe));
+        let mut description = Description::new(&file::to_picture_toml(&recipe));
         description.set(key::SCENE, &recipe.name);
         description.set(key::SAMPLES, film.sample_count());
         description.set(key::BACKEND, &about);
         checkpoint::save(path, &film, &description).context("cannot keep the reference")?;
     }
+    outcome?;
     if film.sample_count() < samples {
         return Ok(None);
     }
@@ -181,5 +186,6 @@ pub fn make(
 fn kept(path: &Path, job: &RenderJob, about: &str) -> Option<Film> {
     let read = checkpoint::load(path).ok()?;
     let theirs = file::parse(read.description.recipe(), "the kept reference").ok()?.job().ok()?;
-    (theirs == *job && read.description.get(key::BACKEND) == Some(about)).then_some(read.film)
+    let is_same = theirs == *job && job.fits(&read.film) && read.description.get(key::BACKEND) == Some(about);
+    is_same.then_some(read.film)
 }

@@ -22,7 +22,7 @@ pub struct CurvePoint {
     pub wall_seconds: f64,
     /// Median seconds by the device's own clock; `None` where it has none.
     pub device_seconds: Option<f64>,
-    /// Root of the mean squared error over all pictures.
+    /// Root of the mean squared error over all pictures; 0 where they are better than the reference.
     pub rmse: f64,
     /// Least and greatest RMSE of a picture.
     pub range: [f64; 2],
@@ -30,7 +30,7 @@ pub struct CurvePoint {
     pub rel_mse: f64,
     /// Mean FLIP.
     pub flip: f64,
-    /// Root of the mean estimated squared error over that of the true one; `None` where there is no estimate.
+    /// Root of the mean estimated squared error over that of the true one; `None` where either is missing.
     pub estimate_ratio: Option<f64>,
 }
 
@@ -45,7 +45,7 @@ pub struct CurveSummary {
     pub points: Vec<CurvePoint>,
     /// By which power of the seconds the RMSE falls, with its deviation.
     pub slope: Option<[f64; 2]>,
-    /// `1 / (MSE seconds)` at the last point.
+    /// `1 / (MSE seconds)` at the last point with an error; NaN where there is none.
     pub efficiency: f64,
     /// Seconds to each target.
     pub times: Vec<Option<Crossing>>,
@@ -61,14 +61,15 @@ impl CurveSummary {
         by_samples.retain(|_, points| 2 * points.len() > runs.len());
         let points: Vec<CurvePoint> =
             by_samples.into_iter().map(|(samples, points)| curve_point(samples, &points)).collect();
-        let errors: Vec<Point> =
-            points.iter().map(|p| Point { time: p.wall_seconds, error: p.rmse }).collect();
-        let first = points.iter().position(|p| p.samples >= SLOPE_FROM_SAMPLES).unwrap_or(0);
+        // What is better than its reference is off by an unknown amount.
+        let known = || points.iter().filter(|p| p.rmse > 0.0);
+        let errors: Vec<Point> = known().map(|p| Point { time: p.wall_seconds, error: p.rmse }).collect();
+        let first = known().position(|p| p.samples >= SLOPE_FROM_SAMPLES).unwrap_or(0);
         CurveSummary {
             curve: curve.clone(),
             about: runs.first().map_or_else(String::new, |run| run.about.clone()),
             slope: PowerLaw::through(&errors[first..]).map(|law| [law.slope, law.slope_deviation]),
-            efficiency: points.last().map_or(f64::NAN, |p| 1.0 / (p.rmse * p.rmse * p.wall_seconds)),
+            efficiency: known().last().map_or(f64::NAN, |p| 1.0 / (p.rmse * p.rmse * p.wall_seconds)),
             times: targets.iter().map(|target| time_to(&errors, *target)).collect(),
             points,
         }
@@ -79,7 +80,7 @@ fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
     let count = points.len() as f64;
     let mean = |of: fn(&Measured) -> f64| points.iter().map(|p| of(p)).sum::<f64>() / count;
     let median_of = |of: fn(&Measured) -> f64| median(points.iter().map(|p| of(p))).unwrap_or(f64::NAN);
-    let mse = mean(|p| p.mse).max(f64::MIN_POSITIVE);
+    let mse = mean(|p| p.mse).max(0.0);
     let estimates: Option<Vec<f64>> = points.iter().map(|p| p.mse_estimate).collect();
     let device: Option<Vec<f64>> = points.iter().map(|p| p.device_seconds).collect();
     let roots = || points.iter().map(|p| p.mse.max(0.0).sqrt());
@@ -93,7 +94,9 @@ fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
         range: [roots().fold(f64::INFINITY, f64::min), roots().fold(0.0, f64::max)],
         rel_mse: mean(|p| p.rel_mse),
         flip: mean(|p| p.flip),
-        estimate_ratio: estimates.map(|all| (all.iter().sum::<f64>() / count / mse).sqrt()),
+        estimate_ratio: estimates
+            .filter(|_| mse > 0.0)
+            .map(|all| (all.iter().sum::<f64>() / count / mse).sqrt()),
     }
 }
 
@@ -138,7 +141,7 @@ pub fn sampler_ratios(curves: &[CurveSummary]) -> Vec<SamplerRatio> {
                 && (&c.curve.scene, &c.curve.backend) == (&sobol.curve.scene, &sobol.curve.backend)
         });
         let Some(independent) = other else { continue };
-        for point in &sobol.points {
+        for point in sobol.points.iter().filter(|p| p.rmse > 0.0) {
             let Some(other) = independent.points.iter().find(|p| p.samples == point.samples) else {
                 continue;
             };
@@ -205,6 +208,21 @@ mod tests {
         let [first, second] = [0, 1].map(|target| found.times[target].unwrap());
         assert!((first.time - 4.0).abs() < 1e-6 && first.is_extrapolated, "{first:?}");
         assert!((second.time - 400.0).abs() < 1e-4 && second.is_extrapolated);
+        assert!((found.efficiency - 2500.0).abs() < 1e-6, "{}", found.efficiency);
+    }
+
+    #[test]
+    fn a_picture_that_is_better_than_the_reference_has_no_error_to_go_by() {
+        let mut better = runs("cpu", "sobol", 0.04, 0.01);
+        for run in &mut better {
+            run.points[8].mse = -1e-6;
+        }
+        let all: Vec<&Run> = better.iter().collect();
+        let found = CurveSummary::of(&better[0].curve, &all, &[0.01]);
+        let last = found.points.last().unwrap();
+        assert_eq!((last.rmse, last.estimate_ratio), (0.0, None));
+        assert!((found.slope.unwrap()[0] + 0.5).abs() < 1e-9, "{:?}", found.slope);
+        assert!((found.times[0].unwrap().time - 4.0).abs() < 1e-6, "{:?}", found.times);
         assert!((found.efficiency - 2500.0).abs() < 1e-6, "{}", found.efficiency);
     }
 

@@ -88,9 +88,10 @@ const HOW_TO_READ: &str = "\
 linear radiance, where white is 1: at .05 a picture is grainy, at .01 nearly clean, at .001 no screen shows what is
 left. *relMSE* weighs errors in the dark more; *FLIP* is how different the shown pictures look to someone who
 switches between them, 0 to 1. The *slope* is by which power of the seconds the RMSE falls: -.5 means that half the
-error costs four times the time. *Efficiency* is 1/(RMSE^2 seconds) at the last point: twice as much is the same picture in half
-the time. Times with ~ lie beyond what was measured. *Trace* seconds are the
-tracer's own, *wall* seconds with adding to the film, *device* seconds by a GPU's clock. Seconds are medians over the pictures, errors means.
+error costs four times the time. *Efficiency* is 1/(RMSE^2 seconds) at the last point: twice as much is the same
+picture in half the time. Times with ~ lie beyond what was measured. *Trace* seconds are the tracer's own, *wall*
+seconds with adding to the film, *device* seconds by a GPU's clock. Seconds are medians over the pictures, errors
+means. An RMSE of 0 is that of pictures which are better than the reference.
 ";
 
 fn scenes(curves: &[CurveSummary]) -> Vec<&str> {
@@ -265,8 +266,8 @@ fn rounding(text: &mut String, data: &Data, curves: &[CurveSummary]) {
 /// Samples at which a curve's error would be `error`.
 fn samples_to(curve: &CurveSummary, error: f64) -> Option<f64> {
     use crate::statistics::fit::{Point, time_to};
-    let points: Vec<Point> =
-        curve.points.iter().map(|p| Point { time: p.samples as f64, error: p.rmse }).collect();
+    let known = curve.points.iter().filter(|p| p.rmse > 0.0);
+    let points: Vec<Point> = known.map(|p| Point { time: p.samples as f64, error: p.rmse }).collect();
     time_to(&points, error).map(|crossing| crossing.time)
 }
 

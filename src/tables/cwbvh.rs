@@ -4,7 +4,7 @@
 //! builds the tree and lays its nodes out; here their boxes are set anew, so that none is smaller by rounding than
 //! what it holds.
 
-use super::hierarchy::{self, SphereBounds, params};
+use super::hierarchy::{self, Bounded, params};
 use crate::scene::Sphere;
 use glam::{DVec3, Vec3A};
 use obvhs::Boundable;
@@ -35,12 +35,13 @@ pub struct Cwbvh {
 
 impl Cwbvh {
     /// Builds it over at least one sphere.
-    pub fn build(spheres: &[Sphere]) -> Self {
-        let bounds: Vec<SphereBounds> = spheres.iter().map(SphereBounds::new).collect();
-        let tree = build_bvh2(&bounds, params(spheres.len(), 1), &mut Duration::default());
+    pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>) -> Self {
+        let bounded: Vec<Bounded<'_>> = spheres.into_iter().map(Bounded).collect();
+        let tree = build_bvh2(&bounded, params(bounded.len(), 1), &mut Duration::default());
         let wide = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
+        drop(tree);
         let mut built = Cwbvh { nodes: wide.nodes, order: wide.primitive_indices };
-        let boxes: Vec<Aabb> = built.order.iter().map(|index| bounds[*index as usize].aabb()).collect();
+        let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
         built.set_boxes(&boxes);
         built
     }

@@ -65,7 +65,7 @@ pub struct Tables<R> {
     groups: Groups,
 }
 
-/// Which spheres are intersected how: indices in the scene.
+/// Which spheres are intersected how: indices in the scene, rising.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Groups {
     opaque: Vec<u32>,
@@ -188,9 +188,10 @@ impl<R: Real> Tables<R> {
         }
         let begin = Instant::now();
         let all: Vec<u32> = groups.opaque.iter().chain(&groups.two_root).copied().collect();
-        let spheres: Vec<Sphere> = all.iter().map(|i| job.scene().spheres[*i as usize]).collect();
-        let (hierarchy, order) = Hierarchy::build(&spheres);
-        let two_root: Vec<u32> = order.iter().map(|i| all[*i as usize]).collect();
+        let (hierarchy, mut two_root) =
+            Hierarchy::build(all.iter().map(|i| &job.scene().spheres[*i as usize]));
+        two_root.iter_mut().for_each(|i| *i = all[*i as usize]);
+        drop(all);
         let hierarchy_time = begin.elapsed();
         let tables = Tables::from_groups(job, &[], &two_root, &groups.anchored);
         Tables { hierarchy: Some(hierarchy), hierarchy_time, groups, ..tables }
@@ -235,9 +236,9 @@ impl<R: Real> Tables<R> {
     }
 
     /// The spheres of `two_root` as the scene has them. The tables must be the job's.
-    pub fn spheres_of_hierarchy(&self, job: &RenderJob) -> Vec<Sphere> {
+    pub fn spheres_of_hierarchy<'a>(&'a self, job: &'a RenderJob) -> impl Iterator<Item = &'a Sphere> {
         let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());
-        indices.map(|index| job.scene().spheres[*index as usize]).collect()
+        indices.map(|index| &job.scene().spheres[*index as usize])
     }
 
     fn from_groups(job: &RenderJob, opaque: &[u32], two_root: &[u32], anchored: &[u32]) -> Self {
@@ -345,7 +346,7 @@ fn holds_the_eye(sphere: &Sphere, camera: &Camera, lens_radius: f64) -> bool {
 /// Where the picture's detail is: the mean centre of the spheres that are not anchored, or else where the
 /// camera looks.
 fn focus_of_interest(scene: &Scene, anchored: &[u32], camera: &Camera) -> DVec3 {
-    let is_anchored = |index: usize| anchored.contains(&(index as u32));
+    let is_anchored = |index: usize| anchored.binary_search(&(index as u32)).is_ok();
     let (mut sum, mut count) = (DVec3::ZERO, 0.0);
     for (_, sphere) in scene.spheres.iter().enumerate().filter(|(i, _)| !is_anchored(*i)) {
         sum += sphere.center;

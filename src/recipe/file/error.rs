@@ -1,6 +1,6 @@
 //! What can be wrong with a scene file, with the line where it is.
 
-use crate::recipe::SamplesError;
+use crate::recipe::{SamplesError, SceneNameError};
 use crate::render::JobError;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -63,6 +63,23 @@ pub enum Reason {
     /// Samples per pixel.
     #[error(transparent)]
     Samples(#[from] SamplesError),
+    /// A built-in scene that there is not.
+    #[error(transparent)]
+    SceneName(#[from] SceneNameError),
+    /// A part of a scene beside the name of a built-in one.
+    #[error("{part} cannot stand beside scene, which has its own; remove one of them")]
+    BesideScene {
+        /// The part.
+        part: &'static str,
+    },
+    /// A built-in scene that was another when the file was made.
+    #[error(
+        "the built-in scene {name:?} of this version is another than the one that this was made with; use that version, or remove scene_mark to take this one's"
+    )]
+    OtherScene {
+        /// Its name.
+        name: String,
+    },
     /// A whole number out of its range.
     #[error("{what} is {value}, but must be within {lowest} and {highest}; {remedy}")]
     Whole {

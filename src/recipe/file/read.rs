@@ -1,6 +1,7 @@
 //! From TOML to a recipe.
 
 use super::error::{FileError, Reason, Step, find_place, line_and_column};
+use super::named;
 use crate::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::render::{DEPTH_LIMIT, JobError, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::scene::{Camera, Material, Scene, SceneError, Sky};
@@ -11,6 +12,7 @@ use serde::{Deserialize, Deserializer};
 use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::path::Path;
+use std::sync::Arc;
 use toml::Spanned;
 
 /// Reads a scene file; the recipe has the name of the file without its ending.
@@ -67,17 +69,17 @@ fn refuse(path: &[&str], reason: impl Into<Reason>) -> Refusal {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RawFile {
+    /// A built-in scene in place of the next three.
+    scene: Option<String>,
+    scene_mark: Option<String>,
+    sky: Option<RawSky>,
+    materials: Option<BTreeMap<Spanned<String>, RawMaterial>>,
+    spheres: Option<Vec<RawSphere>>,
     camera: RawCamera,
     #[serde(default)]
     render: RawRender,
     #[serde(default)]
-    sky: RawSky,
-    #[serde(default)]
     rules: Rules,
-    #[serde(default)]
-    materials: BTreeMap<Spanned<String>, RawMaterial>,
-    #[serde(default)]
-    spheres: Vec<RawSphere>,
 }
 
 #[derive(Deserialize)]
@@ -190,15 +192,28 @@ impl<'de> Deserialize<'de> for Triple {
 
 fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
     let (settings, samples_per_pixel) = settings_of(&raw.render)?;
-    let default_sky = Sky::default();
-    let sky = Sky {
-        bottom: raw.sky.bottom.map_or(default_sky.bottom, |colour| colour.0),
-        top: raw.sky.top.map_or(default_sky.top, |colour| colour.0),
+    let (scene, inline) = match raw.scene {
+        Some(builtin) => {
+            let parts = [
+                ("sky", raw.sky.is_some()),
+                ("materials", raw.materials.is_some()),
+                ("spheres", raw.spheres.is_some()),
+            ];
+            if let Some((part, _)) = parts.into_iter().find(|(_, is_there)| *is_there) {
+                return Err(refuse(&[part], Reason::BesideScene { part }));
+            }
+            (builtin_scene(&builtin, raw.scene_mark)?, InlineNames::new())
+        }
+        None => {
+            let sky = sky_of(raw.sky.unwrap_or_default());
+            let (scene, inline) =
+                listed_scene(sky, raw.materials.unwrap_or_default(), raw.spheres.unwrap_or_default())?;
+            (Arc::new(scene), inline)
+        }
     };
-    let (scene, inline) = scene_of(sky, raw.materials, raw.spheres)?;
     let recipe = Recipe {
         name: name.to_owned(),
-        scene: scene.into(),
+        scene,
         camera: camera_of(&raw.camera),
         settings,
         rules: raw.rules,
@@ -210,6 +225,25 @@ fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
         Refusal { path: path_of(&error), reason: error.into() }
     })?;
     Ok(recipe)
+}
+
+fn sky_of(raw: RawSky) -> Sky {
+    let default = Sky::default();
+    Sky {
+        bottom: raw.bottom.map_or(default.bottom, |colour| colour.0),
+        top: raw.top.map_or(default.top, |colour| colour.0),
+    }
+}
+
+/// The scene of this name; one of another mark is not that which the file was made with.
+fn builtin_scene(name: &str, mark: Option<String>) -> Result<Arc<Scene>, Refusal> {
+    let scene = Recipe::find(name).map_err(|error| refuse(&["scene"], error))?.scene;
+    match mark {
+        Some(mark) if mark != named::mark(&scene) => {
+            Err(refuse(&["scene_mark"], Reason::OtherScene { name: name.to_owned() }))
+        }
+        _ => Ok(scene),
+    }
 }
 
 fn camera_of(raw: &RawCamera) -> Camera {
@@ -267,7 +301,7 @@ fn settings_of(raw: &RawRender) -> Result<(RenderSettings, u64), Refusal> {
 /// Names that inline materials were given, and the spheres that hold them.
 type InlineNames = HashMap<String, usize>;
 
-fn scene_of(
+fn listed_scene(
     sky: Sky,
     raw_materials: BTreeMap<Spanned<String>, RawMaterial>,
     raw_spheres: Vec<RawSphere>,

@@ -1,5 +1,6 @@
 //! From a recipe to TOML.
 
+use super::named::{mark, name_of};
 use crate::recipe::Recipe;
 use crate::scene::{Camera, Material, Scene, Sphere};
 use crate::stages::Rules;
@@ -15,11 +16,28 @@ const LONG_FORM_LIMIT: usize = 40;
 pub fn to_toml(recipe: &Recipe) -> String {
     let mut text = String::with_capacity(1000 + 100 * recipe.scene.spheres.len());
     // Writing to a string cannot fail.
-    let _ = write_recipe(&mut text, recipe);
+    let _ = write_listed(&mut text, recipe);
     text
 }
 
-fn write_recipe(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
+/// The same for a picture to hold: a large field that is built in and unchanged is named, not listed.
+pub fn to_picture_toml(recipe: &Recipe) -> String {
+    let Some(name) = name_of(&recipe.scene) else { return to_toml(recipe) };
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_named(&mut text, recipe, &name);
+    text
+}
+
+fn write_named(out: &mut String, recipe: &Recipe, name: &str) -> std::fmt::Result {
+    writeln!(out, "scene = {} # {} spheres", quoted(name), recipe.scene.spheres.len())?;
+    writeln!(out, "scene_mark = {}\n", quoted(&mark(&recipe.scene)))?;
+    write_camera(out, &recipe.camera)?;
+    write_render(out, recipe)?;
+    write_rules(out, &recipe.rules)
+}
+
+fn write_listed(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
     let is_long = recipe.scene.spheres.len() > LONG_FORM_LIMIT;
     if is_long {
         writeln!(out, "# Camera, render settings, sky and materials follow the spheres.")?;

@@ -1,0 +1,77 @@
+//! Built-in scenes that a file names in place of their spheres.
+
+use crate::scene::builtin::{FIELD_COUNT_LIMITS, field};
+use crate::scene::{Material, Scene};
+use glam::DVec3;
+
+/// Fields of so many spheres are named where a recipe stands in a picture: listing a million takes seconds and a
+/// hundred megabytes. Smaller ones are listed, so that the picture can be made again whatever becomes of the field.
+const NAMED_FROM: usize = 10_000;
+
+/// The name of the built-in field that the scene is, to the bit, if it is so large that it is named.
+pub(super) fn name_of(scene: &Scene) -> Option<String> {
+    let count = scene.spheres.len().checked_sub(1).filter(|count| *count >= NAMED_FROM)? as u64;
+    let is_field = FIELD_COUNT_LIMITS.contains(&count) && field(count).0 == *scene;
+    is_field.then(|| format!("field:{count}"))
+}
+
+/// A mark of all that a scene holds, by which another is told from it: FNV-1a over names and the bits of numbers.
+pub(super) fn mark(scene: &Scene) -> String {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut word = |word: u64| {
+        hash = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
+        // The product carries upwards only.
+        hash ^= hash >> 32;
+    };
+    let vector = |v: DVec3| v.to_array().map(f64::to_bits);
+    let mut add = |words: &[u64]| words.iter().for_each(|w| word(*w));
+    add(&vector(scene.sky.bottom));
+    add(&vector(scene.sky.top));
+    for named in &scene.materials {
+        named.name.bytes().for_each(|byte| add(&[u64::from(byte)]));
+        match named.material {
+            Material::Lambertian { albedo } => add(&[&[1][..], &vector(albedo)].concat()),
+            Material::Metal { albedo, fuzz } => add(&[&[2, fuzz.to_bits()][..], &vector(albedo)].concat()),
+            Material::Dielectric { refraction_index } => add(&[3, refraction_index.to_bits()]),
+        }
+    }
+    for sphere in &scene.spheres {
+        add(&vector(sphere.center));
+        add(&[sphere.radius.to_bits(), sphere.material as u64]);
+    }
+    format!("{hash:016x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::Stage;
+
+    #[test]
+    fn only_large_fields_that_nobody_changed_are_named() {
+        let mut scene = field(20_000).0;
+        assert_eq!(name_of(&scene).as_deref(), Some("field:20000"));
+        scene.spheres[19_999].radius += 1e-4;
+        assert_eq!(name_of(&scene), None);
+        assert_eq!(name_of(&field(500).0), None);
+        assert_eq!(name_of(&Stage::ALL[0].recipe().scene), None);
+        assert_eq!(name_of(&Scene::default()), None);
+    }
+
+    #[test]
+    fn whatever_is_changed_changes_the_mark() {
+        let scene = field(50).0;
+        let changed = |change: fn(&mut Scene)| {
+            let mut other = scene.clone();
+            change(&mut other);
+            mark(&other) != mark(&scene)
+        };
+        assert!(!changed(|_| {}));
+        assert!(changed(|s| s.sky.top.x += 1e-15));
+        assert!(changed(|s| s.spheres[50].center.z += 1e-15));
+        assert!(changed(|s| s.spheres[7].material += 1));
+        assert!(changed(|s| s.materials[3].name.push('x')));
+        assert!(changed(|s| s.materials[3].material = Material::Dielectric { refraction_index: 1.5 }));
+        assert!(changed(|s| s.spheres.truncate(50)));
+    }
+}
