@@ -11,6 +11,20 @@ use weekender::output::read_description;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// Whether these programs can be used; says so if not, and fails where they have to be there.
+fn are_there(programs: &[&str], consequence: &str) -> bool {
+    let is_missing = |program: &&&str| Command::new(program).arg("-version").output().is_err();
+    let missing: Vec<&str> = programs.iter().filter(is_missing).copied().collect();
+    if missing.is_empty() {
+        return true;
+    }
+    let message = format!("{consequence}: {} is not installed", missing.join(" and "));
+    let is_required = std::env::var_os("WEEKENDER_REQUIRE_GPU").is_some_and(|value| value == "1");
+    assert!(!is_required, "{message}");
+    eprintln!("{message}");
+    false
+}
+
 /// A display that goes away with this.
 struct Display {
     server: Child,
@@ -27,13 +41,7 @@ impl Drop for Display {
 impl Display {
     /// `None`, with a message, where the programs for it are missing and need not be there.
     fn start() -> Option<Display> {
-        let has = |program: &str| Command::new(program).arg("-version").output().is_ok();
-        let missing: Vec<&str> = ["Xvfb", "xdotool"].into_iter().filter(|program| !has(program)).collect();
-        if !missing.is_empty() {
-            let message = format!("no window was tried: {} is not installed", missing.join(" and "));
-            let is_required = std::env::var_os("WEEKENDER_REQUIRE_GPU").is_some_and(|value| value == "1");
-            assert!(!is_required, "{message}");
-            eprintln!("{message}");
+        if !are_there(&["Xvfb", "xdotool"], "no window was tried") {
             return None;
         }
         let mut server = Command::new("Xvfb")
@@ -66,6 +74,21 @@ impl Display {
 
     fn type_text(&self, text: &str) {
         assert!(self.xdotool(&["type", "--delay", "4", text]).status.success(), "{text}");
+    }
+
+    /// The text on the clipboard, once there is one.
+    fn clipboard(&self) -> String {
+        let begin = Instant::now();
+        loop {
+            let mut command = Command::new("xclip");
+            command.env("DISPLAY", &self.name).args(["-o", "-selection", "clipboard"]);
+            let text = String::from_utf8(command.output().unwrap().stdout).unwrap();
+            if !text.is_empty() {
+                return text;
+            }
+            assert!(begin.elapsed() < PATIENCE, "nothing came to the clipboard");
+            std::thread::sleep(Duration::from_millis(50));
+        }
     }
 
     fn wait_for_window(&self, child: &mut Child) -> String {
@@ -211,8 +234,15 @@ fn a_person_can_use_the_window() {
     log.wait_for("the moved picture", |log| log.tracings().last().is_some_and(|(last, _)| *last > before));
     std::thread::sleep(Duration::from_secs(1));
 
+    // In a pause what is saved and what is copied are of the same film.
+    display.key("space");
+    log.wait_for_command("Pause or go on", 1);
+    std::thread::sleep(Duration::from_millis(500));
     let saved = home.path().join("saved.png");
     save(&display, &saved);
+    display.key("ctrl+shift+c");
+    log.wait_for_command("Copy as command", 1);
+    let line = are_there(&["xclip"], "the copied command was not tried").then(|| display.clipboard());
     display.key("ctrl+q");
     let status = wait_for_end(&mut child);
     assert_eq!(status.code(), Some(0), "{status}");
@@ -237,6 +267,19 @@ fn a_person_can_use_the_window() {
     assert!(batch.status.success(), "{}", String::from_utf8_lossy(&batch.stderr));
     assert!(description.get("Backend").unwrap().starts_with("cpu"), "{:?}", description.get("Backend"));
     assert!(pixels(&saved) == pixels(&again), "the saved picture differs from the batch's");
+
+    // The line from the clipboard renders it, too.
+    let Some(line) = line else { return };
+    let words = line.strip_prefix("weekender ").unwrap();
+    let copied = Command::new("sh")
+        .args(["-c", &format!("\"$WEEKENDER\" {words}")])
+        .env("WEEKENDER", env!("CARGO_BIN_EXE_weekender"))
+        .current_dir(home.path())
+        .output()
+        .unwrap();
+    assert!(copied.status.success(), "{line}: {}", String::from_utf8_lossy(&copied.stderr));
+    let rendered = home.path().join("glass-schlick.png");
+    assert!(pixels(&saved) == pixels(&rendered), "the saved picture differs from that of {line}");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::remembered::Theme;
 use super::viewport::Show;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
-use eframe::egui::{Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 /// Where a command stands in the menus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -269,6 +269,18 @@ impl Command {
         }
     }
 
+    /// The keys that stand for it, as they are written on a keyboard.
+    pub fn keys(self, context: &Context) -> Option<String> {
+        let named = context.format_shortcut(&self.shortcut()?);
+        Some(
+            named
+                .replace("OpenBracket", "[")
+                .replace("CloseBracket", "]")
+                .replace("PageUp", "Page Up")
+                .replace("PageDown", "Page Down"),
+        )
+    }
+
     /// The keys that stand for it.
     pub fn shortcut(self) -> Option<KeyboardShortcut> {
         match self {
@@ -328,6 +340,14 @@ mod tests {
         for shortcut in Command::all().into_iter().filter_map(Command::shortcut) {
             assert!(!flying.contains(&(shortcut.modifiers, shortcut.logical_key)));
         }
+    }
+
+    #[test]
+    fn keys_are_named_as_on_a_keyboard() {
+        let context = Context::default();
+        assert_eq!(Command::ZoomIn.keys(&context).as_deref(), Some("]"));
+        assert_eq!(Command::NextStage.keys(&context).as_deref(), Some("Page Down"));
+        assert_eq!(Command::Book.keys(&context), None);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Saving and opening, away from the window's thread: writing happens on the render thread, which has the film,
 //! and reading on a thread of its own.
 
-use super::dialogs::{Dialog, Purpose};
+use super::dialogs::{Chosen, Dialog, PathBox, Purpose};
 use super::document::{Document, Origin, Source, Stop};
 use super::inspector::Pixel;
 use super::paths::Listed;
@@ -31,8 +31,8 @@ pub enum Message {
     Pixel(Option<Pixel>),
     /// Paths of a pixel.
     Paths(Listed),
-    /// A name from the system's dialog.
-    Chosen(Purpose, PathBuf),
+    /// The answer of the system's dialog.
+    Chosen(Purpose, Chosen),
 }
 
 /// What was in a file.
@@ -132,11 +132,17 @@ impl Window {
                 Message::Measured(reference) => self.compare.measured(&self.main, reference),
                 Message::Pixel(pixel) => self.inspector.learn(pixel),
                 Message::Paths(listed) => self.paths.learn(listed),
-                Message::Chosen(purpose, path) => {
+                Message::Chosen(_, Chosen::NoDialog) => {
+                    self.toasts.bad("The system has shown no file dialog; type the file's name in the box");
+                }
+                Message::Chosen(purpose, Chosen::Path(path)) => {
                     if matches!(self.dialog, Some(Dialog::Path(_))) {
                         self.dialog = None;
                     }
-                    self.use_path(purpose, path, context);
+                    match PathBox::chosen(purpose, path) {
+                        Ok(path) => self.use_path(purpose, path, context),
+                        Err(asks) => self.dialog = Some(Dialog::Path(asks)),
+                    }
                 }
             }
         }

@@ -52,10 +52,10 @@ impl Inspector {
         *self = Inspector { hovered: self.hovered, ..Inspector::default() };
     }
 
-    /// The film has answered.
+    /// The film has answered; a film that is gone or has no samples yet leaves what was known before it.
     pub fn learn(&mut self, pixel: Option<Pixel>) {
         self.is_waiting = false;
-        self.pixel = pixel;
+        self.pixel = pixel.or(self.pixel.take());
     }
 
     /// Asks the film, if there is something to learn.
@@ -78,7 +78,7 @@ impl Inspector {
         main.inspect(move |film| {
             let mut answer = answer;
             let [x, y] = at;
-            if x < film.width() && y < film.height() {
+            if x < film.width() && y < film.height() && film.sample_count() > 0 {
                 let index = y as usize * film.width() as usize + x as usize;
                 let mean = film.mean(index);
                 let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));

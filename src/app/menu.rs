@@ -8,7 +8,10 @@ use super::viewport::Show;
 use super::window::Window;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
-use eframe::egui::{self, Align, Button, Layout, RichText, Ui};
+use eframe::egui::{self, Align, Button, Layout, RichText, TextStyle, Ui};
+
+/// How wide a menu is, points: a name and its keys are not far apart.
+pub const MENU_WIDTH: f32 = 300.0;
 
 pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(10, 6));
@@ -19,6 +22,7 @@ pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
             ui.scope(|ui| {
                 egui::containers::menu::menu_style(ui.style_mut());
                 ui.spacing_mut().item_spacing.x = 2.0;
+                ui.spacing_mut().button_padding.x = 5.0;
                 menus(window, ui);
             });
             if !is_narrow {
@@ -34,6 +38,7 @@ pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
                 devices(window, ui);
                 pause(window, ui);
                 save(window, ui);
+                prediction(window, ui);
             });
         }
     });
@@ -42,7 +47,7 @@ pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
 fn menus(window: &mut Window, ui: &mut Ui) {
     for group in Group::ALL {
         ui.menu_button(group.name(), |ui| {
-            ui.set_min_width(230.0);
+            ui.set_width(MENU_WIDTH);
             if group == Group::Stage {
                 stage_menu(window, ui);
                 return;
@@ -88,6 +93,7 @@ fn stage_menu(window: &mut Window, ui: &mut Ui) {
 
 /// All stages by chapter.
 fn stage_list(window: &mut Window, ui: &mut Ui) {
+    let is_new = has_just_opened(ui);
     egui::ScrollArea::vertical().max_height(460.0).show(ui, |ui| {
         let mut chapter = "";
         for stage in Stage::ALL {
@@ -97,13 +103,31 @@ fn stage_list(window: &mut Window, ui: &mut Ui) {
                 let heading = format!("{chapter}  {}", stage.chapter_title);
                 ui.label(RichText::new(heading).small().color(ui.visuals().weak_text_color()));
             }
-            item(window, ui, Command::Stage(stage));
+            let response = item(window, ui, Command::Stage(stage));
+            // One sees where one is.
+            if is_new && window.document.stage() == Some(stage) {
+                response.scroll_to_me(Some(Align::Center));
+            }
         }
     });
 }
 
+/// Whether what stands here was not shown a moment ago. The first passes only find out how large it is.
+fn has_just_opened(ui: &Ui) -> bool {
+    const PASSES: u64 = 3;
+    let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
+    ui.data_mut(|data| {
+        let (mut first, last) = data.get_temp(id).unwrap_or((now, now));
+        if now > last + PASSES {
+            first = now;
+        }
+        data.insert_temp(id, (first, now));
+        now < first + PASSES
+    })
+}
+
 /// A command as a line of a menu.
-pub fn item(window: &mut Window, ui: &mut Ui, command: Command) {
+pub fn item(window: &mut Window, ui: &mut Ui, command: Command) -> egui::Response {
     let useless = window.useless(command);
     let button = line(ui, command, is_on(window, command));
     let mut response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
@@ -114,6 +138,7 @@ pub fn item(window: &mut Window, ui: &mut Ui, command: Command) {
         window.send(command);
         ui.close();
     }
+    response
 }
 
 /// A line with a command's name and keys.
@@ -121,10 +146,8 @@ pub fn line(ui: &Ui, command: Command, is_chosen: bool) -> Button<'static> {
     let visuals = ui.visuals();
     let colour = if is_chosen { visuals.selection.stroke.color } else { visuals.weak_text_color() };
     let button = Button::selectable(is_chosen, command.name());
-    let button = match command.shortcut() {
-        Some(shortcut) => {
-            button.shortcut_text(RichText::new(ui.ctx().format_shortcut(&shortcut)).color(colour))
-        }
+    let button = match command.keys(ui.ctx()) {
+        Some(keys) => button.shortcut_text(RichText::new(keys).color(colour)),
         None => button,
     };
     button.min_size(egui::vec2(ui.available_width(), 0.0))
@@ -162,7 +185,7 @@ fn stage_bar(window: &mut Window, ui: &mut Ui, is_wide: bool) {
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);
         egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
-            ui.set_min_width(260.0);
+            ui.set_width(MENU_WIDTH);
             stage_list(window, ui);
         })
     });
@@ -182,8 +205,8 @@ fn step(window: &mut Window, ui: &mut Ui, command: Command, label: &str) {
 
 /// What a command does, with its keys.
 fn with_keys(ui: &Ui, command: Command) -> String {
-    match command.shortcut() {
-        Some(shortcut) => format!("{} ({})", command.help(), ui.ctx().format_shortcut(&shortcut)),
+    match command.keys(ui.ctx()) {
+        Some(keys) => format!("{} ({keys})", command.help()),
         None => command.help().to_owned(),
     }
 }
@@ -197,6 +220,8 @@ fn buttons(window: &mut Window, ui: &mut Ui) {
     for device in Device::ALL.into_iter().rev() {
         device_button(window, ui, device);
     }
+    ui.add_space(8.0);
+    prediction(window, ui);
 }
 
 fn save(window: &mut Window, ui: &mut Ui) {
@@ -219,9 +244,16 @@ fn pause(window: &mut Window, ui: &mut Ui) {
     if response.clicked() {
         window.send(Command::Pause);
     }
-    if let Some(words) = plot::prediction_label(window) {
-        ui.label(RichText::new(words).small())
-            .on_hover_text("From the estimates so far, within two deviations");
+}
+
+/// When the target will be reached, where there is room. It comes last, so that what changes with every estimate
+/// moves nothing.
+fn prediction(window: &Window, ui: &mut Ui) {
+    let Some(words) = plot::prediction_label(window) else { return };
+    let text = RichText::new(words).small();
+    let galley = egui::WidgetText::from(text.clone()).into_galley(ui, None, f32::INFINITY, TextStyle::Small);
+    if galley.size().x < ui.available_size_before_wrap().x {
+        ui.label(text).on_hover_text("From the estimates so far, within two deviations");
     }
 }
 

@@ -11,6 +11,10 @@ use super::viewport::{Show, Zoom};
 use super::window::Window;
 use crate::stages::Shading;
 use eframe::egui::{self, ViewportCommand};
+use std::time::Duration;
+
+/// More than the time between two pictures.
+const PICTURES_APART: Duration = Duration::from_millis(300);
 
 impl Window {
     /// Why a command can do nothing now, in words; `None` if it can.
@@ -122,11 +126,13 @@ impl Window {
             Command::Undo => {
                 if let Some(document) = self.undo.undo(&self.document) {
                     self.document = document.clone();
+                    self.is_undoing = true;
                 }
             }
             Command::Redo => {
                 if let Some(document) = self.undo.redo(&self.document) {
                     self.document = document.clone();
+                    self.is_undoing = true;
                 }
             }
             Command::Home => self.document.camera = self.document.origin.recipe.camera,
@@ -152,7 +158,12 @@ impl Window {
             Command::ActualSize => self.viewport.actual_size(),
             Command::ZoomIn => self.viewport.zoom_by(1.25),
             Command::ZoomOut => self.viewport.zoom_by(0.8),
-            Command::Panels => self.remembered.has_panels = !self.remembered.has_panels,
+            Command::Panels => {
+                self.remembered.has_panels = !self.remembered.has_panels;
+                if !self.remembered.has_panels {
+                    self.toasts.good("Tab brings the panels back");
+                }
+            }
             Command::Controls => toggle(&mut self.remembered.has_controls, &mut self.remembered.has_panels),
             Command::Info => toggle(&mut self.remembered.has_info, &mut self.remembered.has_panels),
             Command::Plot => toggle(&mut self.remembered.has_plot, &mut self.remembered.has_panels),
@@ -173,6 +184,8 @@ impl Window {
                     self.is_paused = true;
                     self.main.pause();
                     self.compare.pause();
+                    // What was traced since the last picture is shown, too.
+                    context.request_repaint_after(PICTURES_APART);
                 }
             }
             Command::Restart => {
@@ -211,10 +224,10 @@ impl Window {
     }
 
     fn copy_command(&mut self, context: &egui::Context) {
-        let samples = match (self.main.shown(), self.document.stop.samples) {
-            (Some(shown), _) if shown.divisor == 1 => shown.samples,
-            (_, Some(samples)) => samples,
-            _ => self.document.origin.recipe.samples_per_pixel,
+        // As many as a picture that is saved now has.
+        let samples = match self.main.status().samples_per_pixel {
+            samples @ 1.. if self.main.is_full(&self.document) => samples,
+            _ => self.document.stop.samples.unwrap_or(self.document.origin.recipe.samples_per_pixel),
         };
         let device = self.remembered.device;
         // Software adapters are used only when they are named.

@@ -51,7 +51,11 @@ fn view_ui(window: &mut Window, ui: &mut Ui) {
         egui::ComboBox::from_id_salt("view")
             .width(ui.available_width())
             .selected_text(show.name())
-            .show_ui(ui, |ui| Show::ALL.into_iter().for_each(|show| item(window, ui, Command::Show(show))))
+            .show_ui(ui, |ui| {
+                for show in Show::ALL {
+                    item(window, ui, Command::Show(show));
+                }
+            })
             .response
     });
     if show != Show::Picture {

@@ -1,44 +1,56 @@
 //! The bar at the bottom: how far, how fast, how good, and by whom. Each figure has a place of its own, so that
 //! nothing jumps.
 
+use super::document::Stop;
 use super::plot;
 use super::window::Window;
-use crate::progressive::{Phase, Status};
+use crate::progressive::{Contribution, Phase, Status};
+use crate::render::BackendInfo;
 use eframe::egui::{self, Align, Layout, RichText, Ui};
 use std::borrow::Cow;
 
 pub fn ui(window: &mut Window, ui: &mut Ui) {
     let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(12, 5));
     egui::Panel::bottom("status").frame(frame).show(ui, |ui| {
-        let status = window.main.status().clone();
-        ui.horizontal_wrapped(|ui| {
-            ui.spacing_mut().item_spacing = egui::vec2(14.0, 3.0);
-            for (text, widest, help) in figures(&status, window) {
-                figure(ui, &text, widest, &help);
+        bar(ui, window.main.status(), window.document.stop, window.is_paused());
+    });
+}
+
+fn bar(ui: &mut Ui, status: &Status, stop: Stop, is_paused: bool) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = egui::vec2(14.0, 3.0);
+        for (text, widest, help) in figures(status, stop, is_paused) {
+            figure(ui, &text, widest, &help);
+        }
+        rejected(ui, status);
+        let room = ui.available_size_before_wrap().x;
+        let forms = who(status);
+        let fitting = forms.iter().find(|words| text_width(ui, words) < room);
+        match (fitting, forms.last()) {
+            (Some(words), _) => {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| who_label(ui, words, status));
             }
-            rejected(ui, &status);
-            let who = who(&status);
-            let room = ui.available_width();
-            let width = text_width(ui, &who);
-            if room > width + 20.0 {
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| who_label(ui, &who, &status));
-            } else {
-                who_label(ui, &who, &status);
-            }
-        });
+            (None, Some(shortest)) => who_label(ui, shortest, status),
+            (None, None) => {}
+        }
     });
 }
 
 fn who_label(ui: &mut Ui, who: &str, status: &Status) {
     let mut help = String::from("Who traced which part of this picture");
     for part in &status.contributions {
-        let backend = &part.backend;
-        help += &format!(
-            "\n{} {}: {} samples per pixel, {} lanes, {} threads",
-            backend.name, backend.device, part.samples_per_pixel, backend.lanes, backend.threads
-        );
+        let BackendInfo { name, device, lanes, threads } = &part.backend;
+        help += &format!("\n{name} {device}: {} samples per pixel, {lanes} lanes", part.samples_per_pixel);
+        if *name != "gpu" {
+            help += &format!(", {}", counted(*threads, "thread"));
+        }
     }
-    ui.label(RichText::new(who).color(ui.visuals().weak_text_color())).on_hover_text(help);
+    let text = RichText::new(who).color(ui.visuals().weak_text_color());
+    ui.add(egui::Label::new(text).extend()).on_hover_text(help);
+}
+
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 fn text_width(ui: &Ui, text: &str) -> f32 {
@@ -58,12 +70,12 @@ fn figure(ui: &mut Ui, text: &str, widest: &str, help: &str) {
 }
 
 /// Text, the widest text in its place, and help.
-fn figures(status: &Status, window: &Window) -> Vec<(String, &'static str, Cow<'static, str>)> {
+fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'static str, Cow<'static, str>)> {
     let samples = status.samples_per_pixel;
     let mut figures = vec![
-        (phase_word(&status.phase, window), "preparing", "What the tracer is at".into()),
+        (phase_word(&status.phase, is_paused), "preparing", "What the tracer is at".into()),
         (
-            match window.document.stop.samples {
+            match stop.samples {
                 Some(planned) => format!("{} of {} spp", grouped(samples), grouped(planned)),
                 None => format!("{} spp", grouped(samples)),
             },
@@ -95,7 +107,7 @@ fn figures(status: &Status, window: &Window) -> Vec<(String, &'static str, Cow<'
         ));
     }
     figures.push((
-        error_words(status, window.document.stop.noise),
+        error_words(status, stop.noise),
         "error 0.00000, 0.00000 in about 0000 s (0000 to 0000)",
         error_help(status).into(),
     ));
@@ -112,11 +124,11 @@ fn error_help(status: &Status) -> String {
     )
 }
 
-fn phase_word(phase: &Phase, window: &Window) -> String {
+fn phase_word(phase: &Phase, is_paused: bool) -> String {
     match phase {
-        Phase::Done(_) if window.is_paused() => "paused",
+        Phase::Done(_) if is_paused => "paused",
         Phase::Idle | Phase::Preparing => "preparing",
-        Phase::Tracing if window.is_paused() => "paused",
+        Phase::Tracing if is_paused => "paused",
         Phase::Tracing => "tracing",
         Phase::Paused => "paused",
         Phase::Done(_) => "done",
@@ -152,21 +164,32 @@ fn rejected(ui: &mut Ui, status: &Status) {
     ui.label(label).on_hover_text("Samples that were NaN, infinite or negative and so were left out");
 }
 
-/// Who traced how much, in words.
-fn who(status: &Status) -> String {
+/// Who traced how much: in full, then ever shorter.
+fn who(status: &Status) -> Vec<String> {
     let total: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
     match status.contributions.as_slice() {
-        [] => status.backend.as_ref().map_or_else(String::new, |b| format!("{} {}", b.name, b.device)),
-        [only] => format!("{} {}, {} threads", only.backend.name, only.backend.device, only.backend.threads),
-        parts => parts
-            .iter()
-            .map(|part| {
-                let share = 100.0 * part.samples_per_pixel as f64 / total.max(1) as f64;
-                format!("{} {} {share:.0} %", part.backend.name, part.backend.device)
-            })
-            .collect::<Vec<_>>()
-            .join(" + "),
+        [] => status.backend.iter().map(short_name).collect(),
+        [only] => {
+            let (name, threads) = (short_name(&only.backend), counted(only.backend.threads, "thread"));
+            if only.backend.name == "gpu" { vec![name] } else { vec![format!("{name}, {threads}"), name] }
+        }
+        parts => {
+            let shares = |name: fn(&BackendInfo) -> String| {
+                let share = |part: &Contribution| {
+                    let share = 100.0 * part.samples_per_pixel as f64 / total.max(1) as f64;
+                    format!("{} {share:.0} %", name(&part.backend))
+                };
+                parts.iter().map(share).collect::<Vec<_>>().join(" + ")
+            };
+            vec![shares(short_name), shares(|backend| backend.name.to_owned())]
+        }
     }
+}
+
+/// A backend with its device, without what an adapter says of its driver.
+fn short_name(backend: &BackendInfo) -> String {
+    let device = backend.device.split(" (").next().unwrap_or_default();
+    format!("{} {device}", backend.name)
 }
 
 /// A number with gaps between thousands.
@@ -186,6 +209,10 @@ fn grouped(n: u64) -> String {
 mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
+    use crate::render::Stats;
+    use egui::Rect;
+    use egui_kittest::kittest::Queryable;
+    use egui_kittest::{Harness, SnapshotOptions};
     use std::time::Duration;
 
     #[test]
@@ -203,6 +230,80 @@ mod tests {
         assert_eq!(error_words(&status, Some(0.01)), "error 0.00400, below 0.01");
         status.error = None;
         assert_eq!(error_words(&status, Some(0.01)), "error –");
+    }
+
+    fn part(name: &'static str, device: &str, samples_per_pixel: u64) -> Contribution {
+        let backend = BackendInfo { name, device: device.to_owned(), lanes: 16, threads: 2 };
+        Contribution { backend, samples_per_pixel }
+    }
+
+    /// The status of a film that several backends have worked on.
+    fn status_of(contributions: Vec<Contribution>) -> Status {
+        Status {
+            run: 3,
+            phase: Phase::Tracing,
+            backend: contributions.last().map(|part| part.backend.clone()),
+            samples_per_pixel: contributions.iter().map(|part| part.samples_per_pixel).sum(),
+            stats: Stats { paths: 1_000_000, rays: 2_560_000, ..Stats::default() },
+            trace: Duration::from_secs(2),
+            error: Some(ErrorEstimate { rmse: 0.004, rel_mse: 0.0 }),
+            contributions,
+            ..Status::default()
+        }
+    }
+
+    fn parts() -> [Contribution; 3] {
+        let gpu = "A Graphics Adapter With Quite a Name (discrete, Vulkan, driver 550.54 (of a vendor))";
+        [part("cpu", "avx2", 100), part("gpu", gpu, 200), part("reference", "f64", 20)]
+    }
+
+    const STOP: Stop = Stop { samples: None, seconds: None, noise: Some(0.002) };
+
+    #[test]
+    fn nothing_in_the_bar_covers_anything_else() {
+        for width in [480.0, 640.0, 800.0, 960.0, 1120.0, 1280.0, 1440.0, 1920.0] {
+            for count in 0..=3 {
+                let status = status_of(parts()[..count].to_vec());
+                let harness =
+                    Harness::builder().with_size([width, 200.0]).build_ui(|ui| bar(ui, &status, STOP, false));
+                let rects: Vec<(String, Rect)> = harness
+                    .get_all_by_role(egui::Role::Label)
+                    .map(|node| (node.value().unwrap_or_default(), node.rect()))
+                    .collect();
+                assert!(rects.len() >= 7, "{rects:?}");
+                for (index, (text, rect)) in rects.iter().enumerate() {
+                    assert!(rect.right() <= width + 0.5, "{width}: {text} ends at {}", rect.right());
+                    for (other, theirs) in &rects[..index] {
+                        assert!(!rect.shrink(1.0).intersects(*theirs), "{width}: {text} covers {other}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_bar_looks_as_it_did() {
+        let status = status_of(parts().to_vec());
+        let mut harness = Harness::builder().with_size([1280.0, 24.0]).wgpu().build_ui(|ui| {
+            crate::app::theme::install(ui.ctx());
+            bar(ui, &status, STOP, false);
+        });
+        harness.run_steps(2);
+        let options = SnapshotOptions::new().threshold(2.0).max_failed_pixels(100_usize);
+        harness.snapshot_options("status_bar", &options);
+    }
+
+    #[test]
+    fn who_traced_is_said_in_few_words() {
+        let [cpu, gpu, _] = parts();
+        assert_eq!(who(&status_of(vec![cpu.clone()])), ["cpu avx2, 2 threads", "cpu avx2"]);
+        assert_eq!(
+            who(&status_of(vec![cpu, gpu])),
+            ["cpu avx2 33 % + gpu A Graphics Adapter With Quite a Name 67 %", "cpu 33 % + gpu 67 %"]
+        );
+        let one_thread = BackendInfo { threads: 1, ..part("cpu", "avx2", 1).backend };
+        let alone = Contribution { backend: one_thread, samples_per_pixel: 1 };
+        assert_eq!(who(&status_of(vec![alone]))[0], "cpu avx2, 1 thread");
     }
 
     #[test]

@@ -226,11 +226,13 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
         response.hover_pos().and_then(|at| window.viewport.pixel_at(at, [settings.width, settings.height])),
     );
     response.context_menu(|ui| {
+        ui.set_width(super::menu::MENU_WIDTH);
         for command in [super::Command::Home, super::Command::AddBookmark, super::Command::CopyCommand] {
             super::menu::item(window, ui, command);
         }
     });
     window.toasts.ui(ui, room);
+    paint_drop(ui, room);
 }
 
 fn handle_divider(window: &mut Window, ui: &Ui, response: &egui::Response, rect: Rect) -> bool {
@@ -412,6 +414,17 @@ fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
         let colour = ui.visuals().weak_text_color();
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font.clone(), colour);
     }
+    if let Zoom::Times(times) = window.viewport.zoom {
+        let text = format!("{:.0} %", 100.0 * times);
+        badge(
+            ui,
+            &painter,
+            rect.intersect(room).right_top() + vec2(-8.0, 8.0),
+            Align2::RIGHT_TOP,
+            &text,
+            &font,
+        );
+    }
     window.paths.paint(&window.document, ui, &painter, rect);
     paint_mark(window, ui, &painter, rect, &font);
 }
@@ -481,14 +494,42 @@ fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, scale: &HeatScale) 
     }
 }
 
+/// What happens to files that are held over the window.
+fn paint_drop(ui: &Ui, room: Rect) {
+    let Some(files) = ui.input(|input| words_for_files(&input.raw.hovered_files)) else { return };
+    let painter =
+        ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
+    painter.rect_filled(room, CornerRadius::ZERO, ui.visuals().panel_fill.gamma_multiply(0.8));
+    painter.rect_stroke(
+        room.shrink(12.0),
+        CornerRadius::same(8),
+        Stroke::new(2.0, super::theme::accent(ui)),
+        egui::StrokeKind::Inside,
+    );
+    let font = TextStyle::Heading.resolve(ui.style());
+    painter.text(room.center(), Align2::CENTER_CENTER, files, font, ui.visuals().strong_text_color());
+}
+
+fn words_for_files(files: &[egui::HoveredFile]) -> Option<String> {
+    let name = files.first()?.path.as_ref().and_then(|path| path.file_name());
+    Some(
+        name.map_or_else(
+            || "Drop to open".to_owned(),
+            |name| format!("Drop to open {}", name.to_string_lossy()),
+        ),
+    )
+}
+
 /// Text on a plate, so that it can be read on any picture.
 fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, font: &FontId) {
     let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), ui.visuals().strong_text_color());
     let mut rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 6.0));
-    let missing = painter.clip_rect().left() + 4.0 - rect.left();
-    if missing > 0.0 {
+    let clip = painter.clip_rect();
+    let (beyond_left, beyond_right) = (clip.left() + 4.0 - rect.left(), rect.right() + 4.0 - clip.right());
+    if beyond_left > 0.0 || beyond_right > 0.0 {
+        let along = if beyond_left > 0.0 { beyond_left } else { -beyond_right };
         // A row lower, so that it does not cover what stands beside it.
-        rect = rect.translate(vec2(missing, rect.height() + 4.0));
+        rect = rect.translate(vec2(along, rect.height() + 4.0));
     }
     painter.rect_filled(rect, CornerRadius::same(5), ui.visuals().panel_fill.gamma_multiply(0.9));
     painter.galley(rect.min + vec2(7.0, 3.0), galley, ui.visuals().strong_text_color());

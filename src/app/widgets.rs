@@ -32,18 +32,18 @@ pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Respo
     under_name(ui, about, |ui| {
         let response = add(ui);
         named(&response, about.name);
-        response
+        explained(response, about)
     })
 }
 
-/// A name above, below it controls with names of their own.
+/// A name above, below it controls with names and tooltips of their own.
 pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
     ui.spacing_mut().item_spacing.y = 3.0;
     let is_useful = about.useless.is_none();
     let response = ui
         .add_enabled_ui(is_useful, |ui| {
             ui.add(egui::Label::new(RichText::new(about.name).small().color(ui.visuals().weak_text_color())));
-            explained(add(ui), about)
+            add(ui)
         })
         .inner;
     ui.add_space(5.0);

@@ -32,7 +32,11 @@ const SETTLE: Duration = Duration::from_millis(160);
 /// Below this width, points, there is no room for two panels beside the picture.
 const NARROW: f32 = 900.0;
 
-const STORAGE_KEY: &str = "window";
+/// Not "window": eframe keeps place and size under that name.
+const STORAGE_KEY: &str = "weekender";
+
+/// How many frames a new window is looked at for whether it fits on its screen: the system is not quick to tell.
+const FRAMES_TO_FIT: u8 = 120;
 
 /// All state of the window. [`Window::ui_in`] draws a frame of it, [`Window::perform`] carries out a command.
 pub struct Window {
@@ -73,6 +77,9 @@ pub struct Window {
     pub(super) had_focus: bool,
     told_messages: (u64, usize),
     is_dressed: bool,
+    /// A document that was taken back or made again is no change of its own.
+    pub(super) is_undoing: bool,
+    frames_to_fit: u8,
 }
 
 impl Window {
@@ -122,6 +129,8 @@ impl Window {
             had_focus: false,
             told_messages: (0, 0),
             is_dressed: false,
+            is_undoing: false,
+            frames_to_fit: FRAMES_TO_FIT,
             remembered,
             document,
         };
@@ -256,6 +265,7 @@ impl Window {
     pub fn ui_in(&mut self, ui: &mut egui::Ui) {
         let context = ui.ctx().clone();
         self.dress(&context);
+        self.fit_on_screen(&context);
         self.receive(&context);
         let begin = Instant::now();
         let pictured = self.main.poll(&context);
@@ -291,6 +301,22 @@ impl Window {
             theme::install(context);
             theme::choose(context, self.remembered.theme);
             self.main.wake(context);
+        }
+    }
+
+    /// Makes a new window smaller that reaches beyond its screen with its frame: the figures at the bottom are seen.
+    fn fit_on_screen(&mut self, context: &egui::Context) {
+        if self.frames_to_fit == 0 {
+            return;
+        }
+        self.frames_to_fit -= 1;
+        let smaller = context.input(|input| {
+            let viewport = input.viewport();
+            fitting(viewport.inner_rect?.size(), viewport.outer_rect?.size(), viewport.monitor_size?)
+        });
+        if let Some(size) = smaller {
+            self.frames_to_fit = 0;
+            context.send_viewport_cmd(egui::ViewportCommand::InnerSize(size));
         }
     }
 
@@ -342,7 +368,7 @@ impl Window {
     fn follow(&mut self, context: &egui::Context) {
         if self.document != self.last_document {
             // What was before a change, or before a whole gesture, is what undo comes back to.
-            if !self.is_in_gesture {
+            if !self.is_in_gesture && !self.is_undoing {
                 self.undo.add_undo(&self.last_document);
             }
             let is_by_hand = context.input(|input| input.pointer.any_down());
@@ -357,6 +383,7 @@ impl Window {
             }
             self.last_document = self.document.clone();
         }
+        self.is_undoing = false;
         self.is_in_gesture = self.is_moving() || context.input(|input| input.pointer.any_down());
         let now = context.input(|input| input.time);
         self.undo.feed_state(now, &self.document);
@@ -422,6 +449,12 @@ impl Window {
     }
 }
 
+/// The size of the inside of a window that is too large for its screen, in place of `inner`.
+fn fitting(inner: egui::Vec2, outer: egui::Vec2, screen: egui::Vec2) -> Option<egui::Vec2> {
+    let excess = (outer - screen).max(egui::Vec2::ZERO);
+    (excess != egui::Vec2::ZERO && screen.min_elem() > 0.0).then(|| inner - excess)
+}
+
 fn document_of(options: &WindowOptions) -> Document {
     let WindowOptions { recipe, stage, file, plan, .. } = options;
     let origin = match (stage, file, Recipe::builtin(&recipe.name)) {
@@ -464,5 +497,20 @@ impl eframe::App for Window {
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
         visuals.panel_fill.to_normalized_gamma_f32()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::vec2;
+
+    #[test]
+    fn a_window_with_its_frame_fits_on_the_screen() {
+        let screen = vec2(1280.0, 800.0);
+        assert_eq!(fitting(vec2(1280.0, 800.0), vec2(1282.0, 821.0), screen), Some(vec2(1278.0, 779.0)));
+        assert_eq!(fitting(vec2(1280.0, 800.0), vec2(1280.0, 800.0), screen), None);
+        assert_eq!(fitting(vec2(1280.0, 800.0), vec2(1282.0, 821.0), vec2(1920.0, 1080.0)), None);
+        assert_eq!(fitting(vec2(640.0, 400.0), vec2(640.0, 400.0), egui::Vec2::ZERO), None, "not known yet");
     }
 }

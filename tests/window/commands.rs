@@ -159,3 +159,33 @@ fn escape_leaves_a_control_before_tab_hides_the_panels() {
     harness.run_steps(2);
     assert!(!harness.state_mut().remembered_mut().has_panels);
 }
+
+#[test]
+fn changes_are_taken_back_and_made_again_one_by_one() {
+    let mut harness = open(SMALL);
+    let angle = |harness: &Harness<'_, Window>| harness.state().document().camera.vfov_degrees;
+    let first = angle(&harness);
+    let angles = [first, 33.0, 44.0, 55.0];
+    for degrees in &angles[1..] {
+        harness.run_steps(90);
+        harness.state_mut().document_mut().camera.vfov_degrees = *degrees;
+        harness.run_steps(2);
+    }
+    for degrees in angles.iter().rev().skip(1) {
+        send(&mut harness, Command::Undo);
+        assert_eq!(angle(&harness), *degrees, "taken back");
+    }
+    assert!(harness.state().useless(Command::Undo).is_some());
+    for degrees in &angles[1..] {
+        harness.run_steps(90);
+        send(&mut harness, Command::Redo);
+        assert_eq!(angle(&harness), *degrees, "made again");
+    }
+    assert!(harness.state().useless(Command::Redo).is_some());
+    send(&mut harness, Command::Undo);
+    harness.state_mut().document_mut().camera.vfov_degrees = 66.0;
+    harness.run_steps(2);
+    assert!(harness.state().useless(Command::Redo).is_some(), "a change ends what could be made again");
+    send(&mut harness, Command::Undo);
+    assert_eq!(angle(&harness), 44.0);
+}

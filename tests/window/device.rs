@@ -2,8 +2,10 @@
 
 use crate::common::{drag, has_samples, open, send, until};
 use eframe::egui::{Key, Modifiers, PointerButton};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use std::time::Duration;
-use weekender::app::{Command, Device};
+use weekender::app::{Command, Device, Window};
 
 #[test]
 fn another_device_goes_on_with_the_same_film() {
@@ -57,4 +59,20 @@ fn a_pause_outlasts_a_move_of_the_camera() {
     harness.key_press(Key::Space);
     until(&mut harness, "more samples", |window| window.status().samples_per_pixel > 8);
     assert_eq!(harness.state().status().run, run, "the same film goes on");
+}
+
+#[test]
+fn what_changes_with_the_estimate_moves_no_button() {
+    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000 --noise-target 0.000001");
+    let places = |harness: &Harness<'_, Window>| {
+        Device::ALL.map(|device| harness.get_by_label(&Command::Device(device).name()).rect())
+    };
+    let before = places(&harness);
+    let is_predicted = |harness: &Harness<'_, Window>| {
+        harness.query_all_by_label_contains("RMSE 0.000001 in").next().is_some()
+    };
+    until(&mut harness, "an estimate", |window| window.status().history.len() > 5);
+    harness.run_steps(2);
+    assert!(is_predicted(&harness));
+    assert_eq!(places(&harness), before);
 }

@@ -232,3 +232,23 @@ fn controls_take_no_value_that_cannot_be() {
         }
     }
 }
+
+#[test]
+fn a_control_has_one_tooltip() {
+    let mut harness = open("--stage defocus --size 32x18");
+    for (name, help) in [
+        ("Look from x", "The eye, scene units (look_from)"),
+        ("Width", "Width, pixels"),
+        ("Field of view", "From the lower to the upper edge, degrees (vfov)"),
+        ("Device", "Who traces."),
+    ] {
+        let at = control(&harness, name).rect().center();
+        harness.event(egui::Event::PointerMoved(at));
+        harness.run_steps(60);
+        let shown: Vec<String> = harness
+            .get_all_by_role(egui::Role::Tooltip)
+            .flat_map(|tip| tip.children_recursive().filter_map(|node| node.value()).collect::<Vec<_>>())
+            .collect();
+        assert!(shown.len() == 1 && shown[0].starts_with(help), "{name}: {shown:?}");
+    }
+}

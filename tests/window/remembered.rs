@@ -44,6 +44,8 @@ fn settings_are_remembered() {
     let mut storage = Storage::default();
     eframe::App::save(harness.state_mut(), &mut storage);
     let kept = harness.state_mut().remembered_mut().clone();
+    let names: Vec<&str> = storage.0.keys().map(String::as_str).collect();
+    assert!(!names.contains(&"window"), "the window's place and size would be lost: {names:?}");
 
     let mut again = Window::new(options("weekender --stage metal"), Some(&storage)).unwrap();
     assert_eq!(*again.remembered_mut(), kept);

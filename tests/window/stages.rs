@@ -1,6 +1,6 @@
 //! Every stage of the book.
 
-use crate::common::{has_samples, open, send, until};
+use crate::common::{has_samples, open, open_sized, send, until};
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 use weekender::app::Command;
@@ -38,4 +38,20 @@ fn every_stage_is_compared_with_another() {
     harness.key_press(Key::X);
     harness.run_steps(2);
     assert!(!harness.state().is_comparing());
+}
+
+#[test]
+fn the_list_of_stages_opens_where_one_is() {
+    let stage = Stage::find("defocus").unwrap();
+    let mut harness = open_sized("--stage defocus", [1280.0, 800.0]);
+    harness.run_steps(2);
+    for _ in 0..2 {
+        harness.get_by_label("Choose a stage").click();
+        harness.run_steps(10);
+        let name = Command::Stage(stage).name();
+        let list = harness.query_all_by_label(&name).last().unwrap().rect();
+        assert!(list.top() > 40.0 && list.bottom() < 540.0, "{list:?}");
+        harness.key_press(Key::Escape);
+        harness.run_steps(10);
+    }
 }

@@ -4,39 +4,68 @@ use super::Outcome;
 use crate::app::command::{Command, Group};
 use eframe::egui::{self, RichText, Ui};
 
-const MOUSE: [(&str, &str); 10] = [
+const MOUSE: [(&str, &str); 11] = [
     ("Drag", "orbit around the point looked at"),
     ("Right drag", "look around"),
     ("Wheel", "move closer or away"),
     ("Ctrl and wheel", "zoom the picture at the pointer"),
-    ("Middle drag, Shift and drag", "move the picture"),
+    ("Middle or Shift drag", "move the picture"),
     ("Click", "focus on what is there"),
     ("Double click", "look at what is there"),
-    ("Alt and click", "list the paths of a pixel, bounce by bounce"),
+    ("Alt and click", "list the paths of a pixel"),
     ("W A S D, Q E", "fly; with Shift fast"),
-    ("F6", "go to the controls with the keyboard"),
+    ("Drop a file", "open a picture, film or scene"),
+    ("F6", "go to the controls"),
+];
+
+/// Below this width, points, there is room for one column.
+const TWO_COLUMNS: f32 = 640.0;
+
+/// The groups of a column; `None` is what the mouse does.
+const COLUMNS: [&[Option<Group>]; 2] = [
+    &[None, Some(Group::File), Some(Group::Edit)],
+    &[Some(Group::View), Some(Group::Render), Some(Group::Stage), Some(Group::Help)],
 ];
 
 pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
+    ui.set_width(ui.available_width());
     ui.heading("Keyboard and mouse");
     ui.add_space(6.0);
-    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
-        egui::Grid::new("help").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
-            for (keys, what) in MOUSE {
-                ui.label(RichText::new(keys).strong());
-                ui.label(what);
-                ui.end_row();
-            }
-            for group in Group::ALL {
-                let commands = Command::all().into_iter().filter(|command| command.group() == group);
-                for (command, shortcut) in commands.filter_map(|c| Some((c, c.shortcut()?))) {
-                    ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
-                    ui.label(command.name().trim_end_matches('…'));
-                    ui.end_row();
+    egui::ScrollArea::vertical().max_height(height).auto_shrink([false, true]).show(ui, |ui| {
+        if ui.available_width() < TWO_COLUMNS {
+            COLUMNS.into_iter().flatten().for_each(|part| section(ui, *part));
+        } else {
+            ui.columns(COLUMNS.len(), |uis| {
+                for (ui, parts) in uis.iter_mut().zip(COLUMNS) {
+                    parts.iter().for_each(|part| section(ui, *part));
                 }
-            }
-        });
+            });
+        }
     });
     ui.add_space(8.0);
     if ui.button("Close").clicked() { Outcome::Close } else { Outcome::Stay }
+}
+
+fn section(ui: &mut Ui, group: Option<Group>) {
+    let title = group.map_or("Mouse and flying", Group::name);
+    ui.label(RichText::new(title).small().color(ui.visuals().weak_text_color()));
+    egui::Grid::new(title).num_columns(2).min_row_height(0.0).spacing([14.0, 3.0]).show(ui, |ui| {
+        let context = ui.ctx().clone();
+        let mut row = |keys: &str, what: &str| {
+            ui.label(RichText::new(keys).strong());
+            ui.add(egui::Label::new(what).wrap());
+            ui.end_row();
+        };
+        match group {
+            None => MOUSE.into_iter().for_each(|(keys, what)| row(keys, what)),
+            Some(group) => {
+                for command in Command::all().into_iter().filter(|command| command.group() == group) {
+                    if let Some(keys) = command.keys(&context) {
+                        row(&keys, command.name().trim_end_matches('…'));
+                    }
+                }
+            }
+        }
+    });
+    ui.add_space(8.0);
 }

@@ -5,7 +5,7 @@ mod palette;
 mod path_box;
 
 pub use palette::Palette;
-pub use path_box::{PathBox, Purpose};
+pub use path_box::{Chosen, PathBox, Purpose};
 
 use super::window::Window;
 use eframe::egui::{Id, Modal, Ui};
@@ -31,7 +31,8 @@ impl Window {
         let Some(mut dialog) = self.dialog.take() else { return };
         let room = ui.ctx().content_rect().size();
         let modal = Modal::new(Id::unique("dialog")).show(ui.ctx(), |ui| {
-            ui.set_max_width((room.x - 40.0).min(560.0));
+            let width = if matches!(dialog, Dialog::Help) { 700.0 } else { 560.0 };
+            ui.set_max_width((room.x - 40.0).min(width));
             match &mut dialog {
                 Dialog::Palette(palette) => palette.ui(self, ui),
                 Dialog::Help => help::ui(ui, (room.y - 140.0).max(100.0)),

@@ -6,6 +6,8 @@ use crate::app::window::Window;
 use crate::output::OutputFormat;
 use eframe::egui::{self, Key, RichText, Ui};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Weak};
+use std::time::{Duration, Instant};
 
 /// What the file is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,12 +60,42 @@ impl Purpose {
     }
 }
 
+impl Purpose {
+    /// A name with the ending that belongs to it.
+    fn with_ending(self, path: PathBuf) -> PathBuf {
+        let is_known = path
+            .extension()
+            .is_some_and(|ending| self.endings().iter().any(|known| ending.eq_ignore_ascii_case(known)));
+        match self.endings() {
+            [ending] if self.is_saving() && !is_known => {
+                let mut name = path.into_os_string();
+                name.push(format!(".{ending}"));
+                PathBuf::from(name)
+            }
+            _ => path,
+        }
+    }
+}
+
 /// The box, with what was typed.
 pub struct PathBox {
     purpose: Purpose,
     text: String,
     is_new: bool,
+    /// Lives as long as the system's dialog is open.
+    browsing: Weak<()>,
 }
+
+/// What the system's dialog said.
+pub enum Chosen {
+    /// A name.
+    Path(PathBuf),
+    /// There was none to be seen.
+    NoDialog,
+}
+
+/// A dialog that is gone sooner was never seen by anyone.
+const SEEN: Duration = Duration::from_millis(300);
 
 impl PathBox {
     pub fn new(purpose: Purpose, name: &str, directory: Option<&Path>) -> Self {
@@ -72,7 +104,18 @@ impl PathBox {
             _ => String::new(),
         };
         let path = directory.map_or_else(|| PathBuf::from(&file), |directory| directory.join(&file));
-        PathBox { purpose, text: path.display().to_string(), is_new: true }
+        PathBox::of(purpose, &path)
+    }
+
+    fn of(purpose: Purpose, path: &Path) -> Self {
+        PathBox { purpose, text: path.display().to_string(), is_new: true, browsing: Weak::new() }
+    }
+
+    /// What is to be done with a name from the system's dialog. That has asked before it gave the name of a file
+    /// that is there; but if the ending is added here, the name is another, and the box asks.
+    pub fn chosen(purpose: Purpose, path: PathBuf) -> Result<PathBuf, Self> {
+        let named = purpose.with_ending(path.clone());
+        if named != path && named.exists() { Err(PathBox::of(purpose, &named)) } else { Ok(named) }
     }
 
     pub(super) fn ui(&mut self, window: &mut Window, ui: &mut Ui) -> Outcome {
@@ -110,7 +153,12 @@ impl PathBox {
             if ui.button("Cancel").clicked() {
                 outcome = Outcome::Close;
             }
-            if ui.button("Browse…").on_hover_text("The system's own dialog, where there is one").clicked() {
+            let is_browsing = self.browsing.strong_count() > 0;
+            let browse = ui
+                .add_enabled(!is_browsing, egui::Button::new("Browse…"))
+                .on_hover_text("The system's own dialog, where there is one")
+                .on_disabled_hover_text("The system's dialog is open");
+            if browse.clicked() {
                 self.browse(window, ui.ctx());
             }
         });
@@ -120,21 +168,7 @@ impl PathBox {
     /// What was typed, with the ending that belongs to it.
     fn path(&self) -> Option<PathBuf> {
         let text = self.text.trim();
-        if text.is_empty() {
-            return None;
-        }
-        let path = PathBuf::from(text);
-        let is_known = path.extension().is_some_and(|ending| {
-            self.purpose.endings().iter().any(|known| ending.eq_ignore_ascii_case(known))
-        });
-        match self.purpose.endings() {
-            [ending] if self.purpose.is_saving() && !is_known => {
-                let mut name = path.into_os_string();
-                name.push(format!(".{ending}"));
-                Some(PathBuf::from(name))
-            }
-            _ => Some(path),
-        }
+        (!text.is_empty()).then(|| self.purpose.with_ending(text.into()))
     }
 
     fn note(&self, path: Option<&Path>) -> Option<String> {
@@ -142,6 +176,7 @@ impl PathBox {
         let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         match (self.purpose.is_saving(), path.exists()) {
             (true, true) => Some(format!("{} is there and will be replaced", whole.display())),
+            (true, false) if whole == path => Some("A new file".to_owned()),
             (true, false) => Some(whole.display().to_string()),
             (false, true) => None,
             (false, false) => Some(format!("{} is not there", whole.display())),
@@ -159,30 +194,48 @@ impl PathBox {
         state.store(ui.ctx(), id);
     }
 
-    fn browse(&self, window: &Window, context: &egui::Context) {
+    /// Opens the system's dialog on a thread of its own: it may take as long as it likes.
+    fn browse(&mut self, window: &Window, context: &egui::Context) {
         let (purpose, text) = (self.purpose, self.text.clone());
         let (sender, context) = (window.messages.0.clone(), context.clone());
+        let browsing = Arc::new(());
+        self.browsing = Arc::downgrade(&browsing);
         let choose = move || {
-            let path = PathBuf::from(text);
+            let begin = Instant::now();
+            let (directory, name) = place_of(Path::new(&text));
             let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
             dialog = dialog.add_filter(purpose.endings().join(", "), purpose.endings());
-            if let Some(directory) = path.parent().filter(|directory| directory.is_dir()) {
+            if let Some(directory) = directory {
                 dialog = dialog.set_directory(directory);
             }
-            let chosen = if purpose.is_saving() {
-                let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-                dialog.set_file_name(name.unwrap_or_default()).save_file()
-            } else {
-                dialog.pick_file()
+            let chosen =
+                if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
+            drop(browsing);
+            let answer = match chosen {
+                Some(path) => Some(Chosen::Path(path)),
+                None if begin.elapsed() < SEEN => Some(Chosen::NoDialog),
+                None => None,
             };
-            if let Some(path) = chosen {
-                let _ = sender.send(Message::Chosen(purpose, path));
-                context.request_repaint();
+            if let Some(answer) = answer {
+                // A window that has been closed wants no name.
+                let _ = sender.send(Message::Chosen(purpose, answer));
             }
+            context.request_repaint();
         };
         // Without a thread there is no dialog, and the box is still there.
         let _ = std::thread::Builder::new().name("file dialog".into()).spawn(choose);
     }
+}
+
+/// Where the system's dialog begins: the directory, if it is there, and the file's name in it.
+fn place_of(path: &Path) -> (Option<PathBuf>, String) {
+    let whole = std::env::current_dir().unwrap_or_default().join(path);
+    if whole.is_dir() {
+        return (Some(whole), String::new());
+    }
+    let name = whole.file_name().map(|name| name.to_string_lossy().into_owned());
+    let directory = whole.parent().filter(|directory| directory.is_dir());
+    (directory.map(Path::to_owned), name.unwrap_or_default())
 }
 
 /// A name as a file system takes it.
@@ -195,7 +248,7 @@ mod tests {
     use super::*;
 
     fn typed(purpose: Purpose, text: &str) -> Option<PathBuf> {
-        PathBox { purpose, text: text.into(), is_new: false }.path()
+        PathBox::of(purpose, Path::new(text)).path()
     }
 
     #[test]
@@ -206,6 +259,30 @@ mod tests {
         assert_eq!(typed(png, "v1.2"), Some("v1.2.png".into()));
         assert_eq!(typed(png, "  "), None);
         assert_eq!(typed(Purpose::Open, "a"), Some("a".into()));
+    }
+
+    #[test]
+    fn a_name_from_the_systems_dialog_gets_its_ending_and_replaces_nothing_unasked() {
+        let directory = tempfile::tempdir().unwrap();
+        let png = Purpose::Save(OutputFormat::Png);
+        let [bare, named] = ["a", "a.png"].map(|name| directory.path().join(name));
+        let taken = |path: &Path| PathBox::chosen(png, path.to_owned()).map_err(|asks| asks.text);
+        assert_eq!(taken(&bare), Ok(named.clone()));
+        std::fs::write(&named, "").unwrap();
+        assert_eq!(taken(&bare), Err(named.display().to_string()));
+        assert_eq!(taken(&named), Ok(named), "the dialog has asked");
+    }
+
+    #[test]
+    fn the_systems_dialog_begins_where_the_box_is() {
+        let directory = tempfile::tempdir().unwrap();
+        assert_eq!(
+            place_of(&directory.path().join("a.png")),
+            (Some(directory.path().into()), "a.png".into())
+        );
+        assert_eq!(place_of(directory.path()), (Some(directory.path().into()), String::new()));
+        assert_eq!(place_of(Path::new("a.png")), (std::env::current_dir().ok(), "a.png".into()));
+        assert_eq!(place_of(&directory.path().join("no/a.png")), (None, "a.png".into()));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Where the camera stands and where it looks.
 
-use super::Group;
+use super::{Group, Reset};
 use crate::app::command::Command;
 use crate::app::widgets::{About, slider, vector};
 use crate::app::window::Window;
@@ -8,7 +8,7 @@ use crate::scene::Camera;
 use crate::stages::Shading;
 use eframe::egui::{self, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Camera", ui, is_changed, reset };
+pub(super) const GROUP: Group = Group { name: "Camera", ui, reset: Some(Reset { is_changed, reset }) };
 
 fn placed(camera: &Camera) -> (glam::DVec3, glam::DVec3, glam::DVec3, f64) {
     (camera.look_from, camera.look_at, camera.vup, camera.vfov_degrees)

@@ -1,12 +1,12 @@
 //! The lens: how blurred, and where it is sharp.
 
-use super::Group;
+use super::{Group, Reset};
 use crate::app::widgets::{About, check, slider};
 use crate::app::window::Window;
 use crate::scene::Camera;
 use eframe::egui::{self, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Lens", ui, is_changed, reset };
+pub(super) const GROUP: Group = Group { name: "Lens", ui, reset: Some(Reset { is_changed, reset }) };
 
 fn lens(camera: &Camera) -> (f64, Option<f64>) {
     (camera.defocus_angle_degrees, camera.focus_distance)

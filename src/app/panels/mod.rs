@@ -14,9 +14,14 @@ struct Group {
     name: &'static str,
     /// Draws it.
     ui: fn(&mut Window, &mut Ui),
-    /// Whether anything in it differs from the stage; then it can be reset.
+    /// How it is made as the stage has it, if a stage has anything to say in it.
+    reset: Option<Reset>,
+}
+
+/// How a group is made as the stage has it.
+struct Reset {
+    /// Whether anything in it differs from the stage.
     is_changed: fn(&Window) -> bool,
-    /// Makes it as the stage has it.
     reset: fn(&mut Window),
 }
 
@@ -34,15 +39,16 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
         state
             .show_header(ui, |ui| {
                 ui.label(RichText::new(group.name).strong());
-                let is_changed = (group.is_changed)(window);
+                let Some(Reset { is_changed, reset }) = &group.reset else { return };
+                let is_changed = is_changed(window);
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    let reset = ui
+                    let button = ui
                         .add_enabled(is_changed, egui::Button::new("Reset").small())
                         .on_hover_text("As the stage has it")
                         .on_disabled_hover_text("Nothing here differs from the stage")
                         .accessible_name(format!("Reset {}", group.name.to_lowercase()));
-                    if reset.clicked() {
-                        (group.reset)(window);
+                    if button.clicked() {
+                        reset(window);
                     }
                 });
             })

@@ -6,10 +6,11 @@ use crate::app::window::Window;
 use crate::output::OutputFormat;
 use eframe::egui::{self, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Output", ui, is_changed: |_| false, reset: |_| {} };
+pub(super) const GROUP: Group = Group { name: "Output", ui, reset: None };
 
 fn ui(window: &mut Window, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
         for (name, command) in [
             ("PNG", Command::Save(OutputFormat::Png)),
             ("PPM", Command::Save(OutputFormat::P6)),

@@ -1,6 +1,6 @@
 //! Who renders, and how.
 
-use super::Group;
+use super::{Group, Reset};
 use crate::app::device::{Device, core_count, lane_counts};
 use crate::app::widgets::{About, check, control, under_name, whole};
 use crate::app::window::Window;
@@ -8,7 +8,7 @@ use crate::render::{DEPTH_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::stages::Shading;
 use eframe::egui::{self, ComboBox, DragValue, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Render", ui, is_changed, reset };
+pub(super) const GROUP: Group = Group { name: "Render", ui, reset: Some(Reset { is_changed, reset }) };
 
 fn is_changed(window: &Window) -> bool {
     window.document().settings != window.document().origin.recipe.settings

@@ -1,13 +1,13 @@
 //! When the render ends: the first condition that is met.
 
-use super::Group;
+use super::{Group, Reset};
 use crate::app::document::Stop;
 use crate::app::widgets::{About, check, limit};
 use crate::app::window::Window;
 use crate::render::SAMPLE_LIMIT;
 use eframe::egui::{DragValue, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Stop", ui, is_changed, reset };
+pub(super) const GROUP: Group = Group { name: "Stop", ui, reset: Some(Reset { is_changed, reset }) };
 
 fn is_changed(window: &Window) -> bool {
     window.document().stop != Stop::for_recipe(&window.document().origin.recipe)
