@@ -200,8 +200,11 @@ pub fn ui(window: &mut super::Window, ui: &mut Ui) {
     let document = window.document.clone();
     let paths = &mut window.paths;
     let Some(listed) = &paths.listed else {
-        let text =
-            if paths.is_waiting { "Recording paths…" } else { "Alt-click lists the paths of a pixel." };
+        let text = if paths.is_waiting {
+            "Recording paths…"
+        } else {
+            "Alt-click or right-click lists the paths of a pixel."
+        };
         ui.label(RichText::new(text).color(weak).small());
         return;
     };

@@ -211,6 +211,7 @@ impl Window {
             Command::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
             Command::Book => {
                 let url = self.document.stage().map_or_else(|| crate::stages::BOOK_URL.into(), |s| s.url());
+                self.toasts.good(format!("Opening {url}"));
                 context.open_url(egui::OpenUrl::new_tab(url));
             }
             Command::Palette => self.dialog = Some(Dialog::Palette(Palette::typed(context))),

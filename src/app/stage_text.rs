@@ -18,7 +18,10 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
             ui.add(egui::Label::new(RichText::new(stage.title).heading()).wrap());
             let link = format!("{} {}", stage.section, stage.section_title);
             ui.add(egui::Hyperlink::from_label_and_url(link, stage.url()).open_in_new_tab(true))
-                .on_hover_text("Opens this section of the book in the web browser");
+                .on_hover_text(format!(
+                    "Opens this section of the book in the web browser:\n{}",
+                    stage.url()
+                ));
             for (heading, text) in
                 [("What is new", stage.what_is_new), ("Why", stage.why), ("Look for", stage.look_for)]
             {

@@ -161,7 +161,9 @@ fn rejected(ui: &mut Ui, status: &Status) {
     if status.rejected_samples > 0 {
         label = label.color(ui.visuals().error_fg_color).strong();
     }
-    ui.label(label).on_hover_text("Samples that were NaN, infinite or negative and so were left out");
+    // As a whole in one row.
+    ui.add(egui::Label::new(label).extend())
+        .on_hover_text("Samples that were NaN, infinite or negative and so were left out");
 }
 
 /// Who traced how much: in full, then ever shorter.
@@ -284,7 +286,7 @@ mod tests {
     #[test]
     fn the_bar_looks_as_it_did() {
         let status = status_of(parts().to_vec());
-        let mut harness = Harness::builder().with_size([1280.0, 24.0]).wgpu().build_ui(|ui| {
+        let mut harness = Harness::builder().with_size([1296.0, 40.0]).wgpu().build_ui(|ui| {
             crate::app::theme::install(ui.ctx());
             bar(ui, &status, STOP, false);
         });

@@ -7,8 +7,8 @@ use crate::heat::{HeatScale, colour_at};
 use crate::layers::Layer;
 use crate::progressive::Phase;
 use eframe::egui::{
-    self, Align2, Color32, CornerRadius, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, Sense, Stroke,
-    TextStyle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    self, Align2, Color32, CornerRadius, CursorIcon, FontId, Key, PointerButton, Pos2, Rect, RichText, Sense,
+    Stroke, TextStyle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use std::time::{Duration, Instant};
 
@@ -145,6 +145,8 @@ pub struct Viewport {
     pan: Vec2,
     mark: Option<Mark>,
     is_dragging_divider: bool,
+    /// Where the menu of a right click was asked for, if on the picture.
+    menu_at: Option<Pos2>,
     last_times: f32,
     /// Where the picture was drawn last.
     pub rect: Rect,
@@ -158,6 +160,7 @@ impl Default for Viewport {
             pan: Vec2::ZERO,
             mark: None,
             is_dragging_divider: false,
+            menu_at: None,
             last_times: 1.0,
             rect: Rect::ZERO,
         }
@@ -225,12 +228,10 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
     window.inspector.hover(
         response.hover_pos().and_then(|at| window.viewport.pixel_at(at, [settings.width, settings.height])),
     );
-    response.context_menu(|ui| {
-        ui.set_width(super::menu::MENU_WIDTH);
-        for command in [super::Command::Home, super::Command::AddBookmark, super::Command::CopyCommand] {
-            super::menu::item(window, ui, command);
-        }
-    });
+    if response.secondary_clicked() {
+        window.viewport.menu_at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
+    }
+    response.context_menu(|ui| context_menu(window, ui, rect));
     window.toasts.ui(ui, room);
     paint_drop(ui, room);
 }
@@ -294,19 +295,67 @@ fn handle_mouse(window: &mut Window, ui: &Ui, response: &egui::Response, rect: R
         window.note_move();
     }
     if let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at)) {
+        if response.double_clicked() {
+            Spot::Centre.use_at(window, ui, rect, at);
+        } else if response.clicked() && (modifiers.alt || is_alt_release(ui)) {
+            Spot::Paths.use_at(window, ui, rect, at);
+        } else if response.clicked() {
+            Spot::Focus.use_at(window, ui, rect, at);
+        }
+    }
+}
+
+/// What can be done with a place of the picture.
+#[derive(Clone, Copy)]
+enum Spot {
+    Focus,
+    Centre,
+    Paths,
+}
+
+impl Spot {
+    /// Its name in the menu, and the mouse's way to it.
+    fn names(self) -> [&'static str; 2] {
+        match self {
+            Spot::Focus => ["Focus on this", "Click"],
+            Spot::Centre => ["Look at this", "Double click"],
+            Spot::Paths => ["List the paths of this pixel", "Alt and click"],
+        }
+    }
+
+    fn use_at(self, window: &mut Window, ui: &Ui, rect: Rect, at: Pos2) {
         let along = (at - rect.min) / rect.size();
         let place = [f64::from(along.x), f64::from(along.y)];
-        if response.double_clicked() {
-            recentre(window, place);
-        } else if response.clicked() && (modifiers.alt || is_alt_release(ui)) {
-            let settings = window.document.settings;
-            if let Some(pixel) = window.viewport.pixel_at(at, [settings.width, settings.height]) {
-                let sender = window.messages.0.clone();
-                window.paths.list(&window.document, pixel, &sender, ui.ctx());
+        match self {
+            Spot::Focus => focus(window, place),
+            Spot::Centre => recentre(window, place),
+            Spot::Paths => {
+                let settings = window.document.settings;
+                if let Some(pixel) = window.viewport.pixel_at(at, [settings.width, settings.height]) {
+                    let sender = window.messages.0.clone();
+                    window.paths.list(&window.document, pixel, &sender, ui.ctx());
+                }
             }
-        } else if response.clicked() {
-            focus(window, place);
         }
+    }
+}
+
+fn context_menu(window: &mut Window, ui: &mut Ui, rect: Rect) {
+    ui.set_width(super::menu::MENU_WIDTH);
+    if let Some(at) = window.viewport.menu_at {
+        for spot in [Spot::Focus, Spot::Centre, Spot::Paths] {
+            let [name, mouse] = spot.names();
+            let mouse = RichText::new(mouse).color(ui.visuals().weak_text_color());
+            let button = egui::Button::new(name).shortcut_text(mouse);
+            if ui.add(button.min_size(vec2(ui.available_width(), 0.0))).clicked() {
+                spot.use_at(window, ui, rect, at);
+                ui.close();
+            }
+        }
+        ui.separator();
+    }
+    for command in [super::Command::Home, super::Command::AddBookmark, super::Command::CopyCommand] {
+        super::menu::item(window, ui, command);
     }
 }
 

@@ -155,3 +155,30 @@ fn views_are_shown_and_follow_the_camera() {
     send(&mut harness, Command::Show(Show::Bounces));
     assert_eq!(harness.state().show(), Show::Picture);
 }
+
+#[test]
+fn the_menu_of_a_right_click_is_about_what_is_there() {
+    let mut harness = open("--stage defocus");
+    until(&mut harness, "a picture", has_samples(1));
+    let at = middle(&harness) + egui::vec2(40.0, -20.0);
+    let choose = |harness: &mut Harness<'_, Window>, name: &str| {
+        harness.event(egui::Event::PointerMoved(at));
+        for pressed in [true, false] {
+            let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+            harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+            harness.step();
+        }
+        harness.run_steps(5);
+        harness.get_by_label_contains(name).click();
+        harness.run_steps(5);
+    };
+    let before = harness.state().document().camera;
+    choose(&mut harness, "Focus on this");
+    let focused = harness.state().document().camera;
+    assert_eq!(focused.look_at, before.look_at);
+    assert_ne!(focused.focus_distance, before.focus_distance);
+    choose(&mut harness, "Look at this");
+    assert_ne!(harness.state().document().camera.look_at, before.look_at);
+    choose(&mut harness, "List the paths of this pixel");
+    until(&mut harness, "sixteen paths", |window| window.listed_paths() == 16);
+}

@@ -4,7 +4,7 @@ use super::Outcome;
 use crate::app::command::{Command, Group};
 use eframe::egui::{self, RichText, Ui};
 
-const MOUSE: [(&str, &str); 11] = [
+const MOUSE: [(&str, &str); 12] = [
     ("Drag", "orbit around the point looked at"),
     ("Right drag", "look around"),
     ("Wheel", "move closer or away"),
@@ -12,6 +12,7 @@ const MOUSE: [(&str, &str); 11] = [
     ("Middle or Shift drag", "move the picture"),
     ("Click", "focus on what is there"),
     ("Double click", "look at what is there"),
+    ("Right click", "a menu of what is there"),
     ("Alt and click", "list the paths of a pixel"),
     ("W A S D, Q E", "fly; with Shift fast"),
     ("Drop a file", "open a picture, film or scene"),
