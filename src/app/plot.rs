@@ -7,10 +7,12 @@ use super::widgets::compact;
 use super::window::Window;
 use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
 use crate::statistics::fit::{Point, Prediction, predict};
-use eframe::egui::{self, Color32, CursorIcon, DragValue, Rangef, Rect, RichText, Sense, Ui, WidgetInfo};
+use eframe::egui::{
+    self, Align2, Color32, CursorIcon, DragValue, Rangef, Rect, RichText, Sense, Ui, WidgetInfo,
+};
 use egui_plot::{
-    AxisHints, GridInput, GridMark, HLine, HoverPosition, Legend, Line, LineStyle, Plot, PlotPoints,
-    PlotTransform, PlotUi, Points,
+    AxisHints, GridInput, GridMark, HLine, HoverPosition, Line, LineStyle, Plot, PlotPoint, PlotPoints,
+    PlotTransform, PlotUi, Points, Text,
 };
 use std::fmt::Write;
 
@@ -81,12 +83,18 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
     let accent = theme::accent(ui);
     let visuals = ui.visuals();
     let (weak, strong) = (visuals.weak_text_color(), visuals.strong_text_color());
-    let colors = [accent, visuals.warn_fg_color, visuals.error_fg_color, strong];
+    let (of_gpu, of_both) = (visuals.warn_fg_color, visuals.error_fg_color);
+    let color_of = move |backend: &str| match backend {
+        "cpu" => accent,
+        "gpu" => of_gpu,
+        "cpu,gpu" => of_both,
+        _ => strong,
+    };
     let curves = curves(&status.history);
     let all = points(status);
     let target = window.document.stop.noise;
     let prediction = prediction(status, target);
-    let mut plot = Plot::new("error")
+    let plot = Plot::new("error")
         .allow_drag(false)
         .allow_zoom(false)
         .allow_scroll(false)
@@ -106,9 +114,6 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
             | HoverPosition::Elsewhere { position: at }) = hover;
             Some(hover_words(&status.history, [at.x, at.y]))
         });
-    if curves.len() > 1 {
-        plot = plot.legend(Legend::default());
-    }
     let line = ui.scope_id().with("target line");
     let is_held = ui.ctx().is_being_dragged(line);
     let response = plot.show(ui, |plot| {
@@ -122,13 +127,18 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
                 ahead(plot, now, target, &prediction, weak);
             }
         }
-        for (index, (name, points)) in curves.iter().enumerate() {
-            curve(plot, name, points, colors[index % colors.len()]);
+        for (backend, points) in &curves {
+            curve(plot, backend, points, color_of(backend));
+        }
+        // One curve needs no name: the bar below says who traces.
+        for (backend, points) in curves.iter().filter(|_| curves.len() > 1) {
+            name_curve(plot, backend, points, color_of(backend));
         }
         // The newest estimate, between two powers of two.
         if let (Some(last), Some(now)) = (status.history.last().map(logarithms), all.last()) {
             let newest = vec![last, logarithm(now)];
-            plot.line(Line::new("now", PlotPoints::from(newest)).color(accent).width(1.0).allow_hover(false));
+            let color = status.backend.as_ref().map_or(accent, |backend| color_of(backend.name));
+            plot.line(Line::new("now", PlotPoints::from(newest)).color(color).width(1.0).allow_hover(false));
         }
     });
     if let Some(target) = &mut window.document.stop.noise {
@@ -213,6 +223,14 @@ fn ahead(plot: &mut PlotUi, now: &Point, target: f64, prediction: &Prediction, c
 fn curve(plot: &mut PlotUi, name: &str, points: &[[f64; 2]], color: Color32) {
     plot.line(Line::new(name, PlotPoints::from(points.to_vec())).color(color).width(1.5));
     plot.points(Points::new(name, PlotPoints::from(points.to_vec())).color(color).radius(2.5));
+}
+
+/// Writes the backend's name above the middle of its curve, where nothing else is: errors fall.
+fn name_curve(plot: &mut PlotUi, name: &str, points: &[[f64; 2]], color: Color32) {
+    let (Some([x0, y0]), Some([x1, y1])) = (points.first(), points.last()) else { return };
+    let middle = PlotPoint::new(0.5 * (x0 + x1), 0.5 * (y0 + y1));
+    let words = RichText::new(name).small().color(color);
+    plot.text(Text::new(name, middle, words).anchor(Align2::LEFT_BOTTOM).allow_hover(false));
 }
 
 /// The history in pieces, each of what one backend did; a piece begins where the one before it ends.

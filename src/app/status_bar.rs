@@ -98,8 +98,10 @@ fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'stati
             "Rays per path, the camera's included: how long paths are".into(),
         ),
     ];
-    if let Some(share) = status.lane_occupancy() {
-        let lanes = status.backend.as_ref().map_or(0, |backend| backend.lanes);
+    // Packets are the processor's; a film may have samples of others, too.
+    let packets = status.contributions.iter().rev().find(|part| part.backend.name.starts_with("cpu"));
+    if let Some((share, part)) = status.lane_occupancy().zip(packets) {
+        let lanes = part.backend.lanes;
         figures.push((
             format!("{lanes} lanes {:.0} % full", 100.0 * share),
             "00 lanes 100 % full",
