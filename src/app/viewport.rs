@@ -2,6 +2,7 @@
 
 use super::compare::Mode;
 use super::navigation;
+use super::theme;
 use super::window::Window;
 use crate::heat::{HeatScale, colour_at};
 use crate::layers::Layer;
@@ -432,14 +433,20 @@ fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
         .and_then(|tracer| tracer.shown_mut())
         .map(|shown| (shown.texture.id(context, options(shown.divisor, times)), shown.document.stage()));
     let layer = window.viewport.show.layer().and_then(|layer| window.layers.shown_mut(layer));
-    let mut divisor = 1;
-    if let Some(layer) = layer {
-        divisor = layer.divisor;
-        painter.image(layer.texture.id(context, options(divisor, times)), rect, WHOLE, Color32::WHITE);
-    } else if let Some(shown) = window.main.shown_mut() {
-        divisor = shown.divisor;
-        painter.image(shown.texture.id(context, options(divisor, times)), rect, WHOLE, Color32::WHITE);
+    let shown = match layer {
+        Some(layer) => Some((layer.texture.id(context, options(layer.divisor, times)), layer.divisor)),
+        None => window
+            .main
+            .shown_mut()
+            .map(|shown| (shown.texture.id(context, options(shown.divisor, times)), shown.divisor)),
+    };
+    // The hole is a point smaller, so that no line stays free between the two.
+    let hole = if shown.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
+    fill_around(&painter, room, hole, theme::surround(ui));
+    if let Some((texture, _)) = shown {
+        painter.image(texture, rect, WHOLE, Color32::WHITE);
     }
+    let divisor = shown.map_or(1, |(_, divisor)| divisor);
     let font = TextStyle::Body.resolve(ui.style());
     if window.compare.mode == Some(Mode::Wipe)
         && let Some((texture, stage)) = other
@@ -476,6 +483,22 @@ fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
     }
     window.paths.paint(&window.document, ui, &painter, rect);
     paint_mark(window, ui, &painter, rect, &font);
+}
+
+/// Fills `room` but for `hole`: where a processor draws, each pixel that is drawn twice is time lost.
+fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32) {
+    if !hole.is_positive() {
+        painter.rect_filled(room, 0.0, colour);
+        return;
+    }
+    for rect in [
+        Rect { max: pos2(room.right(), hole.top()), ..room },
+        Rect { min: pos2(room.left(), hole.bottom()), ..room },
+        Rect { min: pos2(room.left(), hole.top()), max: pos2(hole.left(), hole.bottom()) },
+        Rect { min: pos2(hole.right(), hole.top()), max: pos2(room.right(), hole.bottom()) },
+    ] {
+        painter.rect_filled(rect, 0.0, colour);
+    }
 }
 
 fn paint_wipe(

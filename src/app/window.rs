@@ -360,8 +360,7 @@ impl Window {
                 );
             }
         }
-        let frame = egui::Frame::new().fill(theme::surround(ui));
-        egui::CentralPanel::default().frame(frame).show(ui, |ui| viewport::ui(self, ui));
+        egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| viewport::ui(self, ui));
     }
 
     /// Notes what has changed, and has it rendered.
