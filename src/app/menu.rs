@@ -14,7 +14,7 @@ use eframe::egui::{self, Align, Button, Layout, RichText, TextStyle, Ui};
 pub const MENU_WIDTH: f32 = 300.0;
 
 pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
-    let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(10, 6));
+    let frame = theme::panel(egui::Margin::symmetric(10, 6));
     egui::Panel::top("menu").frame(frame).show(ui, |ui| {
         let height = ui.spacing().interact_size.y + 2.0;
         ui.horizontal(|ui| {

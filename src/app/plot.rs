@@ -33,7 +33,7 @@ const GRIP: f32 = 8.0;
 
 pub fn ui(window: &mut Window, ui: &mut Ui) {
     let status = window.main.status().clone();
-    let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(12, 6));
+    let frame = theme::panel(egui::Margin::symmetric(12, 6));
     egui::Panel::bottom("plot")
         .frame(frame)
         .resizable(true)

@@ -3,6 +3,7 @@
 
 use super::document::Stop;
 use super::plot;
+use super::theme;
 use super::window::Window;
 use crate::progressive::{Contribution, Phase, Status};
 use crate::render::BackendInfo;
@@ -10,7 +11,7 @@ use eframe::egui::{self, Align, Layout, RichText, Ui};
 use std::borrow::Cow;
 
 pub fn ui(window: &mut Window, ui: &mut Ui) {
-    let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(12, 5));
+    let frame = theme::panel(egui::Margin::symmetric(12, 5));
     egui::Panel::bottom("status").frame(frame).show(ui, |ui| {
         bar(ui, window.main.status(), window.document.stop, window.is_paused());
     });

@@ -181,3 +181,9 @@ pub fn icon() -> Arc<egui::IconData> {
     }
     Arc::new(egui::IconData { rgba, width: SIDE, height: SIDE })
 }
+
+/// A panel's frame. It has no ground of its own: the window is cleared to that colour, which costs next to nothing
+/// where a processor draws, and a ground as much as all that stands on it.
+pub fn panel(inner_margin: egui::Margin) -> egui::Frame {
+    egui::Frame::new().inner_margin(inner_margin)
+}

@@ -330,7 +330,7 @@ impl Window {
                 plot::ui(self, ui);
             }
             if self.remembered.has_controls {
-                let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::ZERO);
+                let frame = theme::panel(egui::Margin::ZERO);
                 egui::Panel::left("controls")
                     .frame(frame)
                     .default_size(244.0)
@@ -347,7 +347,7 @@ impl Window {
                     });
             }
             if self.remembered.has_info && !is_narrow {
-                let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::ZERO);
+                let frame = theme::panel(egui::Margin::ZERO);
                 egui::Panel::right("info").frame(frame).default_size(256.0).size_range(190.0..=420.0).show(
                     ui,
                     |ui| {
