@@ -244,7 +244,7 @@ fn long() -> Vec<&'static str> {
 fn interrupted_reference(directory: &Path, film: &Path, samples: u64) -> FilmFile {
     // Where the key comes before the first pass or after the last, it is pressed again.
     for _ in 0..30 {
-        let mut command = command(&[&["--progress", "on"], &long()].concat(), directory);
+        let mut command = command(&[&["--progress", "on"], long().as_slice()].concat(), directory);
         let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
         // Its first words come when the reference begins.
         let mut stderr = std::io::BufReader::new(child.stderr.take().unwrap());
