@@ -4,11 +4,7 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use std::sync::atomic::AtomicBool;
 use tempfile::TempDir;
-use weekender::backends::{BackendChoice, create};
-use weekender::film::{FilmFile, PixelSum, checkpoint};
-use weekender::recipe::file::parse;
 
 fn command(arguments: &[&str], directory: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
@@ -232,70 +228,82 @@ fn a_scene_that_became_another_is_measured_again() {
     assert_ne!(second[0]["points"][5]["mse"], first[0]["points"][5]["mse"]);
 }
 
-/// A reference of many samples and little besides.
-fn long() -> Vec<&'static str> {
-    let flags = "--out found --scenes three-spheres --size 48x27 --seeds 1 --max-samples 2 --time-limit 600 \
-                 --backends cpu --samplers sobol --reference-backend cpu --reference-samples 16384";
-    flags.split(' ').collect()
-}
-
-/// Begins a report and presses Ctrl-C while its reference is rendered. Returns the film that is kept.
 #[cfg(unix)]
-fn interrupted_reference(directory: &Path, film: &Path, samples: u64) -> FilmFile {
-    // Where the key comes before the first pass or after the last, it is pressed again.
-    for _ in 0..30 {
-        let mut command = command(&[&["--progress", "on"], &long()].concat(), directory);
-        let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
-        // Its first words come when the reference begins.
-        let mut stderr = std::io::BufReader::new(child.stderr.take().unwrap());
-        let mut words = String::new();
-        std::io::BufRead::read_line(&mut stderr, &mut words).unwrap();
-        assert!(words.contains("reference of three-spheres"), "{words}");
-        Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
-        let mut rest = String::new();
-        std::io::Read::read_to_string(&mut stderr, &mut rest).unwrap();
-        let code = child.wait().unwrap().code().unwrap();
-        match checkpoint::load(film) {
-            Ok(kept) if kept.film.sample_count() < samples => {
-                assert!(code == 130 && rest.contains("goes on from here"), "{code}: {rest}");
-                return kept;
-            }
-            Ok(_) => fs::remove_dir_all(directory.join("found")).unwrap(),
-            Err(_) => {}
-        }
+mod interrupted {
+    use super::{command, report};
+    use std::fs;
+    use std::io::{BufRead, BufReader, Read};
+    use std::path::Path;
+    use std::process::{Command, Stdio};
+    use std::sync::atomic::AtomicBool;
+    use tempfile::TempDir;
+    use weekender::backends::{BackendChoice, create};
+    use weekender::film::{FilmFile, PixelSum, checkpoint};
+    use weekender::recipe::file::parse;
+
+    /// A reference of many samples and little besides.
+    fn long() -> Vec<&'static str> {
+        let flags = "--out found --scenes three-spheres --size 48x27 --seeds 1 --max-samples 2 --time-limit 600 \
+                     --backends cpu --samplers sobol --reference-backend cpu --reference-samples 16384";
+        flags.split(' ').collect()
     }
-    panic!("no reference was caught half-made");
-}
 
-#[cfg(unix)]
-#[test]
-fn an_interrupted_reference_goes_on_with_the_samples_that_were_kept() {
-    let at = TempDir::new().unwrap();
-    let at = at.path();
-    let path = at.join("found/reference-three-spheres.exr");
-    let kept = interrupted_reference(at, &path, 16_384);
-    let (code, _, errors) = report(&long(), at);
-    assert_eq!(code, 0, "{errors}");
-    let whole = checkpoint::load(&path).unwrap();
-    let job = parse(whole.description.recipe(), "the reference").unwrap().job().unwrap();
-    let mut uninterrupted = job.new_film();
-    let mut renderer = create(&BackendChoice::named("cpu", None).unwrap()).unwrap();
-    renderer.accumulate(&job, 0..16_384, &mut uninterrupted, &AtomicBool::new(false)).unwrap();
-    assert!(whole.film == uninterrupted, "{} and {}", kept.film.samples(), whole.film.samples());
+    /// Begins a report and presses Ctrl-C while its reference is rendered. Returns the film that is kept.
+    fn interrupted_reference(directory: &Path, film: &Path, samples: u64) -> FilmFile {
+        // Where the key comes before the first pass or after the last, it is pressed again.
+        for _ in 0..30 {
+            let mut command = command(&[&["--progress", "on"], long().as_slice()].concat(), directory);
+            let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+            // Its first words come when the reference begins.
+            let mut stderr = BufReader::new(child.stderr.take().unwrap());
+            let mut words = String::new();
+            stderr.read_line(&mut words).unwrap();
+            assert!(words.contains("reference of three-spheres"), "{words}");
+            Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+            let mut rest = String::new();
+            stderr.read_to_string(&mut rest).unwrap();
+            let code = child.wait().unwrap().code().unwrap();
+            match checkpoint::load(film) {
+                Ok(kept) if kept.film.sample_count() < samples => {
+                    assert!(code == 130 && rest.contains("goes on from here"), "{code}: {rest}");
+                    return kept;
+                }
+                Ok(_) => fs::remove_dir_all(directory.join("found")).unwrap(),
+                Err(_) => {}
+            }
+        }
+        panic!("no reference was caught half-made");
+    }
 
-    // With nothing but zeros in the samples that were kept, these are what is missing in the end.
-    let mut black = kept.film.clone();
-    black.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum::default());
-    checkpoint::save(&path, &black, &kept.description).unwrap();
-    let (code, _, errors) = report(&long(), at);
-    assert_eq!(code, 0, "{errors}");
-    let rest = checkpoint::load(&path).unwrap().film;
-    assert_eq!(rest.samples(), uninterrupted.samples());
-    for (half, sums) in rest.halves().iter().enumerate() {
-        for (pixel, sum) in sums.iter().enumerate() {
-            let mut both = *sum;
-            both.add(kept.film.halves()[half][pixel]);
-            assert_eq!(both, uninterrupted.halves()[half][pixel], "half {half}, pixel {pixel}");
+    #[test]
+    fn an_interrupted_reference_goes_on_with_the_samples_that_were_kept() {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let path = at.join("found/reference-three-spheres.exr");
+        let kept = interrupted_reference(at, &path, 16_384);
+        let (code, _, errors) = report(&long(), at);
+        assert_eq!(code, 0, "{errors}");
+        let whole = checkpoint::load(&path).unwrap();
+        let job = parse(whole.description.recipe(), "the reference").unwrap().job().unwrap();
+        let mut uninterrupted = job.new_film();
+        let mut renderer = create(&BackendChoice::named("cpu", None).unwrap()).unwrap();
+        renderer.accumulate(&job, 0..16_384, &mut uninterrupted, &AtomicBool::new(false)).unwrap();
+        assert!(whole.film == uninterrupted, "{} and {}", kept.film.samples(), whole.film.samples());
+
+        // With nothing but zeros in the samples that were kept, these are what is missing in the end.
+        let mut black = kept.film.clone();
+        black.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum::default());
+        checkpoint::save(&path, &black, &kept.description).unwrap();
+        let (code, _, errors) = report(&long(), at);
+        assert_eq!(code, 0, "{errors}");
+        let rest = checkpoint::load(&path).unwrap().film;
+        assert_eq!(rest.samples(), uninterrupted.samples());
+        for (half, sums) in rest.halves().iter().enumerate() {
+            for (pixel, sum) in sums.iter().enumerate() {
+                let mut both = *sum;
+                both.add(kept.film.halves()[half][pixel]);
+                assert_eq!(both, uninterrupted.halves()[half][pixel], "half {half}, pixel {pixel}");
+            }
         }
     }
 }

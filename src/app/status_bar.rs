@@ -251,7 +251,7 @@ mod tests {
             samples_per_pixel: contributions.iter().map(|part| part.samples_per_pixel).sum(),
             stats: Stats { paths: 1_000_000, rays: 2_560_000, ..Stats::default() },
             trace: Duration::from_secs(2),
-            error: Some(ErrorEstimate { rmse: 0.004, rel_mse: 0.0 }),
+            error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 1e-5, rel_mse: 0.0 }),
             contributions,
             ..Status::default()
         }

@@ -69,7 +69,7 @@ impl CurveSummary {
             curve: curve.clone(),
             about: runs.first().map_or_else(String::new, |run| run.about.clone()),
             slope: PowerLaw::through(&errors[first..]).map(|law| [law.slope, law.slope_deviation]),
-            efficiency: known().last().map_or(f64::NAN, |p| 1.0 / (p.rmse * p.rmse * p.wall_seconds)),
+            efficiency: known().next_back().map_or(f64::NAN, |p| 1.0 / (p.rmse * p.rmse * p.wall_seconds)),
             times: targets.iter().map(|target| time_to(&errors, *target)).collect(),
             points,
         }

@@ -35,7 +35,7 @@ fn independent_samples_are_independent() {
             for pixel in 0..PIXELS {
                 let value = |index| {
                     let word =
-                        sampling::numbers(&settings, pixel % 200 | (pixel / 200) << 16, index, 0)[which];
+                        sampling::numbers(&settings, (pixel % 200) | ((pixel / 200) << 16), index, 0)[which];
                     // Its mean over all numbers is 0.
                     (f64::from(sampling::unit_float(word)) * turns * std::f64::consts::TAU).cos()
                 };
