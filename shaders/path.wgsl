@@ -222,7 +222,8 @@ fn scatter_path(
     let normal = select(-point.outward, point.outward, front);
     let incidence = clamp(select(outward_cosine, -outward_cosine, front), 0.0, 1.0);
     let rho = sqrt(drawn.pair.x * (1.0 - drawn.pair.x));
-    let unit = vec3f((rho + rho) * sine_cosine.yx, 1.0 - (drawn.pair.x + drawn.pair.x));
+    let across = (rho + rho) * sine_cosine.yx;
+    let unit = vec3f(across.x, 1.0 - (drawn.pair.x + drawn.pair.x), across.y);
     let surface = Surface(row.weight, row.index, row.inverse_index, row.normal_share);
     let scattered = scatter(surface, direction, normal, incidence, front, unit, drawn.pair.x);
     var sent = scattered.direction;

@@ -267,7 +267,7 @@ fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet:
     let (sine, cosine) = (packet.draw.sine, packet.draw.cosine);
     let rho = L::sqrt(u0 * (one - u0));
     let rho = rho + rho;
-    let unit = V3 { x: rho * cosine, y: rho * sine, z: one - (u0 + u0) };
+    let unit = V3 { x: rho * cosine, y: one - (u0 + u0), z: rho * sine };
     let with_lens = has_lens::<L, NEEDS>(tables);
     let jitter = match (tables.rules.antialiasing, with_lens) {
         (false, _) => [l.constant(0.5); 2],
