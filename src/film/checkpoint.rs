@@ -22,8 +22,9 @@ use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// The version of what is in a film file, beyond the picture.
-pub const VERSION: u32 = 1;
+/// The version of what is in a film file beyond the picture, and of the numbers that its samples are made from: films
+/// of other numbers are neither resumed nor merged.
+pub const VERSION: u32 = 2;
 
 /// How an OpenEXR file begins.
 pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
