@@ -45,6 +45,16 @@ pub fn until(harness: &mut Harness<'_, Window>, what: &str, is_so: impl Fn(&Wind
     }
 }
 
+/// Draws frames until a label has this in it.
+pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
+    let begin = Instant::now();
+    while harness.query_all_by_label_contains(text).next().is_none() {
+        assert!(begin.elapsed() < PATIENCE, "never seen: {text}; {:?}", harness.state().messages());
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+}
+
 pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
     move |window| window.shown().is_some_and(|(samples, divisor)| samples >= at_least && divisor == 1)
 }

@@ -1,6 +1,6 @@
 //! Who traces, and pauses.
 
-use crate::common::{drag, has_samples, open, send, until};
+use crate::common::{drag, has_samples, open, send, until, until_seen};
 use eframe::egui::{Key, Modifiers, PointerButton};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -68,11 +68,6 @@ fn what_changes_with_the_estimate_moves_no_button() {
         Device::ALL.map(|device| harness.get_by_label(&Command::Device(device).name()).rect())
     };
     let before = places(&harness);
-    let is_predicted = |harness: &Harness<'_, Window>| {
-        harness.query_all_by_label_contains("RMSE 0.000001 in").next().is_some()
-    };
-    until(&mut harness, "an estimate", |window| window.status().history.len() > 5);
-    harness.run_steps(2);
-    assert!(is_predicted(&harness));
+    until_seen(&mut harness, "RMSE 0.000001 in");
     assert_eq!(places(&harness), before);
 }
