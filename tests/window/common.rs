@@ -38,8 +38,9 @@ pub fn until(harness: &mut Harness<'_, Window>, what: &str, is_so: impl Fn(&Wind
     let begin = Instant::now();
     while !is_so(harness.state()) {
         let state = harness.state();
-        let phase = &state.status().phase;
-        assert!(begin.elapsed() < PATIENCE, "never: {what}; {phase:?}; {:?}", state.messages());
+        let (status, shown) = (state.status(), state.shown());
+        let known = (status.run, &status.phase, status.samples_per_pixel, shown, state.listed_paths());
+        assert!(begin.elapsed() < PATIENCE, "never: {what}; {known:?}; {:?}", state.messages());
         std::thread::sleep(Duration::from_millis(2));
         harness.step();
     }

@@ -60,7 +60,9 @@ fn what_is_saved_is_the_film_and_can_be_opened_again() {
         let document = harness.state().document();
         assert_eq!(document.stage(), shown.stage());
         assert_eq!((document.camera, document.settings), (shown.camera, shown.settings));
-        until(&mut harness, "forty samples", has_samples(40));
+        until(&mut harness, "forty samples", |window| {
+            has_samples(40)(window) && window.status().samples_per_pixel >= 40
+        });
     }
 }
 

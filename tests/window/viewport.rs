@@ -100,7 +100,11 @@ fn the_wheel_and_keys_move_and_clicks_aim() {
     control(&harness, "Path of sample 3").click();
     harness.run_steps(30);
     assert!(is_open(&harness, 3) && !is_open(&harness, 1));
-    control(&harness, "Paths listed").set_value_accesskit(64.0);
+    // The pixel's figures above may just now get a row more; then the control is another and hears nothing.
+    for _ in 0..10 {
+        control(&harness, "Paths listed").set_value_accesskit(64.0);
+        harness.run_steps(5);
+    }
     until(&mut harness, "sixty-four paths", |window| window.listed_paths() == 64);
     control(&harness, "Paths listed").set_value_accesskit(1000.0);
     harness.run_steps(3);
