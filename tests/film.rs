@@ -372,9 +372,9 @@ fn another_version_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 2, &[0..10]), &description()).unwrap();
-    spoil(&path, b"version = 1", 10, b'2');
+    spoil(&path, b"version = 2", 10, b'1');
     let error = load_error(&path);
-    assert_eq!(error, CheckpointError::Version { path, version: 2 });
+    assert_eq!(error, CheckpointError::Version { path, version: 1 });
 }
 
 #[test]

@@ -5,14 +5,13 @@
 use std::path::Path;
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
+use weekender::compare::ROUNDING_BIAS;
 use weekender::control::{Control, FLAGS, SOURCE};
 use weekender::film::Film;
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
-
-/// Side of the blocks that pictures are compared in, pixels.
-const SIDE: usize = 8;
+use weekender::statistics::blocks::{BlockTest, Differences, Noise};
 
 const WIDTH: usize = 128;
 const HEIGHT: usize = 72;
@@ -68,26 +67,28 @@ fn of_film(film: &Film) -> Halves {
     })
 }
 
-/// Unpaired blocks: the number of blocks, the sum of z^2 and the largest |z|.
-fn blocks(pictures: &[Halves; 2]) -> (f64, f64, f64) {
-    let (mut count, mut squares, mut largest) = (0.0, 0.0, 0.0_f64);
-    for block in 0..(WIDTH / SIDE) * (HEIGHT / SIDE) {
-        let (left, top) = (block % (WIDTH / SIDE) * SIDE, block / (WIDTH / SIDE) * SIDE);
-        let (mut difference, mut variance) = (0.0, 0.0);
-        for pixel in 0..SIDE * SIDE {
-            let index = (top + pixel / SIDE) * WIDTH + left + pixel % SIDE;
-            for (halves, sign) in pictures.iter().zip([1.0, -1.0]) {
-                let [a, b] = [0, 1].map(|half: usize| halves[half][index].iter().sum::<f64>());
-                difference += sign * (a + b) / 2.0;
-                variance += (a - b).powi(2) / 4.0;
-            }
-        }
-        let z: f64 = difference / variance.sqrt();
-        count += 1.0;
-        squares += z * z;
-        largest = largest.max(z.abs());
-    }
-    (count, squares, largest)
+/// Unpaired blocks of the two pictures' difference, of `samples` each.
+fn blocks([theirs, ours]: &[Halves; 2], samples: u64) -> BlockTest {
+    let of_pixel = |halves: &Halves, pixel: usize, of: fn(f64, f64) -> f64| {
+        let [a, b] = [halves[0][pixel], halves[1][pixel]];
+        [0, 1, 2].map(|channel| of(a[channel], b[channel]) / 2.0)
+    };
+    let difference = |pixel, of: fn(f64, f64) -> f64| {
+        let (theirs, ours) = (of_pixel(theirs, pixel, of), of_pixel(ours, pixel, of));
+        [0, 1, 2].map(|channel| ours[channel] - theirs[channel])
+    };
+    let values: Vec<_> = (0..WIDTH * HEIGHT).map(|pixel| difference(pixel, |a, b| a + b)).collect();
+    let variances: Vec<_> =
+        (0..WIDTH * HEIGHT).map(|pixel| difference(pixel, |a, b| a - b).map(|x| x * x)).collect();
+    BlockTest::of(&Differences {
+        width: WIDTH as u32,
+        values: &values,
+        noise: Noise::Variances(&variances),
+        steps: None,
+        tolerance: ROUNDING_BIAS,
+        // Both halves of each picture may hold the same rare path.
+        rare: 2.0 / samples as f64,
+    })
 }
 
 fn check(scene: &str, samples: u64) {
@@ -107,15 +108,13 @@ fn check(scene: &str, samples: u64) {
     let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
     renderer.accumulate(&job, 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
 
-    let (count, squares, largest) = blocks(&[theirs, of_film(&film)]);
-    let spread = (squares - count) / f64::sqrt(2.0 * count);
+    let test = blocks(&[theirs, of_film(&film)], samples);
+    let (excess, largest) = (test.largest_excess(), test.largest);
     println!(
-        "{scene}: {count} blocks, sum of z^2 {squares:.1}, {spread:.2} deviations, largest {largest:.2}"
+        "{scene}: sum of z^2 {excess:.2} deviations above, largest {largest:.2} of {:.2}",
+        test.largest_limit
     );
-    assert!(spread.abs() <= 4.0, "{scene}: {squares} for {count} blocks");
-    // What the largest of 144 normal numbers stays below in 99 of 100 cases (Sidak), and a little for variances
-    // that are estimated from 64 pixels.
-    assert!(largest <= 4.2, "{scene}: {largest}");
+    assert!(test.is_within() && !test.is_too_near(), "{scene}: {excess} deviations, largest {largest}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ mod text;
 mod verdict;
 
 pub use side::Side;
-pub use verdict::{Comparison, Evidence, PairedSamples, PairedSums, compare};
+pub use verdict::{Comparison, Evidence, PairedSamples, PairedSums, ROUNDING_BIAS, compare};
 
 use crate::cli::{CompareOptions, JsonTarget};
 use crate::failure::Failure;
