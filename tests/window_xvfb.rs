@@ -304,5 +304,5 @@ fn without_a_display_the_message_names_the_way_out() {
         .unwrap();
     assert_eq!(output.status.code(), Some(2), "a display that does not answer");
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(told.contains("--batch"), "{told}");
+    assert!(told.contains(":4711 does not answer") && told.contains("--batch"), "{told}");
 }

@@ -64,6 +64,10 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         });
         match eframe::run_native("weekender", native, create) {
             Ok(()) => return Ok(ExitCode::SUCCESS),
+            // The window system's own words name places in its source; another renderer would not help.
+            Err(eframe::Error::WinitEventLoop(_)) => {
+                bail!("the display {} does not answer; {REMEDY}", display())
+            }
             Err(error) => failures.push(format!("with {renderer}: {error}")),
         }
     }
@@ -99,10 +103,12 @@ fn native_options(renderer: eframe::Renderer) -> eframe::NativeOptions {
 
 /// Whether the system has somewhere to put a window.
 fn has_display() -> bool {
-    if !cfg!(all(unix, not(target_vendor = "apple"))) {
-        return true;
-    }
-    ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
-        .iter()
-        .any(|name| std::env::var_os(name).is_some_and(|value| !value.is_empty()))
+    !cfg!(all(unix, not(target_vendor = "apple"))) || !display().is_empty()
+}
+
+/// The displays that the environment names.
+fn display() -> String {
+    let values = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].map(std::env::var_os);
+    let named: Vec<_> = values.iter().flatten().map(|value| value.to_string_lossy()).collect();
+    named.join(" ").trim().to_owned()
 }
