@@ -4,6 +4,7 @@ use super::Outcome;
 use crate::app::files::Message;
 use crate::app::window::Window;
 use crate::output::OutputFormat;
+use crate::recipe::plain_name;
 use eframe::egui::{self, Key, RichText, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
@@ -100,7 +101,7 @@ const SEEN: Duration = Duration::from_millis(300);
 impl PathBox {
     pub fn new(purpose: Purpose, name: &str, directory: Option<&Path>) -> Self {
         let file = match purpose.endings() {
-            [ending] if purpose.is_saving() => format!("{}.{ending}", plain(name)),
+            [ending] if purpose.is_saving() => format!("{}.{ending}", plain_name(name)),
             _ => String::new(),
         };
         let path = directory.map_or_else(|| PathBuf::from(&file), |directory| directory.join(&file));
@@ -236,11 +237,6 @@ fn place_of(path: &Path) -> (Option<PathBuf>, String) {
     let name = whole.file_name().map(|name| name.to_string_lossy().into_owned());
     let directory = whole.parent().filter(|directory| directory.is_dir());
     (directory.map(Path::to_owned), name.unwrap_or_default())
-}
-
-/// A name as a file system takes it.
-fn plain(name: &str) -> String {
-    name.chars().map(|c| if c.is_alphanumeric() || "-_. ".contains(c) { c } else { '-' }).collect()
 }
 
 #[cfg(test)]
