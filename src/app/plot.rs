@@ -2,6 +2,7 @@
 //! the last restart, how it should go on, and the target, which can be typed or dragged.
 
 use super::command::Command;
+use super::document::Stop;
 use super::theme;
 use super::widgets::compact;
 use super::window::Window;
@@ -64,6 +65,11 @@ fn header(window: &mut Window, ui: &mut Ui, status: &Status) {
             ui.add(number.update_while_editing(false))
                 .accessible_name("Target error")
                 .on_hover_text("The render ends here; the line in the plot can be dragged, too");
+        } else {
+            let button = ui.add(egui::Button::new("Set a target").small());
+            if button.on_hover_text("End the render at an estimated error, which can be dragged").clicked() {
+                window.document.stop.noise = Some(Stop::NOISE);
+            }
         }
         if let Some(prediction) = prediction(status, window.document.stop.noise) {
             ui.label(RichText::new(prediction_words(&prediction)).small());

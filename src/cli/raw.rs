@@ -141,7 +141,7 @@ pub(super) struct RawRender {
     pub json: Option<PathBuf>,
 
     /// What draws the window; auto: wgpu, but gl where no adapter is hardware
-    #[arg(long, value_enum, default_value = "auto")]
+    #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
     pub draw_with: DrawWith,
 
     /// Write the times of the window's frames

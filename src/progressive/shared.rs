@@ -94,9 +94,10 @@ impl Shared {
 
     pub(super) fn put_picture(&self, picture: Picture) {
         let mut slot = lock(&self.picture);
+        // Before the picture can be taken: the wish that follows is for the next.
+        self.is_picture_wanted.store(false, Ordering::Release);
         *slot = Some(picture);
         drop(slot);
-        self.is_picture_wanted.store(false, Ordering::Release);
         self.give_notice();
     }
 }

@@ -75,6 +75,21 @@ fn a_render_ends_at_the_target_and_goes_on_to_a_lower_one() {
 }
 
 #[test]
+fn a_target_can_be_set_where_there_is_none() {
+    let mut harness = open("--scene three-spheres --size 64x36 --device cpu --samples 4000000");
+    assert_eq!(harness.state().document().stop.noise, None);
+    send(&mut harness, Command::Plot);
+    until(&mut harness, "an estimate", |window| window.status().history.len() > 3);
+    harness.run_steps(2);
+    harness.get_by_label("Set a target").click();
+    harness.run_steps(2);
+    let before = target(&harness);
+    let from = line(&harness);
+    drag(&mut harness, from, from - vec2(0.0, 10.0));
+    assert!(target(&harness) > before);
+}
+
+#[test]
 fn the_points_are_copied_and_saved() {
     let mut harness = open("--scene three-spheres --size 64x36 --device cpu --samples 16");
     let has_nothing = harness.state().useless(Command::SavePlot).is_some();
