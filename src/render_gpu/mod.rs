@@ -67,7 +67,9 @@ impl GpuRenderer {
         let report = GpuReport { timer: dispatches.timer(), ..GpuReport::default() };
         let messages = if gpu.adapter.is_software {
             let adapter = &gpu.adapter;
-            vec![format!("{adapter} is no GPU: the processor does its work, slower than the CPU backend would")]
+            vec![format!(
+                "{adapter} is no GPU: the processor does its work, slower than the CPU backend would"
+            )]
         } else {
             Vec::new()
         };
