@@ -60,7 +60,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             let sphere = vec4f(v3(base, 8u), f(base, 11u));
             words[base] = near_root(ray, sphere, 1u);
             words[base + 1u] = nearest_root(ray, sphere, 1u);
-            words[base + 2u] = acne_root(ray, sphere);
+            words[base + 2u] = book_root(ray, sphere, f(base, 12u));
         }
         case PROBE_ANCHORED: {
             let ray = probe_ray(base);
@@ -77,6 +77,9 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             let point = surface_point(ray, f(base, 12u), v3(base, 8u), f(base, 11u), f(base, 13u));
             put3(base, 0u, point.position);
             put3(base, 3u, point.outward);
+            let books = book_point(ray, f(base, 12u), v3(base, 8u), f(base, 11u));
+            put3(base, 6u, books.position);
+            put3(base, 9u, books.outward);
         }
         case PROBE_SCATTER: {
             let surface = Surface(f(base, 0u), f(base, 1u), f(base, 2u), f(base, 3u));

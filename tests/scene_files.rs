@@ -102,7 +102,7 @@ fn rules() -> impl Strategy<Value = Rules> {
         DielectricLaws::TotalReflection,
         DielectricLaws::Schlick,
     ]);
-    let surface = prop::sample::select(vec![Surface::Exact, Surface::Acne]);
+    let surface = prop::sample::select(vec![Surface::Exact, Surface::Acne, Surface::Book]);
     let transfer =
         prop::sample::select(vec![Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2]);
     (shading, diffuse, dielectric, surface, any::<bool>(), any::<bool>(), transfer).prop_map(

@@ -43,8 +43,8 @@ pub struct Overrides {
     pub antialiasing: bool,
     /// Rays are traced at all.
     pub rays: bool,
-    /// The book's lower bound of 0.
-    pub acne: bool,
+    /// How rays leave the surface that they start on.
+    pub surface: Surface,
     /// Lambertian surfaces send light evenly over the hemisphere.
     pub hemisphere: bool,
     /// The reflectance is that of the picture's strip.
@@ -56,12 +56,14 @@ pub struct Overrides {
 }
 
 /// The value of an override constant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constant {
     /// A `bool`.
     Flag(bool),
     /// A `u32`.
     Number(u32),
+    /// An `f32`.
+    Real(f64),
 }
 
 impl Constant {
@@ -70,6 +72,7 @@ impl Constant {
         match self {
             Constant::Flag(flag) => f64::from(u8::from(flag)),
             Constant::Number(number) => f64::from(number),
+            Constant::Real(real) => real,
         }
     }
 }
@@ -95,7 +98,7 @@ impl Default for Overrides {
             sobol: true,
             antialiasing: true,
             rays: true,
-            acne: false,
+            surface: Surface::Exact,
             hemisphere: false,
             reflectance_strips: false,
             shading: Shading::Path,
@@ -130,7 +133,7 @@ impl Overrides {
             rays: features.rays,
             sobol: job.settings().sampler == SamplerKind::Sobol,
             antialiasing: rules.antialiasing,
-            acne: rules.surface == Surface::Acne,
+            surface: rules.surface,
             hemisphere: rules.diffuse == Diffuse::Hemisphere,
             reflectance_strips: rules.reflectance_strips,
             shading: rules.shading,
@@ -147,7 +150,7 @@ impl Overrides {
             rays: needed.rays,
             sobol: needed.sobol,
             antialiasing: needed.antialiasing,
-            acne: needed.acne,
+            surface: needed.surface,
             hemisphere: needed.hemisphere,
             reflectance_strips: needed.reflectance_strips,
             shading: needed.shading,
@@ -158,7 +161,7 @@ impl Overrides {
 
     /// Names in the shader and values.
     pub fn constants(&self) -> Vec<(&'static str, Constant)> {
-        use Constant::{Flag, Number};
+        use Constant::{Flag, Number, Real};
         vec![
             ("LAMBERTIAN", Flag(self.lambertian)),
             ("METAL", Flag(self.metal)),
@@ -177,7 +180,8 @@ impl Overrides {
             ("SOBOL", Flag(self.sobol)),
             ("ANTIALIASING", Flag(self.antialiasing)),
             ("RAYS", Flag(self.rays)),
-            ("ACNE", Flag(self.acne)),
+            ("BOOK_ARITHMETIC", Flag(self.surface != Surface::Exact)),
+            ("BOOK_T_MIN", Real(self.surface.smallest_distance().unwrap_or(0.0))),
             ("HEMISPHERE", Flag(self.hemisphere)),
             ("REFLECTANCE_STRIPS", Flag(self.reflectance_strips)),
             ("SHADING", Number(shading_tag(self.shading))),
@@ -197,7 +201,8 @@ impl Overrides {
             (self.anchored, "anchored"),
             (self.hierarchy && !self.cwbvh, "hierarchy"),
             (self.hierarchy && self.cwbvh, "compressed hierarchy"),
-            (self.acne, "acne"),
+            (self.surface == Surface::Acne, "acne"),
+            (self.surface == Surface::Book, "the book's arithmetic"),
             (self.hemisphere, "hemisphere"),
             (self.reflectance_strips, "strips"),
         ]
