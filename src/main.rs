@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
-use weekender::{app, batch, bench, compare, diff, report};
+use weekender::{app, batch, bench, compare, diff, report, stress};
 
 fn main() -> ExitCode {
     run().unwrap_or_else(|failure| failure.report())
@@ -19,6 +19,7 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Diff(options) => diff::run(&options),
         Request::Compare(options) => compare::run(&options),
         Request::Report(options) => report::run(&options),
+        Request::Stress(options) => stress::run(&options),
         Request::Batch(options) => batch::run(*options),
     }
 }
