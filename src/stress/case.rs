@@ -1,7 +1,7 @@
 //! A case of the suite: a scene, what is stiff about it, and what it must give.
 
 use super::far::with_far_spheres;
-use crate::recipe::Recipe;
+use crate::recipe::{Recipe, plain_name};
 use std::fmt;
 
 /// What the cases of a family have in common.
@@ -72,8 +72,20 @@ impl fmt::Display for Expected {
     }
 }
 
+/// How the window shows a case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Watch {
+    /// What the menu calls it.
+    pub title: &'static str,
+    /// What to watch, in a sentence or two.
+    pub look_for: &'static str,
+}
+
+/// Size of the window's picture of a case, pixels.
+const SHOWN_SIZE: [u32; 2] = [600, 400];
+
 /// A case.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Case {
     /// Family and what tells it from its siblings: `copies/110`.
     pub id: String,
@@ -91,11 +103,25 @@ pub struct Case {
     pub tolerance: f64,
     /// A scene of the same kind without what is stiff, to hold the time against.
     pub tame: Option<Recipe>,
-    /// What to watch in the window, in a sentence; `None` for what is no picture to look at.
-    pub watch: Option<&'static str>,
+    /// How the window shows it; `None` for what is no picture to look at.
+    pub watch: Option<Watch>,
     /// Whether it is among the few that the tests run.
     pub is_quick: bool,
 }
+
+impl fmt::Debug for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Case").field("id", &self.id).finish_non_exhaustive()
+    }
+}
+
+impl PartialEq for Case {
+    fn eq(&self, other: &Self) -> bool {
+        self.id == other.id
+    }
+}
+
+impl Eq for Case {}
 
 /// Spheres from which on every backend takes a hierarchy, so that distant ones change nothing.
 const HIERARCHY_SPHERES: usize = 24;
@@ -160,10 +186,10 @@ impl Case {
         Case { tame: Some(tame), ..self }
     }
 
-    /// Shown in the window with this sentence.
+    /// Shown in the window.
     #[must_use]
-    pub fn watched(self, watch: &'static str) -> Self {
-        Case { watch: Some(watch), ..self }
+    pub fn watched(self, title: &'static str, look_for: &'static str) -> Self {
+        Case { watch: Some(Watch { title, look_for }), ..self }
     }
 
     /// Run by the tests, too.
@@ -176,6 +202,18 @@ impl Case {
     #[must_use]
     pub fn of_unit(self, unit: f64) -> Self {
         Case { unit, ..self }
+    }
+
+    /// The picture in a size to look at, with a name that can be a file's.
+    pub fn shown(&self) -> Recipe {
+        let mut recipe = Recipe { name: plain_name(&self.id), samples_per_pixel: 256, ..self.recipe.clone() };
+        [recipe.settings.width, recipe.settings.height] = SHOWN_SIZE;
+        recipe
+    }
+
+    /// What menus call it: its id where it is not shown.
+    pub fn title(&self) -> &str {
+        self.watch.map_or(&self.id, |watch| watch.title)
     }
 
     /// The forms that it is rendered in.

@@ -18,9 +18,9 @@ mod table;
 mod verdict;
 
 pub use backend::Backend;
-pub use case::{Case, Expected, Family, Form};
+pub use case::{Case, Expected, Family, Form, Watch};
 pub use exact::first_hit;
-pub use families::cases;
+pub use families::{cases, shown_cases};
 pub use report::{BookMeasured, CaseReport, FirstHits, Measured, Report};
 pub use suite::{Suite, by_the_book};
 pub use verdict::Verdict;

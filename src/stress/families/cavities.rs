@@ -38,6 +38,7 @@ pub fn cavities() -> Vec<Case> {
             let is_seen = material_name == "white" && place == "touching";
             let case = if is_seen {
                 case.watched(
+                    "A white ball on the ground, from within",
                     "Nothing: the room is closed and black. With the book's arithmetic, light comes in where ball \
                      and ground touch, and through the wall.",
                 )

@@ -50,9 +50,6 @@ pub fn copies() -> Vec<Case> {
         let expected = Expected::Every { value, why };
         cases.push(Case::new(&COPIES, name, stiff, recipe).expect(expected, 1e-6).quick());
     }
-    cases[0].watch = Some(
-        "The ball is evenly grey. The book's arithmetic shows it, too, but what is nearer than .001 is lost to it.",
-    );
 
     let mut balls: Vec<Ball> = (0..5000).map(|index| scattered(index, 0.4)).collect();
     balls.extend(vec![balls[0]; 120]);

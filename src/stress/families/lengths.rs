@@ -45,7 +45,7 @@ pub fn moved_scenes() -> Vec<Case> {
             let case = case.expect(expected, tolerance).beside(tame());
             let case = if exponent == 1 { case.quick() } else { case };
             if exponent == 5 {
-                case.watched("The balls are round and their edges sharp, as at the origin. The book's f32 has one digit after the point here.")
+                case.watched("A hundred thousand units from the origin", "The balls are round and their edges sharp, as at the origin. The book's f32 has one digit after the point here.")
             } else {
                 case
             }
@@ -67,11 +67,13 @@ pub fn scaled_scenes() -> Vec<Case> {
             let case = case.expect(expected, 2e-6).beside(tame()).quick();
             match exponent {
                 -3 => case.watched(
+"Balls of half a millimetre",
                     "Three balls of half a millimetre. The book's threshold of .001 is twice their radius, so \
                      that they cast no shadow and glass is empty.",
                 ),
                 6 => case.watched(
-                    "The same, a billion times as large: now .001 is less than a rounding error, and the \
+"Balls of five hundred kilometres",
+"The same, a billion times as large: now .001 is less than a rounding error, and the \
                      book's arithmetic finds each surface again.",
                 ),
                 _ => case,
@@ -130,6 +132,7 @@ pub fn lenses() -> Vec<Case> {
     let recipe = of_scene(scene(balls, Sky::default()), look);
     let stiff = "balls of 1e-4 on a ground of 1e6: ten orders of magnitude in one view";
     cases.push(Case::new(&LENSES, "marbles-on-a-planet", stiff, recipe).of_unit(1e-3).watched(
+"Marbles on a planet",
         "Two marbles with shadows on a smooth ground. The book's arithmetic loses the marbles' shadows below its \
          threshold, and rounds the ground to steps.",
     ));

@@ -41,6 +41,22 @@ pub fn families() -> impl Iterator<Item = &'static Family> {
     ENTRIES.iter().map(|(family, _)| *family)
 }
 
+/// The cases that the window shows. They are listed apart, so that it need not build the largest scenes.
+pub fn shown_cases() -> &'static [Case] {
+    static SHOWN: OnceLock<Vec<Case>> = OnceLock::new();
+    SHOWN.get_or_init(|| {
+        let lists: [fn() -> Vec<Case>; 6] = [
+            files::files,
+            lengths::scaled_scenes,
+            lengths::moved_scenes,
+            lengths::lenses,
+            cavities::cavities,
+            glass::indices,
+        ];
+        lists.into_iter().flat_map(|list| list()).filter(|case| case.watch.is_some()).collect()
+    })
+}
+
 /// All cases, family by family. Built once: the largest scenes have a hundred thousand spheres.
 pub fn cases() -> &'static [Case] {
     static CASES: OnceLock<Vec<Case>> = OnceLock::new();
@@ -87,7 +103,8 @@ mod tests {
         for family in families() {
             assert!(cases().iter().any(|case| case.family == family), "{}", family.id);
         }
-        assert!(cases().iter().filter(|case| case.watch.is_some()).count() >= 10);
+        let all = cases().iter().filter(|case| case.watch.is_some()).count();
+        assert!(all >= 10 && all == shown_cases().len(), "{all}");
     }
 
     #[test]
