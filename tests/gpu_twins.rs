@@ -10,7 +10,7 @@ use weekender::film::FIXED_POINT_MAX;
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, V3, Wide};
-use weekender::render_cpu::material::{Surface, reflectance, scatter};
+use weekender::render_cpu::material::{Incidence, Surface, reflectance, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, acne_root, anchored_root, anchored_surface_point, near_root, nearest_root,
     surface_point,
@@ -326,7 +326,8 @@ fn scattering() {
             let (cosine, coin) = (float(&input, 13), float(&input, 15));
             let (d, n, unit) = (vector(&input, 4), vector(&input, 7), vector(&input, 10));
             let front = input[14] != 0;
-            let sent = scatter::<L, true>(L, &surface, laws, d, n, cosine, front, unit, coin);
+            let sent =
+                scatter::<L, true>(L, &surface, laws, d, n, &Incidence::of(L, cosine), front, unit, coin);
             let flags = u32::from(sent.refracts) | u32::from(sent.is_metal) << 1;
             if output[3] != flags {
                 // A coin within rounding of the reflectance.

@@ -54,7 +54,7 @@ impl SceneData {
 
     /// Builds it, puts spheres and rows in the order of its leaves, and returns its depth.
     fn take_cwbvh(&mut self, job: &RenderJob, tables: &Tables<f32>) -> usize {
-        let built = Cwbvh::build(tables.spheres_of_hierarchy(job));
+        let built = Cwbvh::build(tables.spheres_of_hierarchy(job), tables.origin);
         self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
         let rows: Vec<GpuRow> = built.order.iter().map(|i| self.rows[*i as usize]).collect();
         self.rows[..rows.len()].copy_from_slice(&rows);
