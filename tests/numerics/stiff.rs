@@ -258,8 +258,13 @@ fn total_reflection_lasts() {
     let scene = under_white_sky(&[(DVec3::ZERO, 1.0, glass(1.5))]);
     // Rays at the picture's edge meet the surface near the critical angle, sine 2/3.
     let eye = DVec3::new(0.9, 0.0, 0.0);
-    let side =
-        Camera { look_from: eye, look_at: eye + DVec3::Y, vup: DVec3::Z, vfov_degrees: 100.0, ..Camera::BOOK };
+    let side = Camera {
+        look_from: eye,
+        look_at: eye + DVec3::Y,
+        vup: DVec3::Z,
+        vfov_degrees: 100.0,
+        ..Camera::BOOK
+    };
     let settings = RenderSettings { max_depth: 10_000, ..size(64, 64) };
     let job = job(&scene, side, settings);
     let film = render(&mut widest(), &job, 0..4);
