@@ -78,11 +78,8 @@ impl Facts {
     /// Compares spheres of about one size and place: those of one cell, and those beyond its border where one lies close
     /// to it.
     fn compare_neighbours(&mut self, spheres: &[Sphere]) {
-        let mut cells: Vec<(u64, u32)> = spheres
-            .par_iter()
-            .enumerate()
-            .map(|(index, sphere)| (marks(sphere).next().unwrap_or(0), index as u32))
-            .collect();
+        let mut cells: Vec<(u64, u32)> =
+            spheres.par_iter().enumerate().map(|(index, sphere)| (own_mark(sphere), index as u32)).collect();
         cells.par_sort_unstable();
         for cell in cells.chunk_by(|a, b| a.0 == b.0).filter(|cell| cell.len() > 1) {
             let mut members: Vec<u32> = cell.iter().map(|(_, index)| *index).collect();
@@ -94,11 +91,13 @@ impl Facts {
                 }
             }
         }
+        let occupied = Occupied::by(&cells);
         let beyond_borders: Vec<[u32; 2]> = spheres
             .par_iter()
             .enumerate()
             .flat_map_iter(|(index, sphere)| {
-                let beyond = marks(sphere).skip(1).flat_map(|mark| members_of(&cells, mark));
+                let marks = marks_beyond_borders(sphere).into_iter().filter(|mark| occupied.may_hold(*mark));
+                let beyond = marks.flat_map(|mark| members_of(&cells, mark));
                 beyond.map(move |other| [index as u32, other])
             })
             .collect();
@@ -147,27 +146,69 @@ fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
     cells[first..].iter().take_while(move |cell| cell.0 == mark).take(CELL_LIMIT).map(|(_, index)| *index)
 }
 
+/// Most cells that hold nothing, told without a search: one bit for those marks that end alike.
+struct Occupied {
+    bits: Vec<u64>,
+}
+
+impl Occupied {
+    fn by(cells: &[(u64, u32)]) -> Self {
+        // Sixteen times as many bits as spheres: one empty cell in sixteen is searched for in vain.
+        let mut occupied = Occupied { bits: vec![0; (cells.len() / 4).next_power_of_two()] };
+        for (mark, _) in cells {
+            let (word, bit) = occupied.place(*mark);
+            occupied.bits[word] |= bit;
+        }
+        occupied
+    }
+
+    fn place(&self, mark: u64) -> (usize, u64) {
+        ((mark >> 6) as usize & (self.bits.len() - 1), 1 << (mark & 63))
+    }
+
+    fn may_hold(&self, mark: u64) -> bool {
+        let (word, bit) = self.place(mark);
+        self.bits[word] & bit != 0
+    }
+}
+
 /// How far beyond a border of its cell a sphere may lie that makes a layer with another, in cells.
 const REACH: f64 = 2.0 * LAYER_SHARE;
 
-/// The marks of the cells that a sphere lies in, which comes first, or close to. A cell holds spheres of about one size
-/// and place, and is about as wide as their radius: hardly any two spheres of a plain scene share one.
-fn marks(sphere: &Sphere) -> impl Iterator<Item = u64> {
-    // Radii that are powers of two are common, and lie far from a border of sizes.
-    let sizes = cells_near(sphere.radius.log2() + 0.37);
-    let center = sphere.center;
-    sizes.into_iter().flatten().flat_map(move |size| {
-        let [x, y, z] = (center / size.exp2()).to_array().map(cells_near);
-        let mark = move |[x, y, z]: [f64; 3]| {
-            [size, x, y, z].into_iter().fold(0x9E37_79B9_7F4A_7C15, |hash: u64, number| {
-                let mixed = (hash ^ (number + 0.0).to_bits()).wrapping_mul(0xFF51_AFD7_ED55_8CCD);
-                mixed ^ (mixed >> 29)
-            })
-        };
-        x.into_iter().flatten().flat_map(move |x| {
-            y.into_iter().flatten().flat_map(move |y| z.into_iter().flatten().map(move |z| mark([x, y, z])))
-        })
+/// Radii that are powers of two are common: so moved, they lie far from a border of sizes.
+const SIZE_SHIFT: f64 = 0.37;
+
+/// The mark of the cell that a sphere lies in. A cell holds spheres of about one size and place, and is about as wide as
+/// their radius: hardly any two spheres of a plain scene share one.
+fn own_mark(sphere: &Sphere) -> u64 {
+    let size = (sphere.radius.log2() + SIZE_SHIFT).floor();
+    let [x, y, z] = (sphere.center / size.exp2()).floor().to_array();
+    mark([size, x, y, z])
+}
+
+fn mark(cell: [f64; 4]) -> u64 {
+    cell.into_iter().fold(0x9E37_79B9_7F4A_7C15, |hash, number| {
+        let mixed = (hash ^ (number + 0.0).to_bits()).wrapping_mul(0xFF51_AFD7_ED55_8CCD);
+        mixed ^ (mixed >> 29)
     })
+}
+
+/// The marks of the cells that a sphere lies close to.
+fn marks_beyond_borders(sphere: &Sphere) -> Vec<u64> {
+    let mut marks = Vec::new();
+    let sizes = cells_near(sphere.radius.log2() + SIZE_SHIFT);
+    for (which, size) in sizes.into_iter().flatten().enumerate() {
+        let [x, y, z] = (sphere.center / size.exp2()).to_array().map(cells_near);
+        if which == 0 && [x, y, z].iter().all(|cells| cells[1].is_none()) {
+            continue;
+        }
+        let all = x.into_iter().flatten().flat_map(|x| {
+            y.into_iter().flatten().flat_map(move |y| z.into_iter().flatten().map(move |z| [x, y, z]))
+        });
+        // The first of all is the sphere's own.
+        marks.extend(all.skip(usize::from(which == 0)).map(|[x, y, z]| mark([size, x, y, z])));
+    }
+    marks
 }
 
 /// The cell that a number lies in, and the next where it lies close to its border.
