@@ -27,8 +27,18 @@ pub fn note(text: &str) {
         // Writing to a string cannot fail.
         let _ = writeln!(said, "... and {left} lines more");
     }
+    say(&said);
+}
+
+/// As [`note`], for a text of any number of lines, which may have colours of the program's own: see
+/// [`print_painted`].
+pub fn note_painted(text: &str) {
+    say(&painted(text));
+}
+
+fn say(text: &str) {
     let mut stderr = io::stderr().lock();
-    let _ = stderr.write_all(said.as_bytes()).and_then(|()| stderr.flush());
+    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }
 
 /// Writes a result for a person to standard output.
@@ -46,12 +56,6 @@ pub fn print(text: &str) -> io::Result<()> {
 /// As [`print`].
 pub fn print_painted(text: &str) -> io::Result<()> {
     write_out(&painted(text))
-}
-
-/// As [`note`], for a text with colours of the program's own.
-pub fn note_painted(text: &str) {
-    let mut stderr = io::stderr().lock();
-    let _ = stderr.write_all(painted(text).as_bytes()).and_then(|()| stderr.flush());
 }
 
 /// Writes a result for another program to standard output, as it is.

@@ -21,6 +21,10 @@ pub(super) fn rescue(
     film: &Film,
     description: &Description,
 ) -> Result<PathBuf, String> {
+    if let Some(state) = state_directory() {
+        // That it cannot be made shows when the file cannot be.
+        let _ = std::fs::create_dir_all(state);
+    }
     keep_in(&places(render), render, film, description)
 }
 
@@ -32,9 +36,10 @@ fn keep_in(
 ) -> Result<PathBuf, String> {
     let mut reasons = Vec::new();
     for place in places {
-        // That it cannot be made shows when the file cannot be.
-        let _ = std::fs::create_dir_all(place);
-        let Some(path) = free_name(place, &render.recipe.name) else { continue };
+        let Some(path) = free_name(place, &render.recipe.name) else {
+            reasons.push(format!("{} (every name is taken)", place.display()));
+            continue;
+        };
         match checkpoint::save(&path, film, description) {
             Ok(()) => return Ok(path),
             Err(error) => reasons.push(format!("{} ({})", place.display(), error.reason)),
@@ -56,16 +61,12 @@ fn places(render: &RenderOptions) -> Vec<PathBuf> {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
         _ => PathBuf::from("."),
     };
-    let home = env::home_dir().filter(|home| home.is_absolute());
-    let state = env::var_os("XDG_STATE_HOME").map(PathBuf::from).filter(|state| state.is_absolute());
-    let state = state.or_else(|| home.as_ref().map(|home| home.join(".local/state")));
     let all = [
-        // One that is missing is not made: the name may be a slip.
-        Some(beside(&render.out)).filter(|place| place.is_dir()),
-        render.checkpoint.as_deref().map(beside).filter(|place| place.is_dir()),
+        Some(beside(&render.out)),
+        render.checkpoint.as_deref().map(beside),
         Some(env::temp_dir()),
-        state.map(|state| state.join("weekender")),
-        home,
+        state_directory(),
+        home(),
     ];
     let mut places: Vec<PathBuf> = Vec::new();
     for place in all.into_iter().flatten() {
@@ -74,6 +75,16 @@ fn places(render: &RenderOptions) -> Vec<PathBuf> {
         }
     }
     places
+}
+
+/// Where programs keep what should outlast them.
+fn state_directory() -> Option<PathBuf> {
+    let state = env::var_os("XDG_STATE_HOME").map(PathBuf::from).filter(|state| state.is_absolute());
+    Some(state.or_else(|| Some(home()?.join(".local/state")))?.join("weekender"))
+}
+
+fn home() -> Option<PathBuf> {
+    env::home_dir().filter(|home| home.is_absolute())
 }
 
 fn free_name(directory: &Path, picture: &str) -> Option<PathBuf> {
@@ -96,6 +107,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         std::fs::write(at("file"), "").unwrap();
+        std::fs::create_dir_all(at("made/deep")).unwrap();
         let render = options(&[]);
         let mut film = render.job.new_film();
         film.record(0..6, 0).unwrap();

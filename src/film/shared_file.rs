@@ -60,7 +60,8 @@ impl SharedFile {
     /// Remembers what is there.
     fn look(&mut self) {
         // Opened first: should it be replaced in between, the stamp is newer, and a look at the content decides.
-        self.base = File::open(&self.path).ok();
+        // Elsewhere a file that is open cannot be replaced.
+        self.base = if cfg!(unix) { File::open(&self.path).ok() } else { None };
         self.seen = Stamp::of(&self.path).ok().flatten();
     }
 

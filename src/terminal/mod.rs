@@ -26,7 +26,7 @@ pub fn print(text: &str) -> Result<()> {
 /// As [`print`]; what goes to standard error cannot fail.
 pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
     if is_taken(json) {
-        console::note(text);
+        console::note_painted(text);
         return Ok(());
     }
     print(text)
