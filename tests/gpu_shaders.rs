@@ -101,7 +101,7 @@ macro_rules! same_layout {
 fn layouts_agree() {
     let module = parsed(EntryPoint::PathTrace);
     same_layout!(module, GpuCamera, "Camera", eye, tau, u, focus_tau, v, scale_x, w, scale_y, offset, size);
-    same_layout!(module, GpuAnchoredSphere, "AnchoredSphere", anchor, curvature, inward, radius);
+    same_layout!(module, GpuAnchoredSphere, "AnchoredSphere", anchor, curvature, inward, flags);
     same_layout!(
         module,
         GpuJob,

@@ -99,6 +99,7 @@ pub struct CpuRenderer {
     job: Option<RenderJob>,
     prepared: Option<Prepared>,
     occupancy: TileOccupancy,
+    messages: Vec<String>,
 }
 
 impl CpuRenderer {
@@ -149,6 +150,7 @@ impl CpuRenderer {
                 job: None,
                 prepared: None,
                 occupancy: TileOccupancy::default(),
+                messages: Vec::new(),
             })
             .map_err(|error| {
                 let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -204,6 +206,7 @@ impl Renderer for CpuRenderer {
             (Some((isa, lanes)), old) => {
                 let old = if let Some(Prepared::Single(wide, _)) = old { Some(wide.tables) } else { None };
                 let tables = Tables::renewed(old.zip(before), job);
+                self.messages = tables.warnings().to_vec();
                 let needed = kernels::needs_of(&job.features(), &tables);
                 let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
@@ -219,6 +222,10 @@ impl Renderer for CpuRenderer {
         });
         self.job = Some(job.clone());
         Ok(())
+    }
+
+    fn take_messages(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.messages)
     }
 
     fn tile_occupancy(&self) -> Option<TileOccupancy> {
