@@ -28,8 +28,13 @@ fn job(balls: &[Ball], camera: Camera, max_depth: u32) -> RenderJob {
         let material = scene.add_material(format!("m{index}"), *material);
         scene.add_sphere(*center, *radius, material);
     }
-    let settings =
-        RenderSettings { width: 16, height: 16, max_depth, estimate_error: false, ..RenderSettings::default() };
+    let settings = RenderSettings {
+        width: 16,
+        height: 16,
+        max_depth,
+        estimate_error: false,
+        ..RenderSettings::default()
+    };
     RenderJob::new(scene, camera, settings, Rules::FINISHED).unwrap()
 }
 
@@ -90,7 +95,8 @@ fn the_gpu_and_the_cpu_agree() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut cpu = CpuRenderer::new(CpuOptions::default()).unwrap();
     let at = DVec3::new(2e4, 1e5, -7e4);
-    let shell = vec![(at, 1.0, GLASS), (at, 1.0 - 1e-4, Material::Dielectric { refraction_index: 1.0 / 1.5 })];
+    let shell =
+        vec![(at, 1.0, GLASS), (at, 1.0 - 1e-4, Material::Dielectric { refraction_index: 1.0 / 1.5 })];
     let before = Camera { look_from: at + DVec3::Z * 3.0, look_at: at, vfov_degrees: 30.0, ..AT_BALL };
     let speck = vec![(DVec3::ZERO, 3e-7, GLASS), (DVec3::NEG_Y * 1.3, 1.0, MATTE)];
     let steep = vec![(DVec3::ZERO, 1.0, Material::Dielectric { refraction_index: 1e4 })];

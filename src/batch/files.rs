@@ -4,7 +4,7 @@ use super::rescue;
 use super::resuming::same_job;
 use crate::cli::RenderOptions;
 use crate::describe::describe;
-use crate::film::{Film, Saved, SharedFile};
+use crate::film::{FileIdentity, Film, Saved, SharedFile};
 use crate::output::{OutputFormat, write_image};
 use crate::progressive::Status;
 use anyhow::anyhow;
@@ -39,6 +39,20 @@ impl Places {
     pub fn of(render: &RenderOptions) -> Places {
         let out = is_film(&render.out).then(|| SharedPlace::new(&render.out));
         Places { checkpoint: render.checkpoint.as_deref().map(SharedPlace::new), out }
+    }
+
+    /// Notes that `film`, which the render resumes, stands at one of the places, if it does.
+    pub fn go_on(&self, render: &RenderOptions, film: &Film) {
+        let resumed = render.resume.as_deref().and_then(FileIdentity::of);
+        for (path, place) in [(render.checkpoint.as_ref(), &self.checkpoint), (Some(&render.out), &self.out)]
+        {
+            let identity = path.and_then(|path| FileIdentity::of(path));
+            if let (Some(place), Some(resumed), Some(identity)) = (place, &resumed, identity)
+                && identity.is_same_as(resumed)
+            {
+                place.lock().holds(film.samples());
+            }
+        }
     }
 }
 

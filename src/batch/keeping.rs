@@ -192,7 +192,7 @@ mod tests {
         let place = Places::of(&render).checkpoint.unwrap();
         let mut keeper = Keeper::new(&render, place, 0, Some(0.0));
         let mut progressive = Progressive::spawn().unwrap();
-        let backend = crate::backends::BackendChoice::fallback();
+        let backend = crate::backends::BackendChoice::Cpu(crate::render_cpu::CpuOptions::default());
         progressive.start(Work::new(render.job.clone(), backend, Plan::endless()));
         let mut seen = Vec::new();
         let begin = Instant::now();

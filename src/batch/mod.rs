@@ -46,6 +46,9 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
         [only] => resuming::load(only).map_err(Failure::Input)?,
         _ => None,
     };
+    if let ([render], [places], Some(resumed)) = (options.renders.as_slice(), places.as_slice(), &resumed) {
+        places.go_on(render, &resumed.film);
+    }
     let mut renderer = Some(backends::create(&options.backend).map_err(Failure::input)?);
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut progressive =
@@ -262,6 +265,7 @@ pub(crate) mod tests {
     use crate::cli::{Request, parse};
     use crate::film::checkpoint;
     use crate::render::{BackendInfo, RenderError, RenderJob, Stats};
+    use crate::render_cpu::CpuOptions;
     use std::ops::Range;
     use std::sync::atomic::AtomicBool;
 
@@ -316,7 +320,7 @@ pub(crate) mod tests {
             "--checkpoint",
             film.to_str().unwrap(),
         ]);
-        let options = BatchOptions { backend: BackendChoice::fallback(), ..options };
+        let options = BatchOptions { backend: BackendChoice::Cpu(CpuOptions::default()), ..options };
         let render = &options.renders[0];
         let mut progressive = Progressive::with_factory(Box::new(|_| Ok(Box::new(Failing)))).unwrap();
         let interrupt = Interrupt::unheard();

@@ -96,6 +96,11 @@ impl NewFile {
         }
     }
 
+    /// Where it is until then. On Unix it stays the same file, with the same time of change.
+    pub fn pending_path(&self) -> Option<&Path> {
+        self.pending.as_ref().map(|(file, _)| file.path())
+    }
+
     /// Puts it in its place.
     pub fn put(self) -> Result<(), WriteError> {
         let Some((file, place)) = self.pending else { return Ok(()) };

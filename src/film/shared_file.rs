@@ -33,6 +33,8 @@ pub struct SharedFile {
     may_replace: bool,
     /// What was seen, held open so that it can be read after it has been replaced.
     base: Option<File>,
+    /// The own samples that are there.
+    held: SampleRanges,
     /// Samples that other runs have added.
     others: Option<Film>,
 }
@@ -53,16 +55,25 @@ impl SharedFile {
     pub fn new(path: &Path) -> SharedFile {
         let mut place =
             SharedFile { path: path.to_owned(), seen: None, may_replace: true, base: None, others: None };
-        place.look();
+        place.note(Self::look_at(path));
         place
     }
 
-    /// Remembers what is there.
-    fn look(&mut self) {
+    /// Notes that what is there are the own film's first samples, which must not get fewer.
+    pub fn holds(&mut self, samples: &SampleRanges) {
+        self.held = samples.clone();
+    }
+
+    /// Remembers what was there.
+    fn note(&mut self, found: Option<(Stamp, Option<File>)>) {
+        (self.seen, self.base) = found.map_or((None, None), |(stamp, file)| (Some(stamp), file));
+    }
+
+    /// What is at `path`, held open where an open file can be replaced.
+    fn look_at(path: &Path) -> Option<(Stamp, Option<File>)> {
         // Opened first: should it be replaced in between, the stamp is newer, and a look at the content decides.
-        // Elsewhere a file that is open cannot be replaced.
-        self.base = if cfg!(unix) { File::open(&self.path).ok() } else { None };
-        self.seen = Stamp::of(&self.path).ok().flatten();
+        let file = if cfg!(unix) { File::open(path).ok() } else { None };
+        Some((Stamp::of(path).ok().flatten()?, file))
     }
 
     fn is_as_seen(&self) -> bool {
@@ -90,7 +101,9 @@ impl SharedFile {
                 Ok(joined) => joined,
                 Err(reason) => return self.save_elsewhere(film, description, &reason),
             };
-            if !self.may_replace || !self.is_as_seen() {
+            // A film that was lost on the way and began anew has less than what is there.
+            let has_shrunk = !minus(&self.held, film.samples()).is_empty();
+            if has_shrunk || !self.may_replace || !self.is_as_seen() {
                 match self.consider(joined.as_ref().unwrap_or(film), description, same_job) {
                     Ok(Verdict::Replace) => {}
                     Ok(Verdict::Added(words)) => {
@@ -110,9 +123,10 @@ impl SharedFile {
             let new = NewFile::write(&self.path, |writer| checkpoint::write(film, &description, writer))?;
             let _lock = if lock.is_none() { lock_directory(&self.path) } else { None };
             if self.is_as_seen() {
+                let ahead = new.pending_path().and_then(Self::look_at);
                 new.put()?;
-                self.look();
-                self.may_replace = true;
+                self.note(ahead.filter(|_| cfg!(unix)).or_else(|| Self::look_at(&self.path)));
+                (self.may_replace, self.held) = (true, film.samples().clone());
                 return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
             }
         }
@@ -162,8 +176,7 @@ impl SharedFile {
             (self.seen, self.may_replace) = (seen, false);
             return Ok(Verdict::Leave(is_new.then(|| {
                 format!(
-                    "{} was written by another run meanwhile; it holds all samples of this one and {} besides, so it \
-                     is left as it is",
+                    "{} holds all samples of this run and {} besides, so it is left as it is",
                     self.path.display(),
                     told(&only_theirs)
                 )
@@ -397,6 +410,23 @@ mod tests {
         assert!(saved.is_elsewhere && saved.path != path);
         assert!(at(&saved.path) == film(&[0..22, 40..48]));
         holds(&[0..24, 40..48]);
+    }
+
+    #[test]
+    fn a_film_that_began_anew_does_not_replace_what_it_had() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        put(&path, &[0..4]);
+        let mut resumed = SharedFile::new(&path);
+        resumed.holds(&ranges(&[0..4]));
+        resumed.save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
+        assert!(at(&path) == film(&[0..4]));
+        resumed.save(&film(&[0..10]), &Description::new("r"), &same).unwrap();
+        resumed.save(&film(&[0..6]), &Description::new("r"), &same).unwrap();
+        assert!(at(&path) == film(&[0..10]));
+        // What was not resumed may be replaced by less.
+        SharedFile::new(&path).save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
+        assert!(at(&path) == film(&[0..2]));
     }
 
     #[test]
