@@ -53,8 +53,14 @@ pub struct Saved {
 impl SharedFile {
     /// The place as it is now. What is there may be replaced.
     pub fn new(path: &Path) -> SharedFile {
-        let mut place =
-            SharedFile { path: path.to_owned(), seen: None, may_replace: true, base: None, others: None };
+        let mut place = SharedFile {
+            path: path.to_owned(),
+            seen: None,
+            may_replace: true,
+            base: None,
+            held: SampleRanges::default(),
+            others: None,
+        };
         place.note(Self::look_at(path));
         place
     }
@@ -101,10 +107,11 @@ impl SharedFile {
                 Ok(joined) => joined,
                 Err(reason) => return self.save_elsewhere(film, description, &reason),
             };
+            let mine = joined.as_ref().unwrap_or(film);
             // A film that was lost on the way and began anew has less than what is there.
-            let has_shrunk = !minus(&self.held, film.samples()).is_empty();
+            let has_shrunk = !minus(&self.held, mine.samples()).is_empty();
             if has_shrunk || !self.may_replace || !self.is_as_seen() {
-                match self.consider(joined.as_ref().unwrap_or(film), description, same_job) {
+                match self.consider(mine, description, same_job) {
                     Ok(Verdict::Replace) => {}
                     Ok(Verdict::Added(words)) => {
                         note = Some(words);
@@ -116,17 +123,17 @@ impl SharedFile {
                     Err(reason) => return self.save_elsewhere(film, description, &reason),
                 }
             }
-            let (film, mut description) = (joined.as_ref().unwrap_or(film), description.clone());
+            let mut description = description.clone();
             if joined.is_some() {
-                description.set(key::SAMPLES, film.sample_count());
+                description.set(key::SAMPLES, mine.sample_count());
             }
-            let new = NewFile::write(&self.path, |writer| checkpoint::write(film, &description, writer))?;
+            let new = NewFile::write(&self.path, |writer| checkpoint::write(mine, &description, writer))?;
             let _lock = if lock.is_none() { lock_directory(&self.path) } else { None };
             if self.is_as_seen() {
                 let ahead = new.pending_path().and_then(Self::look_at);
                 new.put()?;
                 self.note(ahead.filter(|_| cfg!(unix)).or_else(|| Self::look_at(&self.path)));
-                (self.may_replace, self.held) = (true, film.samples().clone());
+                (self.may_replace, self.held) = (true, mine.samples().clone());
                 return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
             }
         }
