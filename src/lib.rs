@@ -31,5 +31,6 @@ pub mod sampling;
 pub mod scene;
 pub mod stages;
 pub mod statistics;
+pub mod stress;
 pub mod tables;
 pub mod terminal;

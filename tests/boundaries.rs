@@ -141,6 +141,24 @@ const ROOMS: &[(&str, &[&str])] = &[
             "terminal",
         ],
     ),
+    (
+        "stress",
+        &[
+            "scene",
+            "stages",
+            "film",
+            "render",
+            "recipe",
+            "output",
+            "sampling",
+            "render_cpu",
+            "backends",
+            "cli",
+            "failure",
+            "interrupt",
+            "terminal",
+        ],
+    ),
 ];
 
 /// Crates that only some rooms may use.

@@ -5,7 +5,7 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::Lanes;
 use weekender::render_cpu::sphere::{
-    Nearest, Spheres, WideSphere, acne_root, anchored_root, near_root, nearest_root,
+    Nearest, Spheres, WideSphere, anchored_root, book_root, near_root, nearest_root,
 };
 use weekender::tables::AnchoredSphere;
 
@@ -16,7 +16,7 @@ const SPHERES: usize = 32;
 enum Root {
     Near,
     Nearest,
-    Acne,
+    Book,
     Anchored,
 }
 
@@ -59,7 +59,7 @@ impl Body for Intersect {
                 let key = match self.root {
                     Root::Near => near_root(l, &rays, &sphere),
                     Root::Nearest => nearest_root(l, &rays, &sphere),
-                    Root::Acne => acne_root(l, &rays, &sphere),
+                    Root::Book => book_root(l, &rays, &sphere, l.constant(0.001)),
                     Root::Anchored => anchored_root(l, &rays, ground, number),
                 };
                 nearest.take(key, number);
@@ -86,8 +86,8 @@ fn nearest(bencher: Bencher, width: usize) {
 }
 
 #[divan::bench(args = widths())]
-fn acne(bencher: Bencher, width: usize) {
-    measure(bencher, width, Root::Acne);
+fn book(bencher: Bencher, width: usize) {
+    measure(bencher, width, Root::Book);
 }
 
 #[divan::bench(args = widths())]

@@ -8,6 +8,7 @@ mod raw;
 mod render;
 mod report;
 mod sources;
+mod stress;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
@@ -17,6 +18,7 @@ pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
 pub use sources::CliError;
+pub use stress::StressOptions;
 pub use values::JsonTarget;
 
 use crate::failure::Failure;
@@ -45,6 +47,8 @@ pub enum Request {
     Compare(Box<CompareOptions>),
     /// Measure error against time.
     Report(Box<ReportOptions>),
+    /// Render stiff scenes and judge them.
+    Stress(Box<StressOptions>),
     /// Render to files.
     Batch(Box<BatchOptions>),
 }
@@ -86,6 +90,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Some(RawCommand::Report(raw)) => report::report(*raw, command)
             .map(|options| Request::Report(Box::new(options)))
             .map_err(Failure::input),
+        Some(RawCommand::Stress(raw)) => {
+            stress::stress(*raw).map(|options| Request::Stress(Box::new(options))).map_err(Failure::input)
+        }
         None if raw.render.list => Ok(Request::List),
         None => render::request(raw.render).map_err(Failure::input),
     }

@@ -5,6 +5,7 @@ use super::bench::RawBench;
 use super::compare::RawCompare;
 use super::diff::RawDiff;
 use super::report::RawReport;
+use super::stress::RawStress;
 use super::values::{
     Level, Simd, parse_duration, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds,
     parse_simd, parse_size, parse_vector,
@@ -55,6 +56,12 @@ pub(super) enum RawCommand {
     ///
     /// Goes on where an interrupted report of the same settings ended.
     Report(Box<RawReport>),
+    /// Render stiff and extreme scenes and say whether each is right: a table beside the book's own arithmetic
+    ///
+    /// Each scene is rendered as it is and with 40 distant spheres, which switch the hierarchy on, by a CPU level
+    /// that fuses multiply and add, by one that does not, in f64, and by the GPU that there is. The exit code is 0
+    /// where all are right, 1 where one is not and 2 where nothing could be run.
+    Stress(Box<RawStress>),
 }
 
 #[derive(Debug, Args)]

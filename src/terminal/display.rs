@@ -75,6 +75,14 @@ impl Display {
         }
     }
 
+    /// Lets `print` write to the terminal, above the bar.
+    pub fn above(&self, print: impl FnOnce()) {
+        match self {
+            Display::Bar(bar) => bar.suspend(print),
+            Display::Lines { .. } | Display::Off => print(),
+        }
+    }
+
     /// Takes the bar away.
     pub fn clear(&self) {
         if let Display::Bar(bar) = self {
