@@ -76,7 +76,7 @@ impl Display {
     }
 
     /// Lets `print` write to the terminal, above the bar.
-    pub fn above(&self, print: impl FnOnce()) {
+    pub fn above<T>(&self, print: impl FnOnce() -> T) -> T {
         match self {
             Display::Bar(bar) => bar.suspend(print),
             Display::Lines { .. } | Display::Off => print(),
