@@ -1,11 +1,15 @@
 //! The program: parse, run, exit code.
 
+#![warn(clippy::disallowed_macros)]
+
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
-use weekender::failure::Failure;
-use weekender::{app, batch, bench, compare, diff, report, stress};
+use weekender::failure::{self, Failure};
+use weekender::{app, batch, bench, compare, diff, interrupt, report, stress};
 
 fn main() -> ExitCode {
+    failure::install_panic_hook();
+    interrupt::survive_file_size_limit();
     run().unwrap_or_else(|failure| failure.report())
 }
 

@@ -3,6 +3,7 @@
 mod bench;
 mod compare;
 mod diff;
+mod paths;
 mod raw;
 mod render;
 mod report;
@@ -22,6 +23,7 @@ pub use values::JsonTarget;
 
 use crate::failure::Failure;
 use clap::Parser;
+use paths::Paths;
 use raw::{Raw, RawCommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -73,7 +75,12 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Some(RawCommand::Bench(raw)) => {
             bench::bench(*raw).map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)
         }
-        Some(RawCommand::Merge { films, out }) => Ok(Request::Merge(MergeOptions { films, out })),
+        Some(RawCommand::Merge { films, out }) => {
+            let read = |paths: Paths, film: &PathBuf| paths.read("the film", Some(film));
+            let paths = films.iter().fold(Paths::default(), read).write("--out", Some(&out));
+            paths.check(&[]).map_err(Failure::input)?;
+            Ok(Request::Merge(MergeOptions { films, out }))
+        }
         Some(RawCommand::Diff(raw)) => {
             diff::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)
         }

@@ -114,7 +114,8 @@ fn suite(
         cases: Vec::new(),
     };
     let json = options.json.as_ref();
-    terminal::print_beside(json, &table::head());
+    // A table that nobody reads does not keep the files from being written.
+    let mut printed = terminal::print_beside(json, &table::head());
     for (index, case) in chosen.iter().enumerate() {
         display.announce(index as u64, || case.id.clone());
         let found = suite.run(case, interrupt);
@@ -122,7 +123,7 @@ fn suite(
             report.interrupted = true;
             break;
         }
-        display.above(|| terminal::print_beside(json, &table::row(&found)));
+        printed = printed.and(display.above(|| terminal::print_beside(json, &table::row(&found))));
         report.cases.push(found);
         if let (Some(directory), Some(painter)) = (&options.out, &mut painter) {
             pictures::write_pictures(directory, case, painter, interrupt)?;
@@ -130,12 +131,13 @@ fn suite(
     }
     display.clear();
     report.seconds = begin.elapsed().as_secs_f64();
-    terminal::print_beside(json, &table::summary(&report));
+    printed = printed.and(terminal::print_beside(json, &table::summary(&report)));
     if let Some(directory) = &options.out {
         pictures::write_pages(directory, &report)?;
     }
     if let Some(target) = json {
         terminal::write_json(&report, target)?;
     }
+    printed?;
     Ok(report)
 }

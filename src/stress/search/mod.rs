@@ -58,8 +58,8 @@ pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> R
         display.above(|| {
             let spheres = small.scene.spheres.len();
             let text = format!("{} ({spheres} spheres): {}: {reason}\n", path.display(), check.name());
-            terminal::print_beside(options.json.as_ref(), &text);
-        });
+            terminal::print_beside(options.json.as_ref(), &text)
+        })?;
         found.push(path);
     }
     display.clear();
@@ -68,7 +68,7 @@ pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> R
         found.len(),
         begin.elapsed().as_secs_f64()
     );
-    terminal::print_beside(options.json.as_ref(), &text);
+    terminal::print_beside(options.json.as_ref(), &text)?;
     Ok(found.is_empty())
 }
 
