@@ -25,7 +25,7 @@ pub fn by_the_book(recipe: &Recipe) -> Recipe {
 const TURNS: usize = 5;
 
 /// What they may take together, seconds.
-const TURNS_TIME: f64 = 0.5;
+const TURNS_TIME: f64 = 0.6;
 
 /// Scenes of more spheres are not checked ray by ray: each ray is tested against all of them.
 const CHECKED_SPHERES: usize = 5000;
@@ -205,17 +205,18 @@ impl Suite {
             Some(index) => &mut self.backends[index],
             None => &mut self.reference,
         };
-        let (mut least, mut least_tame, mut spent) = (first, None::<f64>, first);
+        // The first picture may have waited for a kernel.
+        let (mut least, mut least_tame, mut spent) = (first, None::<f64>, 0.0);
         for _ in 0..TURNS {
             let Ok(of_tame) = tracer.trace(tame, interrupt) else { break };
             least_tame = Some(least_tame.map_or(of_tame.seconds, |least| least.min(of_tame.seconds)));
             spent += of_tame.seconds;
-            if spent + least > TURNS_TIME {
-                break;
-            }
             let Ok(again) = tracer.trace(recipe, interrupt) else { break };
             least = least.min(again.seconds);
             spent += again.seconds;
+            if spent > TURNS_TIME {
+                break;
+            }
         }
         (least, least_tame)
     }
