@@ -19,7 +19,7 @@ pub use description::{Description, RECIPE_KEY, key};
 pub use identity::FileIdentity;
 pub use merge::{MergeError, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;
-pub use replace::{WriteError, check_writable, replace_file, write_text};
+pub use replace::{WriteError, check_film_writable, check_writable, replace_file, write_text};
 pub use shared_file::{Saved, SharedFile};
 
 use crate::stages::Transfer;
