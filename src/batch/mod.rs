@@ -2,7 +2,6 @@
 
 mod files;
 mod listing;
-mod memory;
 mod merging;
 mod progress;
 mod resuming;
@@ -103,7 +102,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
         check_writable(path).map_err(Failure::input)?;
     }
     for render in &options.renders {
-        memory::check(render.job.settings()).map_err(Failure::input)?;
+        render.job.check_memory(1).map_err(Failure::input)?;
     }
     Ok(())
 }
