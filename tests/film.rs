@@ -472,9 +472,12 @@ fn no_flipped_bit_changes_a_film_unnoticed() {
         b"software\0string\0",
         b"lineOrder\0lineOrder\0",
         b"chunkCount\0int\0",
+        b"channels\0chlist\0",
     ]
     .into_iter()
     .map(|name| attribute(&whole, name))
+    // The version of OpenEXR.
+    .chain([4..8])
     .collect();
     let (mut bytes, mut accepted) = (whole.clone(), Vec::new());
     for bit in 0..8 * whole.len() {

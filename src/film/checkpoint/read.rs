@@ -190,6 +190,9 @@ fn find_planes(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
 /// Bytes that each chunk takes at least: its place in the table, its row, its length.
 const CHUNK_BYTES: u64 = 16;
 
+/// A chunk may be so large whatever the file's length: tiles may be larger than the picture.
+const SMALL_CHUNK_BYTES: u64 = 16 << 20;
+
 /// Refuses a file that is too short for what it says that it holds, and what no reader can take.
 pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     if header.deep {
@@ -213,6 +216,15 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
             "it has {length} bytes, but {columns}x{rows} pixels of {} bytes take at least {least}",
             header.channels.bytes_per_pixel
         ));
+    }
+    let (across, down) = match header.blocks {
+        BlockDescription::Tiles(tiles) => (tiles.tile_size.x(), tiles.tile_size.y()),
+        BlockDescription::ScanLines => (header.layer_size.x(), header.compression.scan_lines_per_block()),
+    };
+    let pixels = (across as u64).saturating_mul(down as u64);
+    let most = length.saturating_mul(ratio).saturating_add(SMALL_CHUNK_BYTES);
+    if pixels.saturating_mul(header.channels.bytes_per_pixel as u64) > most {
+        return Err(format!("it has {length} bytes, too few for chunks of {across}x{down} pixels"));
     }
     Ok(())
 }
