@@ -37,6 +37,12 @@ impl BackendChoice {
         }
     }
 
+    /// The GPU that `adapter` names, or the best there is; `None` where none is named and none is fit.
+    pub fn gpu_if_present(adapter: Option<&str>) -> Option<Self> {
+        let is_there = adapter.is_some() || adapters().iter().any(AdapterInfo::is_fit);
+        is_there.then(|| BackendChoice::Gpu(GpuOptions::of_adapter(adapter)))
+    }
+
     /// What goes on when another backend fails: the CPU, with everything at its default.
     pub fn fallback() -> Self {
         BackendChoice::Cpu(CpuOptions::default())

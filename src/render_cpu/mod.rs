@@ -69,7 +69,10 @@ pub enum CpuError {
         available: Vec<usize>,
     },
     /// Threads could not be started.
-    #[error("cannot start {threads} threads: {reason}; choose fewer with --threads")]
+    #[error(
+        "cannot start {threads} thread{}: {reason}; choose fewer with --threads, or allow more (ulimit -u, ulimit -v)",
+        if *threads == 1 { "" } else { "s" }
+    )]
     Threads {
         /// Asked for; 0 is one a core.
         threads: usize,
@@ -96,6 +99,7 @@ pub struct CpuRenderer {
     job: Option<RenderJob>,
     prepared: Option<Prepared>,
     occupancy: TileOccupancy,
+    messages: Vec<String>,
 }
 
 impl CpuRenderer {
@@ -146,8 +150,13 @@ impl CpuRenderer {
                 job: None,
                 prepared: None,
                 occupancy: TileOccupancy::default(),
+                messages: Vec::new(),
             })
-            .map_err(|error| CpuError::Threads { threads, reason: error.to_string() })
+            .map_err(|error| {
+                let cores = std::thread::available_parallelism().map_or(1, usize::from);
+                let threads = if threads == 0 { cores } else { threads };
+                CpuError::Threads { threads, reason: error.to_string() }
+            })
     }
 }
 
@@ -197,6 +206,7 @@ impl Renderer for CpuRenderer {
             (Some((isa, lanes)), old) => {
                 let old = if let Some(Prepared::Single(wide, _)) = old { Some(wide.tables) } else { None };
                 let tables = Tables::renewed(old.zip(before), job);
+                self.messages = tables.warnings().to_vec();
                 let needed = kernels::needs_of(&job.features(), &tables);
                 let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
@@ -212,6 +222,10 @@ impl Renderer for CpuRenderer {
         });
         self.job = Some(job.clone());
         Ok(())
+    }
+
+    fn take_messages(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.messages)
     }
 
     fn tile_occupancy(&self) -> Option<TileOccupancy> {

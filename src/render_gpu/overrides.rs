@@ -21,8 +21,16 @@ pub struct Overrides {
     pub lens: bool,
     /// Spheres that a ray can be inside of.
     pub two_root: bool,
-    /// Huge spheres.
+    /// Spheres that are seen from a point on their surface.
     pub anchored: bool,
+    /// The eye is on the surface of one of them.
+    pub eye_on_surface: bool,
+    /// One of them holds every ray.
+    pub cavity: bool,
+    /// Spheres that are small beside their distance.
+    pub specks: bool,
+    /// Glass whose angles must be known better than from a cosine.
+    pub steep_glass: bool,
     /// A hierarchy.
     pub hierarchy: bool,
     /// It is the compressed one.
@@ -33,9 +41,9 @@ pub struct Overrides {
     pub opaque_count: u32,
     /// Spheres of two.
     pub two_root_count: u32,
-    /// The huge spheres fit the uniform buffer, and the next count is that of the scene.
+    /// The anchored spheres fit the uniform buffer, and the next count is that of the scene.
     pub few_anchored: bool,
-    /// Huge spheres.
+    /// Anchored spheres.
     pub anchored_count: u32,
     /// The Sobol sampler, else independent numbers.
     pub sobol: bool,
@@ -43,8 +51,8 @@ pub struct Overrides {
     pub antialiasing: bool,
     /// Rays are traced at all.
     pub rays: bool,
-    /// The book's lower bound of 0.
-    pub acne: bool,
+    /// How rays leave the surface that they start on.
+    pub surface: Surface,
     /// Lambertian surfaces send light evenly over the hemisphere.
     pub hemisphere: bool,
     /// The reflectance is that of the picture's strip.
@@ -56,12 +64,14 @@ pub struct Overrides {
 }
 
 /// The value of an override constant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constant {
     /// A `bool`.
     Flag(bool),
     /// A `u32`.
     Number(u32),
+    /// An `f32`.
+    Real(f64),
 }
 
 impl Constant {
@@ -70,6 +80,7 @@ impl Constant {
         match self {
             Constant::Flag(flag) => f64::from(u8::from(flag)),
             Constant::Number(number) => f64::from(number),
+            Constant::Real(real) => real,
         }
     }
 }
@@ -85,6 +96,10 @@ impl Default for Overrides {
             lens: true,
             two_root: true,
             anchored: true,
+            eye_on_surface: true,
+            cavity: true,
+            specks: false,
+            steep_glass: false,
             hierarchy: false,
             cwbvh: false,
             few_spheres: false,
@@ -95,7 +110,7 @@ impl Default for Overrides {
             sobol: true,
             antialiasing: true,
             rays: true,
-            acne: false,
+            surface: Surface::Exact,
             hemisphere: false,
             reflectance_strips: false,
             shading: Shading::Path,
@@ -120,6 +135,10 @@ impl Overrides {
             lens: features.lens,
             two_root: !tables.two_root.is_empty(),
             anchored: !tables.anchored.is_empty(),
+            eye_on_surface: tables.is_eye_on_surface(),
+            cavity: tables.is_eye_in_cavity(),
+            specks: tables.has_specks,
+            steep_glass: tables.has_steep_glass,
             few_spheres,
             opaque_count: if few_spheres { tables.opaque.len() as u32 } else { 0 },
             two_root_count: if few_spheres { tables.two_root.len() as u32 } else { 0 },
@@ -130,7 +149,7 @@ impl Overrides {
             rays: features.rays,
             sobol: job.settings().sampler == SamplerKind::Sobol,
             antialiasing: rules.antialiasing,
-            acne: rules.surface == Surface::Acne,
+            surface: rules.surface,
             hemisphere: rules.diffuse == Diffuse::Hemisphere,
             reflectance_strips: rules.reflectance_strips,
             shading: rules.shading,
@@ -143,11 +162,13 @@ impl Overrides {
     pub fn general(job: &RenderJob, tables: &Tables<f32>) -> Self {
         let needed = Overrides::specialised(job, tables);
         Overrides {
+            specks: needed.specks,
+            steep_glass: needed.steep_glass,
             hierarchy: needed.hierarchy,
             rays: needed.rays,
             sobol: needed.sobol,
             antialiasing: needed.antialiasing,
-            acne: needed.acne,
+            surface: needed.surface,
             hemisphere: needed.hemisphere,
             reflectance_strips: needed.reflectance_strips,
             shading: needed.shading,
@@ -158,7 +179,7 @@ impl Overrides {
 
     /// Names in the shader and values.
     pub fn constants(&self) -> Vec<(&'static str, Constant)> {
-        use Constant::{Flag, Number};
+        use Constant::{Flag, Number, Real};
         vec![
             ("LAMBERTIAN", Flag(self.lambertian)),
             ("METAL", Flag(self.metal)),
@@ -167,6 +188,10 @@ impl Overrides {
             ("LENS", Flag(self.lens)),
             ("TWO_ROOT", Flag(self.two_root)),
             ("ANCHORED", Flag(self.anchored)),
+            ("EYE_ON_SURFACE", Flag(self.eye_on_surface)),
+            ("CAVITY", Flag(self.cavity)),
+            ("SPECKS", Flag(self.specks)),
+            ("STEEP_GLASS", Flag(self.steep_glass)),
             ("HIERARCHY", Flag(self.hierarchy)),
             ("CWBVH", Flag(self.cwbvh)),
             ("FEW_SPHERES", Flag(self.few_spheres)),
@@ -177,7 +202,8 @@ impl Overrides {
             ("SOBOL", Flag(self.sobol)),
             ("ANTIALIASING", Flag(self.antialiasing)),
             ("RAYS", Flag(self.rays)),
-            ("ACNE", Flag(self.acne)),
+            ("BOOK_ARITHMETIC", Flag(self.surface != Surface::Exact)),
+            ("BOOK_T_MIN", Real(self.surface.smallest_distance().unwrap_or(0.0))),
             ("HEMISPHERE", Flag(self.hemisphere)),
             ("REFLECTANCE_STRIPS", Flag(self.reflectance_strips)),
             ("SHADING", Number(shading_tag(self.shading))),
@@ -195,9 +221,14 @@ impl Overrides {
             (self.lens, "lens"),
             (self.two_root, "two roots"),
             (self.anchored, "anchored"),
+            (self.eye_on_surface, "eye on a surface"),
+            (self.cavity, "cavity"),
+            (self.specks, "specks"),
+            (self.steep_glass, "steep glass"),
             (self.hierarchy && !self.cwbvh, "hierarchy"),
             (self.hierarchy && self.cwbvh, "compressed hierarchy"),
-            (self.acne, "acne"),
+            (self.surface == Surface::Acne, "acne"),
+            (self.surface == Surface::Book, "the book's arithmetic"),
             (self.hemisphere, "hemisphere"),
             (self.reflectance_strips, "strips"),
         ]

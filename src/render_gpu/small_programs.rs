@@ -89,7 +89,7 @@ impl GpuRenderer {
             this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
             let words = record::words_for(pixel, settings.max_depth);
             let words = this.run(prepared, &buffers, &kernel, &words, 1)?;
-            Ok(record::from_words(&words, &prepared.scene.scene_index))
+            Ok(record::from_words(&words, &prepared.scene.scene_index, prepared.scene.tables.origin))
         })
     }
 
