@@ -3,7 +3,6 @@
 mod files;
 mod keeping;
 mod listing;
-mod memory;
 mod merging;
 mod progress;
 mod rescue;
@@ -120,7 +119,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
         check(path).map_err(Failure::input)?;
     }
     for render in &options.renders {
-        memory::check(render.job.settings()).map_err(Failure::input)?;
+        render.job.check_memory(1).map_err(Failure::input)?;
     }
     Ok(())
 }
