@@ -71,7 +71,29 @@ pub struct ErrorEstimate {
     pub rel_mse: f64,
 }
 
+/// With fewer pixels in effect the error estimate is in doubt.
+const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
+
 impl ErrorEstimate {
+    /// As how many pixels of like errors those are from which it comes, `(sum e^2)^2 / sum e^4` with `e` the errors: few,
+    /// where a few pixels dominate it; infinite without any error.
+    pub fn pixels_in_effect(&self) -> f64 {
+        // Of n pixels, the variance of the mean square is (mean e^4 - (mean e^2)^2) / n.
+        let share = 2.0 * self.rmse_deviation / self.rmse;
+        if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
+    }
+
+    /// What to say where few pixels dominate it. It is then most likely too low, and its deviation with it: what paths
+    /// find rarely is missing in most estimates.
+    pub fn doubt(&self) -> Option<String> {
+        let pixels = self.pixels_in_effect();
+        (pixels < PIXELS_IN_EFFECT_MIN).then(|| {
+            format!(
+                "a few bright pixels dominate the error estimate: it is worth that of {pixels:.0} pixels, and                  {PIXELS_IN_EFFECT_MIN:.0} are needed; it may be off by a factor, and only more samples tell"
+            )
+        })
+    }
+
     /// How far off it may be by chance, as "± 0.2 %": one deviation.
     pub fn uncertainty(&self) -> String {
         let share = if self.rmse > 0.0 { self.rmse_deviation / self.rmse } else { 0.0 };

@@ -9,6 +9,10 @@ pub const BATCH_TARGET: Duration = Duration::from_millis(50);
 /// What a dispatch should take while someone interacts.
 pub const INTERACTIVE_TARGET: Duration = Duration::from_millis(8);
 
+/// Longer than any dispatch takes: a device that has not answered by then hangs. A dispatch's length is bounded, but the
+/// first one of a kernel can wait for the driver to compile it.
+pub const PATIENCE: Duration = Duration::from_secs(30);
+
 /// The hierarchy over a scene of many spheres. Both find the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HierarchyKind {
@@ -28,6 +32,22 @@ pub enum Fault {
     OutOfMemory,
     /// It was asked for something invalid: a mistake of this program or of the driver.
     Invalid,
+    /// It does not answer for 10 s.
+    Hang,
+    /// It reports a dispatch as done and has left out all of it. Only at [`DrillPoint::Dispatch`].
+    Short,
+}
+
+/// Where a drill can strike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DrillPoint {
+    /// Before a job is prepared.
+    Prepare,
+    /// Before a dispatch is sent off.
+    #[default]
+    Dispatch,
+    /// Before a film is sent for.
+    Fetch,
 }
 
 /// A fault that is brought about on purpose, to see that a render survives it.
@@ -35,7 +55,9 @@ pub enum Fault {
 pub struct Drill {
     /// What goes wrong.
     pub fault: Fault,
-    /// After how many dispatches.
+    /// Where.
+    pub point: DrillPoint,
+    /// After how many of these.
     pub after: u64,
 }
 
@@ -56,6 +78,8 @@ pub struct GpuOptions {
     pub samples_per_dispatch: Option<u64>,
     /// Most bytes of a film on the device at once; by default what the adapter can bind.
     pub film_limit: Option<u64>,
+    /// How long the device is waited for before it is given up.
+    pub patience: Duration,
     /// Breaks the device: a drill.
     pub drill: Option<Drill>,
 }
@@ -70,6 +94,7 @@ impl Default for GpuOptions {
             hierarchy: HierarchyKind::default(),
             samples_per_dispatch: None,
             film_limit: None,
+            patience: PATIENCE,
             drill: None,
         }
     }
