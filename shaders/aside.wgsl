@@ -2,7 +2,7 @@
 // same tiles: so a thread's work may be long, though no dispatch is.
 //
 // ASIDE_STRIDE words a thread: origin and sphere left | direction and sphere inside | throughput, and bounce, samples
-// left and whether it is absorbed in one word, 0 where nothing was put aside | next block and sums.
+// left and whether it is absorbed in one word, 0 where nothing was put aside | next block and sums | sine2.
 //
 // Twin: src/render_gpu/dispatches.rs
 
@@ -20,6 +20,7 @@ fn put_aside(path: Path, next_block: u32, base: u32) {
     words[base + 13u] = path.sums.x;
     words[base + 14u] = path.sums.y;
     words[base + 15u] = path.sums.z;
+    words[base + 16u] = bitcast<u32>(path.sine2);
 }
 
 // Returns the next block. Where nothing was put aside, no samples are left.
@@ -36,6 +37,7 @@ fn take_up(path: ptr<function, Path>, base: u32) -> u32 {
     (*path).bounce = state & 0xFFFFu;
     (*path).absorbed = (state & ABSORBED_BIT) != 0u;
     (*path).sums = vec3u(words[base + 13u], words[base + 14u], words[base + 15u]);
+    (*path).sine2 = bitcast<f32>(words[base + 16u]);
     let next_block = words[base + 12u];
     if next_block > 0u {
         let block = blocks[next_block - 1u];

@@ -67,6 +67,7 @@ struct Row {
     normal_share: f32,
     // From the anchor to the centre.
     inward: vec3f,
+    // 1 if anchored, 2 if every ray is inside.
     is_anchored: f32,
 }
 
@@ -135,8 +136,8 @@ fn cwbvh_node_at(number: u32) -> CwbvhNode {
 }
 
 // A sphere's place in the list that the leaves' order is not: it stands behind the nodes.
-fn cwbvh_listed(number: u32) -> u32 {
-    return nodes[5u * job.node_count + number / 4u][number % 4u];
+fn rank_of(number: u32) -> u32 {
+    return nodes[select(2u, 5u, CWBVH) * job.node_count + number / 4u][number % 4u];
 }
 
 // Adds to a pixel of the film; no other thread has it.

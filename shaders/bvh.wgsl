@@ -47,6 +47,15 @@ fn box_key(slabs: Slabs, low: vec3f, high: vec3f, limit: f32) -> u32 {
     return select(MISS_KEY, bitcast<u32>(enter), leave * BOX_WIDENING >= enter);
 }
 
+// Of two spheres at one distance that which stands first in the list stays, which leaves do not keep the order of.
+fn take_in_any_order(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
+    var nearer = key < nearest.key;
+    if key == nearest.key && nearest.sphere != NONE {
+        nearer = rank_of(sphere) < rank_of(nearest.sphere);
+    }
+    return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
+}
+
 // Takes the nearest hit among the spheres of the hierarchy.
 fn traverse(ray: Ray, found: Nearest) -> Nearest {
     var nearest = found;
@@ -69,7 +78,7 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
             // Ends: a leaf has at most COUNT_MASK spheres.
             for (; i < count; i++) {
                 let number = node.first + i;
-                nearest = take_in_any_order(nearest, nearest_root(ray, sphere_at(number), number), number);
+                nearest = take_in_any_order(nearest, signed_root(ray, sphere_at(number), number), number);
             }
             turns += count;
             is_leaf_cut = i < count;

@@ -105,10 +105,7 @@ fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
         for (; left != 0u; left &= left - 1u) {
             turns += 1u;
             let number = node.first_sphere + firstTrailingBit(left);
-            let key = nearest_root(ray, sphere_at(number), number);
-            if key < nearest.key || (key == nearest.key && comes_before(number, nearest.sphere)) {
-                nearest = Nearest(key, number);
-            }
+            nearest = take_in_any_order(nearest, signed_root(ray, sphere_at(number), number), number);
         }
 
         group = vec2u(node.first_child, (hits & NODE_HITS) | (node.units >> 24u));
@@ -122,9 +119,4 @@ fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
         }
     }
     return nearest;
-}
-
-// Of two spheres at one distance the first in the list stays, which leaves do not keep the order of.
-fn comes_before(a: u32, b: u32) -> bool {
-    return b != NONE && cwbvh_listed(a) < cwbvh_listed(b);
 }

@@ -18,14 +18,18 @@ struct Scatter {
     direction: vec3f,
     refracts: bool,
     is_metal: bool,
+    // Sine in the refracted direction over that of incidence, where it refracts.
+    ratio: f32,
 }
 
-// Scatters at any surface. `cosine` is that of the angle of incidence, `coin` uniform in [0, 1).
+// Scatters at any surface. `cosine` is that of the angle of incidence, `sine2` the square of its sine, `coin` uniform in
+// [0, 1).
 fn scatter(
     surface: Surface,
     direction: vec3f,
     normal: vec3f,
     cosine: f32,
+    sine2: f32,
     front: bool,
     unit: vec3f,
     coin: f32,
@@ -34,6 +38,7 @@ fn scatter(
     var across = 1.0;
     var is_metal = false;
     var refracts = false;
+    var ratio = 1.0;
     if METAL || GLASS {
         is_metal = (bitcast<u32>(surface.weight) >> 31u) != 0u;
         along = select(0.0, 1.0, is_metal);
@@ -41,9 +46,9 @@ fn scatter(
     }
     if GLASS {
         let is_glass = surface.index > 0.0;
-        let ratio = select(surface.index, surface.inverse_index, front);
+        ratio = select(surface.index, surface.inverse_index, front);
         // Squared sine of the refracted ray's angle: above 1 Snell's law has no solution.
-        let refracted_sine2 = ratio * ratio * fma(-cosine, cosine, 1.0);
+        let refracted_sine2 = ratio * ratio * sine2;
         refracts = is_glass;
         if DIELECTRIC_LAWS != LAWS_REFRACT_ONLY {
             refracts = refracts && refracted_sine2 <= 1.0;
@@ -63,7 +68,14 @@ fn scatter(
     if LAMBERTIAN || FUZZ {
         sent = mul_add3(unit, abs(surface.weight), sent);
     }
-    return Scatter(sent, refracts, is_metal);
+    return Scatter(sent, refracts, is_metal, ratio);
+}
+
+// The refracted direction from the part of the incoming one `across` the normal, which loses nothing where the other
+// form takes a difference of large numbers. Not of length 1.
+fn refracted(across: vec3f, normal: vec3f, ratio: f32, sine2: f32) -> vec3f {
+    let inner_cosine = sqrt(abs(1.0 - ratio * ratio * sine2));
+    return neg_mul_add3(normal, inner_cosine, across * ratio);
 }
 
 // Schlick's approximation of the reflected share. (Section 11.4.)

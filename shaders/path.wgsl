@@ -7,6 +7,8 @@
 struct Path {
     ray: Ray,
     throughput: vec3f,
+    // Squared sine between a ray inside steep glass and the normal where it starts, and so where it ends.
+    sine2: f32,
     bounce: u32,
     counter: u32,
     step: u32,
@@ -187,6 +189,8 @@ fn hit_point(ray: Ray, t: f32, row: Row) -> SurfacePoint {
     var point: SurfacePoint;
     if ANCHORED && row.is_anchored > 0.0 {
         point = anchored_surface_point(ray, t, row.reference, row.inward, row.curvature);
+    } else if SPECKS {
+        point = speck_surface_point(ray, t, row.reference, row.curvature, row.radius);
     } else {
         point = surface_point(ray, t, row.reference, row.curvature, row.radius);
     }
@@ -250,7 +254,7 @@ fn start_path(path: ptr<function, Path>, drawn: Drawn, sine_cosine: vec2f) -> Ra
     }
     (*path).throughput = vec3f(1.0);
     (*path).absorbed = false;
-    return Ray(from_camera.origin, from_camera.direction, NONE, NONE);
+    return Ray(from_camera.origin, from_camera.direction, select(NONE, EYE, EYE_ON_SURFACE), NONE);
 }
 
 fn scatter_path(
@@ -267,14 +271,34 @@ fn scatter_path(
     if !ACNE {
         front = front && (*path).ray.inside != hit;
     }
+    if CAVITY {
+        front = front && row.is_anchored < 2.0;
+    }
     let normal = select(-point.outward, point.outward, front);
-    let incidence = clamp(select(outward_cosine, -outward_cosine, front), 0.0, 1.0);
+    var cosine = min(1.0, abs(outward_cosine));
+    var sine2 = fma(-cosine, cosine, 1.0);
     let rho = sqrt(drawn.pair.x * (1.0 - drawn.pair.x));
     let across = (rho + rho) * sine_cosine.yx;
     let unit = vec3f(across.x, 1.0 - (drawn.pair.x + drawn.pair.x), across.y);
     let surface = Surface(row.weight, row.index, row.inverse_index, row.normal_share);
-    let scattered = scatter(surface, direction, normal, incidence, front, unit, drawn.pair.x);
+    var across_normal: vec3f;
+    if STEEP_GLASS {
+        // A ray inside glass meets it under the angle under which it started: that is remembered, so that total
+        // reflection lasts.
+        across_normal = mul_add3(normal, cosine, direction);
+        let is_known = (*path).ray.inside == hit && row.index > 0.0;
+        sine2 = min(1.0, select(dot3(across_normal, across_normal), (*path).sine2, is_known));
+        cosine = sqrt(1.0 - sine2);
+    }
+    let scattered = scatter(surface, direction, normal, cosine, sine2, front, unit, drawn.pair.x);
     var sent = scattered.direction;
+    if STEEP_GLASS {
+        if scattered.refracts {
+            sent = refracted(across_normal, normal, scattered.ratio, sine2);
+            sine2 *= scattered.ratio * scattered.ratio;
+        }
+        (*path).sine2 = sine2;
+    }
     if HEMISPHERE && row.weight > 0.0 {
         sent = hemisphere(normal, unit);
     }

@@ -61,10 +61,12 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             words[base] = near_root(ray, sphere, 1u);
             words[base + 1u] = nearest_root(ray, sphere, 1u);
             words[base + 2u] = acne_root(ray, sphere);
+            words[base + 3u] = signed_root(ray, sphere, 1u);
+            words[base + 4u] = signed_root(ray, vec4f(sphere.xyz, -sphere.w), 1u);
         }
         case PROBE_ANCHORED: {
             let ray = probe_ray(base);
-            let sphere = AnchoredSphere(v3(base, 8u), f(base, 11u), v3(base, 12u), 0.0);
+            let sphere = AnchoredSphere(v3(base, 8u), f(base, 11u), v3(base, 12u), words[base + 3u] % 3u);
             let key = anchored_root(ray, sphere, 1u);
             let t = f(base, 15u);
             let point = anchored_surface_point(ray, t, sphere.anchor, sphere.inward, sphere.curvature);
@@ -75,17 +77,25 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
         case PROBE_SURFACE: {
             let ray = probe_ray(base);
             let point = surface_point(ray, f(base, 12u), v3(base, 8u), f(base, 11u), f(base, 13u));
+            let speck = speck_surface_point(ray, f(base, 12u), v3(base, 8u), f(base, 11u), f(base, 13u));
             put3(base, 0u, point.position);
             put3(base, 3u, point.outward);
+            put3(base, 6u, speck.position);
+            put3(base, 9u, speck.outward);
         }
         case PROBE_SCATTER: {
             let surface = Surface(f(base, 0u), f(base, 1u), f(base, 2u), f(base, 3u));
             let front = words[base + 14u] != 0u;
-            let sent = scatter(surface, v3(base, 4u), v3(base, 7u), f(base, 13u), front, v3(base, 10u), f(base, 15u));
-            let share = reflectance(f(base, 13u), f(base, 3u));
+            let cosine = f(base, 13u);
+            let sine2 = fma(-cosine, cosine, 1.0);
+            let coin = f(base, 15u);
+            let sent = scatter(surface, v3(base, 4u), v3(base, 7u), cosine, sine2, front, v3(base, 10u), coin);
+            let share = reflectance(cosine, f(base, 3u));
+            let through = refracted(v3(base, 4u), v3(base, 7u), sent.ratio, sine2);
             put3(base, 0u, sent.direction);
             words[base + 3u] = select(0u, 1u, sent.refracts) | select(0u, 2u, sent.is_metal);
             put(base, 4u, share);
+            put3(base, 5u, through);
         }
         case PROBE_CAMERA: {
             let corner = screen(job.camera, vec2f(f(base, 0u), f(base, 1u)));

@@ -3,7 +3,8 @@
 //
 // Twin: src/render_cpu/sphere.rs
 
-// A ray on its way. `left` is the sphere that it leaves outwards, `inside` the one that it enters, or NONE.
+// A ray on its way. `left` is the sphere that it leaves outwards, `inside` the one that it enters, or NONE. From an eye
+// on a surface `left` is EYE.
 struct Ray {
     origin: vec3f,
     direction: vec3f,
@@ -17,12 +18,13 @@ struct Nearest {
     sphere: u32,
 }
 
-// A sphere far larger than the scene, seen from a point on its surface.
+// A sphere as seen from a point on its surface.
 struct AnchoredSphere {
     anchor: vec3f,
     curvature: f32,
     inward: vec3f,
-    radius: f32,
+    // A ROOTS_ tag, and UNDER_EYE where the eye is on the surface.
+    flags: u32,
 }
 
 fn nothing() -> Nearest {
@@ -32,12 +34,6 @@ fn nothing() -> Nearest {
 // Of two spheres at one distance the first taken stays.
 fn take(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
     let nearer = key < nearest.key;
-    return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
-}
-
-// Of two spheres at one distance that with the smaller number stays.
-fn take_in_any_order(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
-    let nearer = key < nearest.key || (key == nearest.key && sphere < nearest.sphere);
     return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
 }
 
@@ -75,7 +71,20 @@ fn nearest_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
     return smaller_key(near, select(-1.0, far, (meets || enters) && !leaves));
 }
 
-// Distance to a huge sphere, everything measured from the anchor.
+// Distance to a sphere of a hierarchy, whose squared radius has a minus sign where only the nearer root counts.
+fn signed_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
+    let hd = chord(ray, vec4f(sphere.xyz, abs(sphere.w)));
+    let s = sqrt(max(hd.y, 0.0));
+    let meets = hd.y >= 0.0;
+    let leaves = ray.left == number;
+    let enters = ray.inside == number;
+    let both = sphere.w >= 0.0;
+    let near = select(-1.0, hd.x - s, meets && !leaves && !(enters && both));
+    let far = hd.x + select(s, abs(hd.x), enters);
+    return smaller_key(near, select(-1.0, far, both && (meets || enters) && !leaves));
+}
+
+// Distance to a sphere that is seen from its anchor: everything is measured from there.
 fn anchored_root(ray: Ray, sphere: AnchoredSphere, number: u32) -> u32 {
     let d = ray.direction;
     let m = sphere.inward;
@@ -91,10 +100,24 @@ fn anchored_root(ray: Ray, sphere: AnchoredSphere, number: u32) -> u32 {
     let discriminant = fma(-k, bend, m_along * m_along);
     let meets = discriminant >= 0.0;
     let q = b + copysign(sqrt(max(discriminant, 0.0)), b);
-    let leaves = ray.left == number;
-    let enters = ray.inside == number;
-    let first = select(-1.0, c / q, meets && !leaves && !enters);
+    let starts = EYE_ON_SURFACE && ray.left == EYE && (sphere.flags & UNDER_EYE) != 0u;
+    let leaves = ray.left == number || (starts && m_along < 0.0);
+    let enters = ray.inside == number || (starts && m_along >= 0.0);
+    // From its own surface inwards a ray runs the chord 2b.
     let second = select(q, b + abs(b), enters) / k;
+    let roots = sphere.flags & ROOTS_MASK;
+    if roots == ROOTS_NEARER {
+        // A ray that rounding puts inside meets it where it starts.
+        return bitcast<u32>(select(-1.0, max(c, 0.0) / q, meets && q > 0.0 && !leaves));
+    }
+    if roots == ROOTS_FARTHER {
+        var farther = max(second, 0.0);
+        if !enters && q != 0.0 {
+            farther = max(farther, c / q);
+        }
+        return bitcast<u32>(farther);
+    }
+    let first = select(-1.0, c / q, meets && !leaves && !enters);
     return smaller_key(first, select(-1.0, second, (meets || enters) && !leaves));
 }
 
@@ -122,6 +145,18 @@ struct SurfacePoint {
 fn surface_point(ray: Ray, t: f32, center: vec3f, curvature: f32, radius: f32) -> SurfacePoint {
     let w = mul_add3(ray.direction, t, ray.origin - center) * curvature;
     let outward = w * fma(-0.5, dot3(w, w), 1.5);
+    return SurfacePoint(mul_add3(outward, radius, center), outward);
+}
+
+// The same on a sphere so far away that `t` is rounded by a part of its radius: the way from the centre to the ray, and
+// half the chord from there.
+fn speck_surface_point(ray: Ray, t: f32, center: vec3f, curvature: f32, radius: f32) -> SurfacePoint {
+    let g = ray.origin - center;
+    let h = dot3(ray.direction, g);
+    let across = neg_mul_add3(ray.direction, h, g) * curvature;
+    let along = sqrt(max(1.0 - dot3(across, across), 0.0));
+    let w = mul_add3(ray.direction, copysign(along, t + h), across);
+    let outward = w * (1.0 / sqrt(dot3(w, w)));
     return SurfacePoint(mul_add3(outward, radius, center), outward);
 }
 

@@ -10,10 +10,10 @@ use weekender::film::FIXED_POINT_MAX;
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, V3, Wide};
-use weekender::render_cpu::material::{Surface, reflectance, scatter};
+use weekender::render_cpu::material::{Incidence, Surface, reflectance, refracted, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, acne_root, anchored_root, anchored_surface_point, near_root, nearest_root,
-    surface_point,
+    speck_surface_point, surface_point,
 };
 use weekender::render_gpu::shader_source::{PROBE_STRIDE, Probe};
 use weekender::render_gpu::{GpuOptions, GpuRenderer};
@@ -22,7 +22,7 @@ use weekender::sampling::{
 };
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{DielectricLaws, Rules};
-use weekender::tables::{AnchoredSphere, CameraTable};
+use weekender::tables::{AnchoredSphere, CameraTable, Roots};
 
 /// The CPU's arithmetic, one lane, fused.
 type L = Scalar<true>;
@@ -229,11 +229,13 @@ fn intersections() {
         let sphere: [f32; 4] = [8, 9, 10, 11].map(|i| float(&input, i));
         compare_keys(&mut ulps, output[0], near_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
         compare_keys(&mut ulps, output[1], nearest_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
+        compare_keys(&mut ulps, output[3], nearest_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
+        compare_keys(&mut ulps, output[4], near_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
         compare_keys(&mut ulps, output[2], acne_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
     }
     ulps.within("roots", 64.0);
 
-    let mut ulps = Ulps::default();
+    let (mut ulps, mut specks) = (Ulps::default(), Ulps::default());
     let surface = |i: u32| {
         let mut words = ray_words(i);
         let radius = float(&words, 11).sqrt();
@@ -254,7 +256,12 @@ fn intersections() {
         let point = surface_point(L, &rays(&input), t, vector(&input, 8), curvature, radius);
         ulps.compare(&list(vector(&output, 0)), &list(point.position), 4.0);
         ulps.compare(&list(vector(&output, 3)), &list(point.outward), 4.0);
+        let speck = speck_surface_point(L, &rays(&input), t, vector(&input, 8), curvature, radius);
+        specks.compare(&list(vector(&output, 6)), &list(speck.position), 4.0);
+        specks.compare(&list(vector(&output, 9)), &list(speck.outward), 4.0);
     }
+    // Half the chord is a root of a difference.
+    specks.within("speck_surface_point", 4096.0);
     ulps.within("surface_point", 8.0);
 }
 
@@ -281,6 +288,8 @@ fn anchored_spheres() {
             anchor: list(vector(&input, 8)),
             inward: list(vector(&input, 12)),
             curvature: float(&input, 11),
+            roots: [Roots::Nearer, Roots::Both, Roots::Farther][input[3] as usize % 3],
+            under_eye: false,
         };
         let rays = rays(&input);
         compare_keys(&mut roots, output[0], anchored_root(L, &rays, &sphere, Wrapping(1)), &input);
@@ -326,7 +335,8 @@ fn scattering() {
             let (cosine, coin) = (float(&input, 13), float(&input, 15));
             let (d, n, unit) = (vector(&input, 4), vector(&input, 7), vector(&input, 10));
             let front = input[14] != 0;
-            let sent = scatter::<L, true>(L, &surface, laws, d, n, cosine, front, unit, coin);
+            let sent =
+                scatter::<L, true>(L, &surface, laws, d, n, &Incidence::of(L, cosine), front, unit, coin);
             let flags = u32::from(sent.refracts) | u32::from(sent.is_metal) << 1;
             if output[3] != flags {
                 // A coin within rounding of the reflectance.
@@ -335,6 +345,8 @@ fn scattering() {
             }
             ulps.compare(&list(vector(&output, 0)), &list(sent.direction), 2.0);
             ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, normal_share)], 1.0);
+            let sine2 = Incidence::of(L, cosine).sine2;
+            ulps.compare(&list(vector(&output, 5)), &list(refracted(L, d, n, sent.ratio, sine2)), 2.0);
         }
         assert!(parted <= 2, "{parted} parted");
         // Near the critical angle the inner cosine is a root of almost 0.
@@ -347,7 +359,8 @@ fn camera_rays() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let job = job(DielectricLaws::Schlick);
     let settings = job.settings();
-    let camera = CameraTable::<f32>::new(job.camera(), settings.width, settings.height).map(Wide::splat);
+    let camera =
+        CameraTable::<f32>::new(job.camera(), settings.width, settings.height, DVec3::ZERO).map(Wide::splat);
     let mut ulps = Ulps::default();
     for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Camera, |i| {
         let [x, y, a, b] = uniform(i, 50);

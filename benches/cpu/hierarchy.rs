@@ -3,6 +3,7 @@
 use crate::widths::{Body, COUNT, Vectors, rays, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use glam::DVec3;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
 use weekender::render_cpu::lanes::Lanes;
 use weekender::render_cpu::sphere::Nearest;
@@ -20,7 +21,9 @@ fn spheres(count: u64) -> Vec<Sphere> {
 #[divan::bench(args = COUNTS, sample_count = 10)]
 fn build(bencher: Bencher, count: u64) {
     let spheres = spheres(count);
-    bencher.counter(ItemsCount::new(count)).bench(|| Hierarchy::<f32>::build(divan::black_box(&spheres)));
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench(|| Hierarchy::<f32>::build(divan::black_box(&spheres), DVec3::ZERO));
 }
 
 /// Rays in all directions from a little above the middle of a field.
@@ -34,13 +37,13 @@ struct Traverse {
 impl Traverse {
     fn new(count: u64) -> Self {
         let spheres = spheres(count);
-        let (hierarchy, order) = Hierarchy::build(&spheres);
+        let hierarchy = Hierarchy::build(&spheres, DVec3::ZERO);
         let packed = |index: &u32| {
             let Sphere { center, radius, .. } = spheres[*index as usize];
             [center.x, center.y, center.z, radius * radius].map(|x| x as f32)
         };
         Traverse {
-            spheres: order.iter().map(packed).collect(),
+            spheres: hierarchy.ranks.iter().map(packed).collect(),
             hierarchy,
             origins: Vectors::within(0.5, 1.0),
             directions: Vectors::within(-1.0, 1.0).normalised(),

@@ -4,7 +4,7 @@ use crate::widths::{Body, COUNT, Vectors, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::{Lanes, V3, dot};
-use weekender::render_cpu::material::{Surface, scatter};
+use weekender::render_cpu::material::{Incidence, Surface, scatter};
 use weekender::stages::DielectricLaws;
 
 /// Bounces of each ray: so many that loading it does not matter.
@@ -49,8 +49,17 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
                 let front = L::lt(cosine, zero);
                 let cosine = L::min(L::abs(cosine), l.constant(1.0));
                 let laws = DielectricLaws::Schlick;
-                let found =
-                    scatter::<L, GLASS>(l, &surface, laws, direction, normal, cosine, front, unit, coin);
+                let found = scatter::<L, GLASS>(
+                    l,
+                    &surface,
+                    laws,
+                    direction,
+                    normal,
+                    &Incidence::of(l, cosine),
+                    front,
+                    unit,
+                    coin,
+                );
                 direction = found.direction.scale(l.constant(0.5));
             }
             sum = sum + direction;

@@ -155,10 +155,10 @@ fn hierarchy(scene: &str) -> anyhow::Result<()> {
     let mut sizes = [0, 0];
     for _ in 0..5 {
         let start = Instant::now();
-        let (bvh2, _) = Hierarchy::<f32>::build(spheres.iter().copied());
+        let bvh2 = Hierarchy::<f32>::build(spheres.iter().copied(), tables.origin);
         bvh2_times.push(ms(start));
         let start = Instant::now();
-        let cwbvh = Cwbvh::build(spheres.iter().copied());
+        let cwbvh = Cwbvh::build(spheres.iter().copied(), tables.origin);
         cwbvh_times.push(ms(start));
         sizes = [bvh2.nodes.len() * size_of::<Node<f32>>(), cwbvh.nodes.len() * size_of::<CwBvhNode>()];
     }

@@ -74,6 +74,9 @@ pub struct ErrorEstimate {
 /// With fewer pixels in effect the error estimate is in doubt.
 const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
 
+/// It is so only if they are less than this share of all: small pictures have few pixels.
+const DOMINANT_SHARE: f64 = 0.2;
+
 impl ErrorEstimate {
     /// As how many pixels of like errors those are from which it comes, `(sum e^2)^2 / sum e^4` with `e` the errors: few,
     /// where a few pixels dominate it; infinite without any error.
@@ -83,13 +86,14 @@ impl ErrorEstimate {
         if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
     }
 
-    /// What to say where few pixels dominate it. It is then most likely too low, and its deviation with it: what paths
-    /// find rarely is missing in most estimates.
-    pub fn doubt(&self) -> Option<String> {
+    /// What to say where few of the film's pixels dominate it. It is then most likely too low, and its deviation with it:
+    /// what paths find rarely is missing in most estimates.
+    pub fn doubt(&self, film_pixels: usize) -> Option<String> {
         let pixels = self.pixels_in_effect();
-        (pixels < PIXELS_IN_EFFECT_MIN).then(|| {
+        (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * film_pixels as f64).then(|| {
             format!(
-                "a few bright pixels dominate the error estimate: it is worth that of {pixels:.0} pixels, and                  {PIXELS_IN_EFFECT_MIN:.0} are needed; it may be off by a factor, and only more samples tell"
+                "few pixels dominate the error estimate: it is worth that of {pixels:.0} of {film_pixels} pixels, \
+                 where {PIXELS_IN_EFFECT_MIN:.0} would do; it may be off by a factor, and only more samples tell"
             )
         })
     }

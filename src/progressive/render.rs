@@ -116,7 +116,7 @@ impl Render {
 
     pub fn end(&mut self, reason: EndReason) {
         self.estimate_error();
-        let doubt = self.status.error.and_then(|error| error.doubt());
+        let doubt = self.status.error.and_then(|error| error.doubt(self.film.halves()[0].len()));
         self.status.say(doubt.into_iter().collect());
         self.status.phase = Phase::Done(reason);
     }

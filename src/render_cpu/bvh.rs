@@ -3,17 +3,16 @@
 //! Twin: shaders/bvh.wgsl
 
 use super::lanes::{Lanes, V3, splat3};
-use super::sphere::{Nearest, Rays, Spheres, nearest_root};
-use crate::tables::hierarchy::{COUNT_MASK, Hierarchy, LEAST_COMPONENT, Node, ROUNDING_UNITS};
+use super::sphere::{Nearest, Rays, Spheres, near_root, nearest_root};
+use crate::tables::Real;
+use crate::tables::hierarchy::{COUNT_MASK, DEPTH_LIMIT, Hierarchy, LEAST_COMPONENT, Node, ROUNDING_UNITS};
 
-/// Deepest tree that a traversal has room for. obvhs promises depths well below.
-const STACK_SIZE: usize = 96;
-
-/// Nodes to be visited. It outlives the traversals: clearing it each time would show in the run time.
-pub type Stack = [u32; STACK_SIZE];
+/// Nodes to be visited, one a level at most. It outlives the traversals: clearing it each time would show in the run
+/// time.
+pub type Stack = [u32; DEPTH_LIMIT];
 
 /// A stack to start with.
-pub const EMPTY_STACK: Stack = [0; STACK_SIZE];
+pub const EMPTY_STACK: Stack = [0; DEPTH_LIMIT];
 
 /// Takes the nearest hits among the spheres of a hierarchy into `nearest`. `active` lanes are those whose result
 /// matters.
@@ -46,9 +45,16 @@ pub fn traverse<L: Lanes>(
                 continue;
             }
             let first = node.first as usize;
-            for (offset, sphere) in spheres[first..first + count as usize].iter().enumerate() {
-                let sphere = Spheres::splat(l, *sphere, l.splat_u((first + offset) as u32));
-                nearest.take_in_any_order(nearest_root(l, rays, &sphere), sphere.number);
+            for (offset, &[x, y, z, radius2]) in spheres[first..first + count as usize].iter().enumerate() {
+                let number = (first + offset) as u32;
+                let sphere = |radius2| Spheres::splat(l, [x, y, z, radius2], l.splat_u(number));
+                // Rays that leave one of two spheres of the same place must not meet the far side of the other.
+                let key = if radius2 < L::Real::default() {
+                    near_root(l, rays, &sphere(radius2.negated()))
+                } else {
+                    nearest_root(l, rays, &sphere(radius2))
+                };
+                nearest.take_in_any_order(l, key, number, &hierarchy.ranks, active);
             }
             limit = nearest.distance();
         }

@@ -12,7 +12,7 @@ use super::wide::WideTables;
 use super::work::{TileStats, Work};
 use crate::record::PathRecord;
 use crate::render::Features;
-use crate::tables::Tables;
+use crate::tables::{Real, Tables};
 use fearless_simd::{Level, Simd};
 
 /// Traces a tile.
@@ -23,16 +23,16 @@ const OPAQUE: u32 = 0;
 /// Glass besides: the three spheres.
 const GLASS: u32 = needs::GLASS;
 /// All that finished pictures need: the book's last.
-const FINISHED: u32 = needs::GLASS | needs::LENS | needs::ANCHORED | needs::HIERARCHY;
+const FINISHED: u32 = needs::GLASS | needs::LENS | needs::EXTREMES | needs::HIERARCHY;
 /// Everything.
 const GENERAL: u32 = needs::ALL;
 
 /// The code that a job needs of a kernel.
-pub fn needs_of<R>(features: &Features, tables: &Tables<R>) -> u32 {
+pub fn needs_of<R: Real>(features: &Features, tables: &Tables<R>) -> u32 {
     let bit = |needed: bool, bit: u32| if needed { bit } else { 0 };
     bit(!tables.two_root.is_empty() || features.dielectric, needs::GLASS)
         | bit(features.lens, needs::LENS)
-        | bit(!tables.anchored.is_empty(), needs::ANCHORED)
+        | bit(tables.is_extreme(), needs::EXTREMES)
         | bit(tables.hierarchy.is_some(), needs::HIERARCHY)
         | bit(features.stage_rules, needs::RULES)
 }
@@ -42,7 +42,7 @@ pub fn contents(needed: u32) -> String {
     let parts = [
         (needs::GLASS, "glass"),
         (needs::LENS, "lens"),
-        (needs::ANCHORED, "anchored spheres"),
+        (needs::EXTREMES, "extremes"),
         (needs::HIERARCHY, "hierarchy"),
         (needs::RULES, "stage rules"),
     ];

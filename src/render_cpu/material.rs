@@ -6,7 +6,7 @@
 //!
 //! Twin: shaders/material.wgsl
 
-use super::lanes::{Lanes, V3, dot, mul_add3};
+use super::lanes::{Lanes, V3, dot, mul_add3, neg_mul_add3};
 use crate::stages::DielectricLaws;
 
 /// A material as its table row has it.
@@ -30,12 +30,38 @@ pub struct Scatter<L: Lanes> {
     pub refracts: L::M,
     /// Whether the surface is a metal.
     pub is_metal: L::M,
+    /// Sine in the refracted direction over that of incidence, where it refracts.
+    pub ratio: L::F,
+}
+
+/// How a ray meets a surface.
+pub struct Incidence<L: Lanes> {
+    /// Cosine with the normal, in `[0, 1]`.
+    pub cosine: L::F,
+    /// Squared sine.
+    pub sine2: L::F,
+}
+
+impl<L: Lanes> Incidence<L> {
+    /// From the cosine of direction and outward normal.
+    #[inline(always)]
+    pub fn of(l: L, outward_cosine: L::F) -> Self {
+        let one = l.constant(1.0);
+        let cosine = L::min(one, L::abs(outward_cosine));
+        Incidence { cosine, sine2: L::neg_mul_add(cosine, cosine, one) }
+    }
+
+    /// From the squared sine.
+    #[inline(always)]
+    pub fn of_sine2(l: L, sine2: L::F) -> Self {
+        let sine2 = L::min(l.constant(1.0), sine2);
+        Incidence { cosine: L::sqrt(l.constant(1.0) - sine2), sine2 }
+    }
 }
 
 /// Scatters at a surface that is a mirror, a metal or Lambertian, or, if `GLASS`, a dielectric.
 ///
-/// `cosine` is that of the angle of incidence, in `[0, 1]`; `front` says that the ray comes from outside;
-/// `coin` is uniform in `[0, 1)`.
+/// `front` says that the ray comes from outside; `coin` is uniform in `[0, 1)`.
 #[inline(always)]
 pub fn scatter<L: Lanes, const GLASS: bool>(
     l: L,
@@ -43,22 +69,24 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
     laws: DielectricLaws,
     direction: V3<L::F>,
     normal: V3<L::F>,
-    cosine: L::F,
+    incidence: &Incidence<L>,
     front: L::M,
     unit: V3<L::F>,
     coin: L::F,
 ) -> Scatter<L> {
     let (zero, one) = (l.constant(0.0), l.constant(1.0));
+    let &Incidence { cosine, sine2 } = incidence;
     let reflects = L::is_negative(surface.weight);
     let mut along = L::select(reflects, one, zero);
     let mut across = L::select(reflects, cosine + cosine, one);
     let mut refracts = l.mask(0);
     let mut is_metal = reflects;
+    let mut ratio = one;
     if GLASS {
         let is_glass = L::lt(zero, surface.index);
-        let ratio = L::select(front, surface.inverse_index, surface.index);
+        ratio = L::select(front, surface.inverse_index, surface.index);
         // Squared sine of the refracted ray's angle: above 1 Snell's law has no solution.
-        let refracted_sine2 = ratio * ratio * L::neg_mul_add(cosine, cosine, one);
+        let refracted_sine2 = ratio * ratio * sine2;
         let mut kept = is_glass;
         if laws != DielectricLaws::RefractOnly {
             kept = kept & !L::lt(one, refracted_sine2);
@@ -73,7 +101,15 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
         is_metal = is_metal & !is_glass;
     }
     let smooth = mul_add3::<L>(direction, along, normal.scale(across));
-    Scatter { direction: mul_add3::<L>(unit, L::abs(surface.weight), smooth), refracts, is_metal }
+    Scatter { direction: mul_add3::<L>(unit, L::abs(surface.weight), smooth), refracts, is_metal, ratio }
+}
+
+/// The refracted direction from the part of the incoming one `across` the normal, which loses nothing where the other
+/// form takes a difference of large numbers. Not of length 1.
+#[inline(always)]
+pub fn refracted<L: Lanes>(l: L, across: V3<L::F>, normal: V3<L::F>, ratio: L::F, sine2: L::F) -> V3<L::F> {
+    let inner_cosine = L::sqrt(L::abs(l.constant(1.0) - ratio * ratio * sine2));
+    neg_mul_add3::<L>(normal, inner_cosine, across.scale(ratio))
 }
 
 /// Schlick's approximation of the reflected share. (Section 11.4.)

@@ -99,6 +99,7 @@ pub struct CpuRenderer {
     job: Option<RenderJob>,
     prepared: Option<Prepared>,
     occupancy: TileOccupancy,
+    messages: Vec<String>,
     /// Tiles before one in which the tracer panics: a drill.
     tiles_to_panic: Option<AtomicU64>,
 }
@@ -174,6 +175,7 @@ impl CpuRenderer {
                 prepared: None,
                 occupancy: TileOccupancy::default(),
                 tiles_to_panic: None,
+                messages: Vec::new(),
             })
             .map_err(|error| CpuError::Threads { threads, reason: error.to_string() })
     }
@@ -225,6 +227,7 @@ impl Renderer for CpuRenderer {
             (Some((isa, lanes)), old) => {
                 let old = if let Some(Prepared::Single(wide, _)) = old { Some(wide.tables) } else { None };
                 let tables = Tables::renewed(old.zip(before), job);
+                self.messages = tables.warnings().to_vec();
                 let needed = kernels::needs_of(&job.features(), &tables);
                 let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
@@ -240,6 +243,10 @@ impl Renderer for CpuRenderer {
         });
         self.job = Some(job.clone());
         Ok(())
+    }
+
+    fn take_messages(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.messages)
     }
 
     fn tile_occupancy(&self) -> Option<TileOccupancy> {

@@ -57,10 +57,14 @@ pub(super) fn record<L: Lanes>(l: L, wide: &WideTables<L::Real>, pixel: [u32; 2]
     let rows = sums.iter_mut().map(std::slice::from_mut).collect();
     let mut work = Work::new(&blocks, &[0], pixel, 1, rows);
     let mut path = SinglePath::start(l, wide, &mut work);
+    let in_scene = |position: V3<L::F>| {
+        let [x, y, z] = first_lane::<L>(position);
+        (glam::DVec3::new(x, y, z) + tables.origin).to_array()
+    };
     let mut rays: Vec<RecordedRay> = Vec::new();
     while path.is_alive() {
         let mut ray = RecordedRay {
-            origin: first_lane::<L>(path.origin()),
+            origin: in_scene(path.origin()),
             direction: first_lane::<L>(path.direction()),
             throughput: first_lane::<L>(path.throughput()),
             hit: None,
@@ -68,7 +72,7 @@ pub(super) fn record<L: Lanes>(l: L, wide: &WideTables<L::Real>, pixel: [u32; 2]
         let (sphere, distance) = path.advance(l, wide, &mut work);
         let goes_on = path.is_alive() && !path.is_absorbed();
         if sphere != NONE {
-            let position = goes_on.then(|| first_lane::<L>(path.origin()));
+            let position = goes_on.then(|| in_scene(path.origin()));
             let sphere = tables.scene_index[sphere as usize] as usize;
             ray.hit = Some(RecordedHit { sphere, distance, position });
         }

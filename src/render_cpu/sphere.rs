@@ -2,9 +2,9 @@
 //!
 //! Twin: shaders/sphere.wgsl
 
-use super::lanes::{Lanes, V3, Wide, dot, load3, mul_add3, neg_mul_add3, splat3};
-use crate::tables::AnchoredSphere;
-pub use crate::tables::NONE;
+use super::lanes::{Lanes, V3, Wide, WideU, dot, load3, mul_add3, neg_mul_add3, splat3};
+use crate::tables::{AnchoredSphere, Roots};
+pub use crate::tables::{EYE, NONE};
 
 /// Rays on their way. Directions have length 1.
 #[derive(Clone, Copy)]
@@ -13,7 +13,8 @@ pub struct Rays<L: Lanes> {
     pub origin: V3<L::F>,
     /// Where they go; unit vectors.
     pub direction: V3<L::F>,
-    /// The sphere that they leave outwards, which they cannot meet again, or [`NONE`].
+    /// The sphere that they leave outwards, which they cannot meet again, or [`NONE`]; [`EYE`] for rays from an eye
+    /// on a surface.
     pub left: L::U,
     /// The sphere that they enter, which they meet again at the end of a chord, or [`NONE`].
     pub inside: L::U,
@@ -91,14 +92,29 @@ impl<L: Lanes> Nearest<L> {
         self.key = L::min_key(self.key, key);
     }
 
-    /// Takes `key` where it is nearer. Of two spheres at one distance that with the smaller number stays, so
-    /// that the order of the search does not show.
+    /// Takes `key` where it is nearer, in any order of the search: of two spheres at one distance that of the lower
+    /// rank stays. `ranks` tells those of the spheres from number 0 on; `active` lanes are those that matter.
     #[inline(always)]
-    pub fn take_in_any_order(&mut self, key: L::Key, sphere: L::U) {
-        let tied = L::eq_key(key, self.key);
-        let winner = L::select_u(L::lt_key(key, self.key), sphere, self.sphere);
-        self.sphere = L::select_u(tied, L::min_u(self.sphere, sphere), winner);
-        self.key = L::min_key(self.key, key);
+    pub fn take_in_any_order(&mut self, l: L, key: L::Key, sphere: u32, ranks: &[u32], active: L::M) {
+        let tied = L::bits(L::eq_key(key, self.key) & active);
+        self.take(key, l.splat_u(sphere));
+        if tied != 0 {
+            self.settle(l, tied, sphere, ranks);
+        }
+    }
+
+    /// Gives the lanes `tied` the sphere of the lower rank. Spheres hardly ever tie.
+    #[inline(always)]
+    fn settle(&mut self, l: L, tied: u32, sphere: u32, ranks: &[u32]) {
+        let mut held = WideU::default();
+        L::store_u(self.sphere, &mut held);
+        for (lane, number) in held.0.iter_mut().enumerate().take(L::WIDTH) {
+            let rank = |number: u32| ranks.get(number as usize);
+            if tied >> lane & 1 != 0 && rank(sphere) < rank(*number) {
+                *number = sphere;
+            }
+        }
+        self.sphere = l.load_u(&held);
     }
 
     /// How far the hits are; infinity where there is none.
@@ -143,8 +159,8 @@ pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::K
     l.exclude(leaves, L::min_key(near, far))
 }
 
-/// Distance to a huge sphere. Everything is measured from the anchor, so that no number is as large as the
-/// radius; as the curvature goes to 0 this is the distance to a plane.
+/// Distance to a sphere that is seen from a point of its surface. Everything is measured from the anchor, so that no
+/// number is as large as the radius; as the curvature goes to 0 this is the distance to a plane.
 #[inline(always)]
 pub fn anchored_root<L: Lanes>(
     l: L,
@@ -162,13 +178,35 @@ pub fn anchored_root<L: Lanes>(
     let b = L::neg_mul_add(k, x_along, m_along);
     let c = L::neg_mul_add(two, dot::<L>(x, m), k * dot::<L>(x, x));
     let bend = L::neg_mul_add(two, dot::<L>(x_across, m_across), k * dot::<L>(x_across, x_across));
-    let s = L::sqrt(L::neg_mul_add(k, bend, m_along * m_along));
-    let q = b + L::copysign(s, b);
-    let leaves = L::eq_u(rays.left, number);
-    let enters = L::eq_u(rays.inside, number);
-    let first = l.exclude(enters, L::key(-(c / q)));
-    let second = L::key(-(L::select(enters, b + L::abs(b), q) / k));
-    l.exclude(leaves, L::min_key(first, second))
+    let zero = l.constant(0.0);
+    let discriminant = L::neg_mul_add(k, bend, m_along * m_along);
+    let mut leaves = L::eq_u(rays.left, number);
+    let mut enters = L::eq_u(rays.inside, number);
+    if sphere.under_eye {
+        let starts = L::eq_u(rays.left, l.splat_u(EYE));
+        let outwards = L::lt(m_along, zero);
+        leaves = leaves | (starts & outwards);
+        enters = enters | (starts & !outwards);
+    }
+    // From its own surface inwards a ray runs the chord 2b.
+    let own_chord = (b + L::abs(b)) / k;
+    match sphere.roots {
+        Roots::Nearer => {
+            let q = b + L::copysign(L::sqrt(discriminant), b);
+            l.exclude(leaves, L::key(-(L::max(c, zero) / q)))
+        }
+        Roots::Both => {
+            let q = b + L::copysign(L::sqrt(discriminant), b);
+            let first = l.exclude(enters, L::key(-(c / q)));
+            let second = L::key(-L::select(enters, own_chord, q / k));
+            l.exclude(leaves, L::min_key(first, second))
+        }
+        Roots::Farther => {
+            let q = b + L::copysign(L::sqrt(L::max(discriminant, zero)), b);
+            let farther = L::max(L::max(c / q, q / k), zero);
+            L::key(-L::select(enters, own_chord, farther))
+        }
+    }
 }
 
 /// The book's own arithmetic with 0 as the smallest distance and no memory of the surface left: what the
@@ -206,6 +244,26 @@ pub fn surface_point<L: Lanes>(
 ) -> SurfacePoint<L> {
     let w = mul_add3::<L>(rays.direction, t, rays.origin - center).scale(curvature);
     let outward = w.scale(L::neg_mul_add(l.constant(0.5), dot::<L>(w, w), l.constant(1.5)));
+    SurfacePoint { position: mul_add3::<L>(outward, radius, center), outward }
+}
+
+/// The same on a sphere so far away that `t` is rounded by a part of its radius: the way from the centre to the ray,
+/// and half the chord from there.
+#[inline(always)]
+pub fn speck_surface_point<L: Lanes>(
+    l: L,
+    rays: &Rays<L>,
+    t: L::F,
+    center: V3<L::F>,
+    curvature: L::F,
+    radius: L::F,
+) -> SurfacePoint<L> {
+    let g = rays.origin - center;
+    let h = dot::<L>(rays.direction, g);
+    let across = neg_mul_add3::<L>(rays.direction, h, g).scale(curvature);
+    let along2 = L::max(l.constant(1.0) - dot::<L>(across, across), l.constant(0.0));
+    let w = mul_add3::<L>(rays.direction, L::copysign(L::sqrt(along2), t + h), across);
+    let outward = w.scale(l.constant(1.0) / L::sqrt(dot::<L>(w, w)));
     SurfacePoint { position: mul_add3::<L>(outward, radius, center), outward }
 }
 

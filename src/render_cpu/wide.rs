@@ -20,6 +20,12 @@ pub struct WideTables<R> {
     pub sky_middle: [Wide<R>; 3],
     /// `tables.sky_slope`.
     pub sky_slope: [Wide<R>; 3],
+    /// `tables.is_eye_on_surface()`.
+    pub is_eye_on_surface: bool,
+    /// `tables.is_eye_in_cavity()`.
+    pub is_eye_in_cavity: bool,
+    /// `tables.is_extreme()`.
+    pub is_extreme: bool,
     /// The first of `tables.rows` by column, for kernels that hold a column in a register.
     pub columns: Box<[Wide<R>; 16]>,
 }
@@ -45,6 +51,9 @@ impl<R: Real> WideTables<R> {
             sky_middle: tables.sky_middle.map(Wide::splat),
             sky_slope: tables.sky_slope.map(Wide::splat),
             columns,
+            is_eye_on_surface: tables.is_eye_on_surface(),
+            is_eye_in_cavity: tables.is_eye_in_cavity(),
+            is_extreme: tables.is_extreme(),
             tables,
         }
     }

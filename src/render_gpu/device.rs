@@ -1,5 +1,6 @@
 //! Adapters, the device, and what can go wrong with it.
 
+use super::options::COMPILING_PATIENCE;
 use super::{Fault, GpuError};
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -228,6 +229,8 @@ pub struct Gpu {
 struct Silence {
     /// What was waited since its last answer.
     waited: Duration,
+    /// Whether the driver may be compiling.
+    compiles: bool,
     /// When a drill ends in which it does not answer.
     simulated_until: Option<Instant>,
 }
@@ -358,7 +361,7 @@ impl Gpu {
             Fault::OutOfMemory => self.use_up_memory(),
             Fault::Hang => self.silence().simulated_until = Some(Instant::now() + DRILL_SILENCE),
             // It is the dispatch's.
-            Fault::Short => {}
+            Fault::Short | Fault::AlwaysShort => {}
             // More than the buffer has room for.
             Fault::Invalid => {
                 let small = self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -390,6 +393,11 @@ impl Gpu {
         self.silence.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// The next answer may take longer: a kernel runs for the first time.
+    pub fn expect_compiling(&self) {
+        self.silence().compiles = true;
+    }
+
     /// Waits until a submission is done.
     ///
     /// # Errors
@@ -414,13 +422,13 @@ impl Gpu {
             let mut silence = self.silence();
             match polled {
                 Ok(_) => {
-                    silence.waited = Duration::ZERO;
+                    (silence.waited, silence.compiles) = (Duration::ZERO, false);
                     return Ok(true);
                 }
                 Err(wgpu::PollError::Timeout) => silence.waited += begin.elapsed(),
                 Err(error) => return Err(format!("the device was lost: {error}")),
             }
-            if silence.waited >= self.patience {
+            if silence.waited >= self.patience * if silence.compiles { COMPILING_PATIENCE } else { 1 } {
                 self.faults.note(format!(
                     "{} has not answered for {:.0} s and is given up; render on the CPU, or start again once it answers",
                     self.adapter.name,

@@ -126,14 +126,14 @@ pub(super) struct Dispatches {
 impl Dispatches {
     /// # Errors
     /// If the device has no memory.
-    pub(super) fn new(gpu: &Gpu, target: Duration) -> Result<Self, String> {
+    pub(super) fn new(gpu: &Gpu, target: Duration, turn_limit: Option<u32>) -> Result<Self, String> {
         Ok(Dispatches {
             slots: (0..QUEUE_DEPTH).map(|_| Slot::new(gpu, ASIDE_SIZE)).collect::<Result<_, _>>()?,
             under_way: VecDeque::new(),
             last_done: Instant::now(),
             budgets: HashMap::new(),
             target,
-            turn_limit: TURN_LIMIT / gpu.adapter.threads_in_step(),
+            turn_limit: turn_limit.unwrap_or(TURN_LIMIT / gpu.adapter.threads_in_step()),
             caution: 0,
             shortfall: None,
             count: 0,
@@ -149,6 +149,11 @@ impl Dispatches {
     /// Whether the device's own clock tells what dispatches take.
     pub(super) fn is_timed_by_device(&self) -> bool {
         self.slots.iter().all(|slot| slot.receipt.has_clock())
+    }
+
+    /// Whether a kernel was never run.
+    pub(super) fn is_new(&self, kernel: &Overrides) -> bool {
+        !self.budgets.contains_key(kernel)
     }
 
     fn budget(&mut self, kernel: &Overrides) -> &mut Budget {
@@ -382,7 +387,8 @@ impl GpuRenderer {
 
     /// Sends a new dispatch off, unless a drill is due.
     fn send_off(&mut self, slot: usize, mut work: Work) -> Result<(), String> {
-        if self.drill(DrillPoint::Dispatch, self.dispatches.count) == Some(Fault::Short) {
+        let fault = self.drill(DrillPoint::Dispatch, self.dispatches.count);
+        if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
             work.order.block_count = 0;
         }
         self.dispatches.submit(&self.gpu, slot, work, 0)
@@ -475,7 +481,8 @@ mod tests {
 
     #[test]
     fn tiles_have_all_pixels_once() {
-        for (area, tile) in [([50, 43], [8, 8]), ([1, 2000], [1, 64]), ([4, 4], [4, 16]), ([64, 64], [8, 8])]
+        for (area, tile) in
+            [([50_u32, 43_u32], [8, 8]), ([1, 2000], [1, 64]), ([4, 4], [4, 16]), ([64, 64], [8, 8])]
         {
             let tiles = area[0].div_ceil(tile[0]) * area[1].div_ceil(tile[1]);
             assert_eq!(pixels_within(area, tile, 0..tiles), u64::from(area[0]) * u64::from(area[1]));

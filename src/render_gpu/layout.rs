@@ -15,7 +15,13 @@ pub const UNIFORM_SPHERES: usize = 32;
 pub const UNIFORM_ANCHORED: usize = 4;
 
 /// Words in which a thread puts its path aside. Twin: shaders/aside.wgsl.
-pub const ASIDE_STRIDE: u32 = 16;
+pub const ASIDE_STRIDE: u32 = 17;
+
+/// The bits of [`GpuAnchoredSphere::flags`] that tell which roots count.
+pub const ROOTS_MASK: u32 = 3;
+
+/// The bit of [`GpuAnchoredSphere::flags`] that says that the eye is on the surface.
+pub const UNDER_EYE: u32 = 4;
 
 /// Threads of a workgroup.
 pub const WORKGROUP_SIZE: u32 = 64;
@@ -74,8 +80,8 @@ pub struct GpuAnchoredSphere {
     pub curvature: f32,
     /// Unit vector from the anchor to the centre.
     pub inward: [f32; 3],
-    /// Radius.
-    pub radius: f32,
+    /// Which roots count, and [`UNDER_EYE`].
+    pub flags: u32,
 }
 
 impl From<&AnchoredSphere<f32>> for GpuAnchoredSphere {
@@ -84,7 +90,7 @@ impl From<&AnchoredSphere<f32>> for GpuAnchoredSphere {
             anchor: sphere.anchor,
             curvature: sphere.curvature,
             inward: sphere.inward,
-            radius: 1.0 / sphere.curvature,
+            flags: sphere.roots as u32 | if sphere.under_eye { UNDER_EYE } else { 0 },
         }
     }
 }
@@ -109,7 +115,7 @@ pub struct GpuJob {
     pub opaque_count: u32,
     /// Spheres of two.
     pub two_root_count: u32,
-    /// Huge spheres.
+    /// Spheres that are seen from a point on their surface.
     pub anchored_count: u32,
     /// Pixels across.
     pub width: u32,
@@ -231,7 +237,7 @@ pub struct GpuRow {
     pub normal_share: f32,
     /// From the anchor to the centre.
     pub inward: [f32; 3],
-    /// 1 if anchored.
+    /// 1 if anchored, 2 if every ray is inside.
     pub is_anchored: f32,
 }
 

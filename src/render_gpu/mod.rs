@@ -63,7 +63,7 @@ impl GpuRenderer {
     /// [`GpuError`], with the adapters that there are.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
         let gpu = Gpu::open(options.adapter.as_deref(), options.allow_software, options.patience)?;
-        let dispatches = Dispatches::new(&gpu, options.dispatch_target)
+        let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.turn_limit)
             .map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
         let report = GpuReport { timer: dispatches.timer(), ..GpuReport::default() };
         let messages = if gpu.adapter.is_software {
@@ -143,7 +143,11 @@ impl GpuRenderer {
 
     /// The fault that a drill brings about at this point, the `count`th of its kind; a broken device is broken.
     fn drill(&self, point: DrillPoint, count: u64) -> Option<Fault> {
-        let drill = self.options.drill.filter(|drill| (drill.point, drill.after) == (point, count))?;
+        let is_due = |drill: &Drill| {
+            let lasts = drill.fault == Fault::AlwaysShort;
+            drill.point == point && (drill.after == count || lasts && drill.after < count)
+        };
+        let drill = self.options.drill.filter(is_due)?;
         self.gpu.break_by(drill.fault);
         Some(drill.fault)
     }

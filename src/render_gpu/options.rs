@@ -9,9 +9,11 @@ pub const BATCH_TARGET: Duration = Duration::from_millis(50);
 /// What a dispatch should take while someone interacts.
 pub const INTERACTIVE_TARGET: Duration = Duration::from_millis(8);
 
-/// Longer than any dispatch takes: a device that has not answered by then hangs. A dispatch's length is bounded, but the
-/// first one of a kernel can wait for the driver to compile it.
-pub const PATIENCE: Duration = Duration::from_secs(30);
+/// Longer than any dispatch takes: a device that has not answered by then hangs.
+pub const PATIENCE: Duration = Duration::from_secs(8);
+
+/// The first dispatch of a kernel can wait for the driver to compile it, and gets so many times as long.
+pub const COMPILING_PATIENCE: u32 = 6;
 
 /// The hierarchy over a scene of many spheres. Both find the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -36,6 +38,8 @@ pub enum Fault {
     Hang,
     /// It reports a dispatch as done and has left out all of it. Only at [`DrillPoint::Dispatch`].
     Short,
+    /// So it does from then on.
+    AlwaysShort,
 }
 
 /// Where a drill can strike.
@@ -76,6 +80,8 @@ pub struct GpuOptions {
     pub hierarchy: HierarchyKind,
     /// Samples of a pixel in one dispatch, instead of as many as the target allows: to measure.
     pub samples_per_dispatch: Option<u64>,
+    /// Turns of loops after which a thread puts its path aside, instead of as many as are safe: to test.
+    pub turn_limit: Option<u32>,
     /// Most bytes of a film on the device at once; by default what the adapter can bind.
     pub film_limit: Option<u64>,
     /// How long the device is waited for before it is given up.
@@ -93,6 +99,7 @@ impl Default for GpuOptions {
             specialise: true,
             hierarchy: HierarchyKind::default(),
             samples_per_dispatch: None,
+            turn_limit: None,
             film_limit: None,
             patience: PATIENCE,
             drill: None,

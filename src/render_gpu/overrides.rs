@@ -21,8 +21,16 @@ pub struct Overrides {
     pub lens: bool,
     /// Spheres that a ray can be inside of.
     pub two_root: bool,
-    /// Huge spheres.
+    /// Spheres that are seen from a point on their surface.
     pub anchored: bool,
+    /// The eye is on the surface of one of them.
+    pub eye_on_surface: bool,
+    /// One of them holds every ray.
+    pub cavity: bool,
+    /// Spheres that are small beside their distance.
+    pub specks: bool,
+    /// Glass whose angles must be known better than from a cosine.
+    pub steep_glass: bool,
     /// A hierarchy.
     pub hierarchy: bool,
     /// It is the compressed one.
@@ -33,9 +41,9 @@ pub struct Overrides {
     pub opaque_count: u32,
     /// Spheres of two.
     pub two_root_count: u32,
-    /// The huge spheres fit the uniform buffer, and the next count is that of the scene.
+    /// The anchored spheres fit the uniform buffer, and the next count is that of the scene.
     pub few_anchored: bool,
-    /// Huge spheres.
+    /// Anchored spheres.
     pub anchored_count: u32,
     /// The Sobol sampler, else independent numbers.
     pub sobol: bool,
@@ -85,6 +93,10 @@ impl Default for Overrides {
             lens: true,
             two_root: true,
             anchored: true,
+            eye_on_surface: true,
+            cavity: true,
+            specks: false,
+            steep_glass: false,
             hierarchy: false,
             cwbvh: false,
             few_spheres: false,
@@ -120,6 +132,10 @@ impl Overrides {
             lens: features.lens,
             two_root: !tables.two_root.is_empty(),
             anchored: !tables.anchored.is_empty(),
+            eye_on_surface: tables.is_eye_on_surface(),
+            cavity: tables.is_eye_in_cavity(),
+            specks: tables.has_specks,
+            steep_glass: tables.has_steep_glass,
             few_spheres,
             opaque_count: if few_spheres { tables.opaque.len() as u32 } else { 0 },
             two_root_count: if few_spheres { tables.two_root.len() as u32 } else { 0 },
@@ -143,6 +159,8 @@ impl Overrides {
     pub fn general(job: &RenderJob, tables: &Tables<f32>) -> Self {
         let needed = Overrides::specialised(job, tables);
         Overrides {
+            specks: needed.specks,
+            steep_glass: needed.steep_glass,
             hierarchy: needed.hierarchy,
             rays: needed.rays,
             sobol: needed.sobol,
@@ -167,6 +185,10 @@ impl Overrides {
             ("LENS", Flag(self.lens)),
             ("TWO_ROOT", Flag(self.two_root)),
             ("ANCHORED", Flag(self.anchored)),
+            ("EYE_ON_SURFACE", Flag(self.eye_on_surface)),
+            ("CAVITY", Flag(self.cavity)),
+            ("SPECKS", Flag(self.specks)),
+            ("STEEP_GLASS", Flag(self.steep_glass)),
             ("HIERARCHY", Flag(self.hierarchy)),
             ("CWBVH", Flag(self.cwbvh)),
             ("FEW_SPHERES", Flag(self.few_spheres)),
@@ -195,6 +217,10 @@ impl Overrides {
             (self.lens, "lens"),
             (self.two_root, "two roots"),
             (self.anchored, "anchored"),
+            (self.eye_on_surface, "eye on a surface"),
+            (self.cavity, "cavity"),
+            (self.specks, "specks"),
+            (self.steep_glass, "steep glass"),
             (self.hierarchy && !self.cwbvh, "hierarchy"),
             (self.hierarchy && self.cwbvh, "compressed hierarchy"),
             (self.acne, "acne"),

@@ -3,7 +3,7 @@
 use super::dispatches::TURN_LIMIT;
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
-use super::layout::{GpuAnchoredSphere, GpuJob, WORKGROUP_SIZE, tile_size};
+use super::layout::{GpuAnchoredSphere, GpuJob, GpuRow, WORKGROUP_SIZE, tile_size};
 use super::options::DrillPoint;
 use super::scene::SceneData;
 use super::shader_source::EntryPoint;
@@ -30,6 +30,8 @@ pub(super) struct SceneOnDevice {
     /// Nodes of the hierarchy.
     node_count: u32,
     job_buffer: wgpu::Buffer,
+    anchored_buffer: wgpu::Buffer,
+    rows_buffer: wgpu::Buffer,
     /// Group 0: the job's buffer and the scene's.
     pub(super) group: wgpu::BindGroup,
 }
@@ -61,6 +63,7 @@ impl GpuRenderer {
             Some((scene, _)) if follows => {
                 let data = GpuJob::new(&scene.tables, scene.node_count);
                 self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::bytes_of(&data));
+                self.renew_anchored(&scene);
                 self.report.hierarchy_time = Duration::ZERO;
                 scene
             }
@@ -73,13 +76,29 @@ impl GpuRenderer {
         let overrides = self.overrides(job, &scene.tables);
         self.check_lists(&overrides, &scene.tables).map_err(failed)?;
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &overrides, 0);
+        self.messages.extend(scene.tables.warnings().iter().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.make_room(job).map_err(failed)?;
         let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &overrides, 0, cancel)?;
         self.gpu.faults.check().map_err(failed)?;
+        if self.dispatches.is_new(&overrides) {
+            self.gpu.expect_compiling();
+        }
         self.report.features = overrides.summary();
         self.report.compile_time = kernel.compile_time;
         Ok(Prepared { job: job.clone(), scene, overrides, kernel, film })
+    }
+
+    /// Where spheres are anchored depends on the eye.
+    fn renew_anchored(&self, scene: &SceneOnDevice) {
+        let tables = &scene.tables;
+        let anchored: Vec<GpuAnchoredSphere> = tables.anchored.iter().map(Into::into).collect();
+        let first = tables.opaque.len() + tables.two_root.len();
+        let rows: Vec<GpuRow> = tables.rows[first..].iter().map(Into::into).collect();
+        let queue = &self.gpu.queue;
+        queue.write_buffer(&scene.anchored_buffer, 0, bytemuck::cast_slice(&anchored));
+        let offset = (first * size_of::<GpuRow>()) as u64;
+        queue.write_buffer(&scene.rows_buffer, offset, bytemuck::cast_slice(&rows));
     }
 
     /// Builds tables and hierarchy, while the kernel is compiled, and copies them to the device.
@@ -159,8 +178,12 @@ impl GpuRenderer {
             storage("nodes", bytemuck::cast_slice(&at_least_one(scene.nodes)))?,
         ];
         let bound: Vec<&wgpu::Buffer> = std::iter::once(&job_buffer).chain(&buffers).collect();
+        let group = gpu.bind(&gpu.layouts.job, &bound);
+        let [_, anchored_buffer, rows_buffer, _] = buffers;
         Ok(SceneOnDevice {
-            group: gpu.bind(&gpu.layouts.job, &bound),
+            group,
+            anchored_buffer,
+            rows_buffer,
             scene_index: scene.scene_index,
             node_count: scene.node_count,
             job_buffer,

@@ -7,6 +7,7 @@ use super::shader_source::{RECORD_HEADER, RECORD_STRIDE};
 use crate::film::PixelSum;
 use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use crate::tables::NONE;
+use glam::DVec3;
 
 /// Words before those in which the path is put aside.
 pub fn first_aside(max_depth: u32) -> usize {
@@ -37,20 +38,22 @@ pub fn is_aside(words: &mut [u32], [x, y]: [u32; 2], max_depth: u32, rays: &mut 
     Some(true)
 }
 
-/// The path that the words tell. `scene_index` turns a sphere's number into its index in the scene.
-pub fn from_words(words: &[u32], scene_index: &[u32]) -> PathRecord {
+/// The path that the words tell. `scene_index` turns a sphere's number into its index in the scene; positions are
+/// measured from `origin`.
+pub fn from_words(words: &[u32], scene_index: &[u32], origin: DVec3) -> PathRecord {
     let (header, rays) = words.split_at(RECORD_HEADER.min(words.len()));
     let count = header.first().map_or(0, |count| *count as usize);
     let rays: Vec<&[u32]> = rays.chunks_exact(RECORD_STRIDE).take(count).collect();
     let vector = |three: &[u32]| [0, 1, 2].map(|i| three.get(i).map_or(0.0, |word| float(*word)));
+    let position = |three: &[u32]| (DVec3::from_array(vector(three)) + origin).to_array();
     let recorded = |number: usize, ray: &&[u32]| RecordedRay {
-        origin: vector(&ray[..3]),
+        origin: position(&ray[..3]),
         direction: vector(&ray[3..6]),
         throughput: vector(&ray[6..9]),
         hit: (ray[9] != NONE).then(|| RecordedHit {
             sphere: scene_index.get(ray[9] as usize).map_or(usize::MAX, |index| *index as usize),
             distance: float(ray[10]),
-            position: rays.get(number + 1).map(|next| vector(&next[..3])),
+            position: rays.get(number + 1).map(|next| position(&next[..3])),
         }),
     };
     let radiance = PixelSum([1, 2, 3].map(|i| header.get(i).copied().map_or(0, u64::from))).radiance();

@@ -15,7 +15,7 @@ pub struct SceneData {
     pub rows: Vec<GpuRow>,
     /// By sphere, its index in the scene.
     pub scene_index: Vec<u32>,
-    /// The hierarchy's nodes; behind those of a compressed one stands each sphere's place in the tables.
+    /// The hierarchy's nodes, and behind them each sphere's place in the list.
     pub nodes: Vec<[u32; 4]>,
     /// Nodes among them.
     pub node_count: u32,
@@ -38,11 +38,10 @@ impl SceneData {
         let (depth, room) = match kind {
             HierarchyKind::Bvh2 => {
                 let nodes: Vec<GpuNode> = hierarchy.nodes.iter().map(Into::into).collect();
-                data.node_count = nodes.len() as u32;
-                data.nodes = bytemuck::cast_slice(&nodes).to_vec();
+                data.take_nodes(nodes.len(), bytemuck::cast_slice(&nodes), hierarchy.ranks.iter().copied());
                 (hierarchy.depth(), STACK_SIZE)
             }
-            HierarchyKind::Cwbvh => (data.take_cwbvh(job, tables), CWBVH_STACK_SIZE),
+            HierarchyKind::Cwbvh => (data.take_cwbvh(job, tables, &hierarchy.ranks), CWBVH_STACK_SIZE),
         };
         if depth > room {
             return Err(format!(
@@ -53,21 +52,27 @@ impl SceneData {
     }
 
     /// Builds it, puts spheres and rows in the order of its leaves, and returns its depth.
-    fn take_cwbvh(&mut self, job: &RenderJob, tables: &Tables<f32>) -> usize {
-        let built = Cwbvh::build(tables.spheres_of_hierarchy(job));
+    fn take_cwbvh(&mut self, job: &RenderJob, tables: &Tables<f32>, ranks: &[u32]) -> usize {
+        let built = Cwbvh::build(tables.spheres_of_hierarchy(job), tables.origin);
         self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
         let rows: Vec<GpuRow> = built.order.iter().map(|i| self.rows[*i as usize]).collect();
         self.rows[..rows.len()].copy_from_slice(&rows);
         let scene_index: Vec<u32> = built.order.iter().map(|i| self.scene_index[*i as usize]).collect();
         self.scene_index[..scene_index.len()].copy_from_slice(&scene_index);
         let nodes: Vec<GpuCwbvhNode> = built.nodes.iter().map(Into::into).collect();
-        self.node_count = nodes.len() as u32;
-        self.nodes = bytemuck::cast_slice(&nodes).to_vec();
-        self.nodes.extend(built.order.chunks(4).map(|four| {
+        let ranks = built.order.iter().map(|place| ranks[*place as usize]);
+        self.take_nodes(nodes.len(), bytemuck::cast_slice(&nodes), ranks);
+        built.depth()
+    }
+
+    fn take_nodes(&mut self, count: usize, nodes: &[[u32; 4]], ranks: impl Iterator<Item = u32>) {
+        self.node_count = count as u32;
+        self.nodes = nodes.to_vec();
+        let ranks: Vec<u32> = ranks.collect();
+        self.nodes.extend(ranks.chunks(4).map(|four| {
             let mut places = [0; 4];
             places[..four.len()].copy_from_slice(four);
             places
         }));
-        built.depth()
     }
 }

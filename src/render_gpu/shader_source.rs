@@ -1,20 +1,19 @@
 //! The shaders' text: constants that live in Rust, then the files in the order in which they use each other.
 
-use super::layout::{ASIDE_STRIDE, UNIFORM_ANCHORED, UNIFORM_SPHERES, WORKGROUP_SIZE};
+use super::layout::{ASIDE_STRIDE, ROOTS_MASK, UNDER_EYE, UNIFORM_ANCHORED, UNIFORM_SPHERES, WORKGROUP_SIZE};
 use super::overrides::{Constant, Overrides};
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
 use crate::stages::{DielectricLaws, Shading, Transfer};
-use crate::tables::cwbvh;
-use crate::tables::hierarchy::{COUNT_MASK, LEAST_COMPONENT, ROUNDING_UNITS};
-use crate::tables::{NEAR_ZERO, NONE};
+use crate::tables::hierarchy::{self, COUNT_MASK, LEAST_COMPONENT, ROUNDING_UNITS};
+use crate::tables::{EYE, NEAR_ZERO, NONE, Roots, cwbvh};
 use std::fmt::Write;
 
-/// Nodes that a traversal can have set aside. A tree has at most that many levels.
-pub const STACK_SIZE: usize = 64;
+/// Nodes that a traversal can have set aside: one a level.
+pub const STACK_SIZE: usize = hierarchy::DEPTH_LIMIT;
 
-/// The same for a compressed hierarchy, where it is one entry a level.
-pub const CWBVH_STACK_SIZE: usize = 24;
+/// The same for a compressed hierarchy.
+pub const CWBVH_STACK_SIZE: usize = cwbvh::DEPTH_LIMIT;
 
 /// Words of a probe's input and output.
 pub const PROBE_STRIDE: usize = 16;
@@ -87,13 +86,13 @@ pub enum Probe {
     Sobol,
     /// `unit_float` and `sin_cos_turns`.
     SinCos,
-    /// `near_root`, `nearest_root` and `acne_root`.
+    /// `near_root`, `nearest_root`, `acne_root` and `signed_root`.
     Roots,
     /// `anchored_root` and `anchored_surface_point`.
     Anchored,
-    /// `surface_point`.
+    /// `surface_point` and `speck_surface_point`.
     Surface,
-    /// `scatter` and `reflectance`.
+    /// `scatter`, `reflectance` and `refracted`.
     Scatter,
     /// `screen`, `pinhole_ray` and `lens_ray`.
     Camera,
@@ -147,6 +146,11 @@ pub fn prelude() -> String {
     unsigned("RECORD_HEADER", RECORD_HEADER as u32);
     unsigned("RECORD_STRIDE", RECORD_STRIDE as u32);
     unsigned("NONE", NONE);
+    unsigned("EYE", EYE);
+    unsigned("ROOTS_NEARER", Roots::Nearer as u32);
+    unsigned("ROOTS_FARTHER", Roots::Farther as u32);
+    unsigned("ROOTS_MASK", ROOTS_MASK);
+    unsigned("UNDER_EYE", UNDER_EYE);
     unsigned("COUNT_MASK", COUNT_MASK);
     unsigned("GOLDEN_RATIO", GOLDEN_RATIO);
     unsigned("LENS_BLOCK", LENS_BLOCK);

@@ -93,7 +93,10 @@ impl GpuRenderer {
                 words = this.run(prepared, &buffers, &kernel, &words, 1)?;
                 match record::is_aside(&mut words, pixel, settings.max_depth, &mut rays) {
                     Some(true) => order.resumes = 1,
-                    Some(false) => return Ok(record::from_words(&words, &prepared.scene.scene_index)),
+                    Some(false) => {
+                        let (index, origin) = (&prepared.scene.scene_index, prepared.scene.tables.origin);
+                        return Ok(record::from_words(&words, index, origin));
+                    }
                     None => return Err(failed(dispatches::stuck(1))),
                 }
             }

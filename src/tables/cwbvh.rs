@@ -4,15 +4,14 @@
 //! builds the tree and lays its nodes out; here their boxes are set anew, so that none is smaller by rounding than
 //! what it holds.
 
-use super::hierarchy::{self, Bounded, params};
+use super::hierarchy::{self, Bounded, build_tree};
 use crate::scene::Sphere;
 use glam::{DVec3, Vec3A};
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
-use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::Bvh2;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 pub use obvhs::cwbvh::node::CwBvhNode;
-use std::time::Duration;
 
 /// As [`hierarchy::ROUNDING_UNITS`], for boxes that are measured from the corner of a node: the distance to that
 /// corner is rounded by 2 units more, and a box reaches farther than what it holds by at most 1 / 127 of its node.
@@ -20,6 +19,9 @@ pub const ROUNDING_UNITS: f64 = hierarchy::ROUNDING_UNITS + 4.0;
 
 /// Most spheres of a leaf: a node's marks have room for 3.
 const LEAF_SPHERES: u32 = 3;
+
+/// Most levels of a tree: what a traversal has room for.
+pub const DEPTH_LIMIT: usize = 24;
 
 /// Largest bound.
 const BOUND_MAX: f64 = 255.0;
@@ -34,13 +36,14 @@ pub struct Cwbvh {
 }
 
 impl Cwbvh {
-    /// Builds it over at least one sphere.
-    pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>) -> Self {
-        let bounded: Vec<Bounded<'_>> = spheres.into_iter().map(Bounded).collect();
-        let tree = build_bvh2(&bounded, params(bounded.len(), 1), &mut Duration::default());
-        let wide = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
-        drop(tree);
-        let mut built = Cwbvh { nodes: wide.nodes, order: wide.primitive_indices };
+    /// Builds it over at least one sphere, with coordinates measured from `origin`.
+    pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3) -> Self {
+        let bounded = Bounded::all(spheres, &origin);
+        let wide = |tree: Bvh2| {
+            let wide = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
+            Cwbvh { nodes: wide.nodes, order: wide.primitive_indices }
+        };
+        let mut built = build_tree(&bounded, 1, wide, |built| built.depth() <= DEPTH_LIMIT);
         let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
         built.set_boxes(&boxes);
         built
@@ -119,7 +122,7 @@ mod tests {
     }
 
     fn check(spheres: &[Sphere]) {
-        let built = Cwbvh::build(spheres);
+        let built = Cwbvh::build(spheres, DVec3::ZERO);
         let mut held = vec![0; spheres.len()];
         // Every node with the boxes that it lies in.
         let mut open = vec![(0_u32, Vec::new())];

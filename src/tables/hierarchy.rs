@@ -3,16 +3,24 @@
 //! obvhs builds the tree; here it is laid out for the kernels, and its boxes are made wide enough that rounding
 //! never hides a hit that testing every sphere would find.
 
-use super::Real;
+use super::{Real, parted};
 use crate::scene::Sphere;
 use glam::DVec3;
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::{Boundable, BvhBuildParams};
 use std::time::Duration;
 
 /// The bits of [`Node::count`] that hold the number of spheres.
 pub const COUNT_MASK: u32 = (1 << 29) - 1;
+
+/// Most levels of a tree: what a traversal has room for.
+pub const DEPTH_LIMIT: usize = 64;
+
+/// Most spheres of a leaf.
+const LEAF_SPHERES: u32 = 8;
 
 /// Rounding in the test of a sphere and of a box, relative to the largest coordinate that takes part, is below
 /// this many units of `2^-24`.
@@ -42,15 +50,32 @@ pub struct Hierarchy<R> {
     pub nodes: Vec<Node<R>>,
     /// Largest coordinate of any box in size: how coarse rounding can be.
     pub extent: R,
+    /// The place in the list of each sphere in the order of the leaves. Of two spheres at one distance that which
+    /// stands first in the list is met.
+    pub ranks: Vec<u32>,
 }
 
-/// A sphere whose box is widened by the rounding in the test of a sphere. The box is worked out when it is asked
-/// for: in a scene of millions it would be most of what a build takes.
-pub(super) struct Bounded<'a>(pub(super) &'a Sphere);
+/// A sphere, measured from a point, whose box is widened by the rounding in the test of a sphere. The box is worked
+/// out when it is asked for: in a scene of millions it would be most of what a build takes.
+pub(super) struct Bounded<'scene, 'origin> {
+    sphere: &'scene Sphere,
+    origin: &'origin DVec3,
+}
 
-impl Boundable for Bounded<'_> {
+impl<'scene, 'origin> Bounded<'scene, 'origin> {
+    /// All of `spheres`, measured from `origin`.
+    pub(super) fn all(
+        spheres: impl IntoIterator<Item = &'scene Sphere>,
+        origin: &'origin DVec3,
+    ) -> Vec<Self> {
+        spheres.into_iter().map(|sphere| Bounded { sphere, origin }).collect()
+    }
+}
+
+impl Boundable for Bounded<'_, '_> {
     fn aabb(&self) -> Aabb {
-        let Sphere { center, radius, .. } = *self.0;
+        let Sphere { center, radius, .. } = *self.sphere;
+        let center = center - *self.origin;
         let unit = f64::from(f32::EPSILON) / 2.0;
         let reach = radius + ROUNDING_UNITS * unit * (radius + center.abs().max_element());
         let below = |x: f64| (x as f32).next_down();
@@ -61,11 +86,10 @@ impl Boundable for Bounded<'_> {
 }
 
 impl<R: Real> Hierarchy<R> {
-    /// Builds it over at least one sphere. Returns also the order in which the leaves name the spheres.
-    pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>) -> (Self, Vec<u32>) {
-        let bounded: Vec<Bounded<'_>> = spheres.into_iter().map(Bounded).collect();
-        let tree = build_bvh2(&bounded, params(bounded.len(), 8), &mut Duration::default());
-        drop(bounded);
+    /// Builds it over at least one sphere, with coordinates measured from `origin`.
+    pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3) -> Self {
+        let fits = |tree: &Bvh2| depth(&tree.nodes) <= DEPTH_LIMIT;
+        let tree = build_tree(&Bounded::all(spheres, &origin), LEAF_SPHERES, |tree| tree, fits);
         let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
         let mut extent = 0.0_f32;
         let nodes = tree
@@ -84,28 +108,62 @@ impl<R: Real> Hierarchy<R> {
                 }
             })
             .collect();
-        (Hierarchy { nodes, extent: R::from_f64(f64::from(extent)) }, tree.primitive_indices)
+        Hierarchy { nodes, extent: R::from_f64(f64::from(extent)), ranks: tree.primitive_indices }
     }
+}
+
+/// A tree over at least one sphere with at most `leaf_spheres` to a leaf, laid out: by obvhs, unless the spheres are
+/// such that it would take long, or what it makes does not fit (by having more levels than a traversal has room for).
+pub(super) fn build_tree<T>(
+    spheres: &[Bounded<'_, '_>],
+    leaf_spheres: u32,
+    lay_out: impl Fn(Bvh2) -> T,
+    fits: impl Fn(&T) -> bool,
+) -> T {
+    if !parted::is_crowded(spheres) {
+        let params = params(spheres.len(), leaf_spheres);
+        let tree = lay_out(build_bvh2(spheres, params, &mut Duration::default()));
+        if fits(&tree) {
+            return tree;
+        }
+    }
+    let tree = lay_out(parted::build(spheres, leaf_spheres as usize, false));
+    if fits(&tree) { tree } else { lay_out(parted::build(spheres, leaf_spheres as usize, true)) }
+}
+
+/// Nodes on the longest way from the root to a leaf.
+fn depth(nodes: &[Bvh2Node]) -> usize {
+    levels(|index| {
+        let node = &nodes[index as usize];
+        (!node.is_leaf()).then_some(node.first_index)
+    })
+}
+
+/// Levels of a tree, given the first of a node's two children, which stand side by side.
+fn levels(first_child: impl Fn(u32) -> Option<u32>) -> usize {
+    let mut deepest = 0;
+    let mut open = vec![(0_u32, 1_usize)];
+    while let Some((index, depth)) = open.pop() {
+        deepest = deepest.max(depth);
+        if let Some(first) = first_child(index) {
+            open.extend([(first, depth + 1), (first + 1, depth + 1)]);
+        }
+    }
+    deepest
 }
 
 impl<R> Hierarchy<R> {
     /// Nodes on the longest way from the root to a leaf.
     pub fn depth(&self) -> usize {
-        let mut deepest = 0;
-        let mut open = vec![(0_u32, 1_usize)];
-        while let Some((index, depth)) = open.pop() {
-            deepest = deepest.max(depth);
+        levels(|index| {
             let node = &self.nodes[index as usize];
-            if node.count & COUNT_MASK == 0 {
-                open.extend([(node.first, depth + 1), (node.first + 1, depth + 1)]);
-            }
-        }
-        deepest
+            (node.count & COUNT_MASK == 0).then_some(node.first)
+        })
     }
 }
 
 /// How obvhs is to build the tree of so many spheres.
-pub(super) fn params(spheres: usize, max_prims_per_leaf: u32) -> BvhBuildParams {
+fn params(spheres: usize, max_prims_per_leaf: u32) -> BvhBuildParams {
     let preset =
         if spheres <= 100_000 { BvhBuildParams::medium_build() } else { BvhBuildParams::fast_build() };
     BvhBuildParams { max_prims_per_leaf, ..preset }

@@ -1,17 +1,26 @@
 //! What a kernel reads: the job, rounded once to the kernel's precision and laid out flat.
 
+mod camera;
 pub mod cwbvh;
+mod facts;
+mod groups;
 pub mod hierarchy;
+mod parted;
 mod real;
 
+pub use camera::CameraTable;
+pub use groups::Roots;
 pub use real::{Real, Row};
 
 use crate::film::FIXED_POINT_SCALE;
 use crate::render::{RenderJob, RenderSettings};
-use crate::scene::{Camera, Material, Scene, Sphere};
+use crate::scene::{Material, Scene, Sphere};
 use crate::stages::{Rules, Surface};
+use facts::Facts;
 use glam::DVec3;
+use groups::{Anchored, Groups};
 use hierarchy::Hierarchy;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Spheres from which on there is a hierarchy. On generated fields at 8 lanes the list was faster with 4 spheres
@@ -24,10 +33,16 @@ pub const NONE: u32 = u32::MAX;
 /// Below this squared length, the normal plus a unit vector is a rounding error, and the normal stands in.
 pub const NEAR_ZERO: f64 = 1e-14;
 
-/// A sphere is anchored when rounding at its radius, `f32::EPSILON / 2` of it, exceeds this share of the
-/// scene's smallest length. At that point the perpendicular form's distances are off by some `1e-4` of that
-/// length.
-const ANCHOR_SHARE: f64 = 5e-5;
+/// Where a ray starts in place of a sphere that it leaves: at an eye on the surface of one.
+pub const EYE: u32 = u32::MAX - 1;
+
+/// Between these refraction indices a refracted direction is good to rounding when it is worked out from the cosine of
+/// incidence; beyond them the critical angle is lost in its rounding.
+const GENTLE_INDICES: [f64; 2] = [0.25, 4.0];
+
+/// In glass that a path does not leave, each of so many rays may move the angle of incidence by a rounding error and
+/// still the critical angle is held to 1e-6.
+const GENTLE_DEPTH: u32 = 64;
 
 /// A job's spheres, materials, camera and sky for a kernel of precision `R`.
 ///
@@ -36,9 +51,10 @@ const ANCHOR_SHARE: f64 = 5e-5;
 pub struct Tables<R> {
     /// Centre and squared radius of spheres that no ray is ever inside of: only the nearer root counts.
     pub opaque: Vec<[R; 4]>,
-    /// Centre and squared radius of the others, or of all when there is a hierarchy (in the order of its leaves).
+    /// Centre and squared radius of the others. Where there is a hierarchy, all spheres, in the order of its leaves,
+    /// the squared radius with a minus sign where only the nearer root counts.
     pub two_root: Vec<[R; 4]>,
-    /// Huge spheres, seen from a point on their surface.
+    /// Spheres that are seen from a point on their surface: huge ones, and those that the eye is in or on.
     pub anchored: Vec<AnchoredSphere<R>>,
     /// Over `two_root`.
     pub hierarchy: Option<Hierarchy<R>>,
@@ -46,7 +62,7 @@ pub struct Tables<R> {
     pub hierarchy_time: Duration,
     /// By row, what shading needs: centre or anchor, 1/radius | albedo, weight of the unit vector (with a minus
     /// sign where the direction is a reflection) | radius, refraction index (0: not glass), its inverse,
-    /// Schlick's share at normal incidence | the anchor's inward unit normal, 1 if anchored.
+    /// Schlick's share at normal incidence | the anchor's inward unit normal, 1 if anchored, 2 if every ray is inside.
     pub rows: Vec<Row<R>>,
     /// By row, the sphere's index in the scene.
     pub scene_index: Vec<u32>,
@@ -62,47 +78,19 @@ pub struct Tables<R> {
     pub settings: RenderSettings,
     /// The rules in force.
     pub rules: Rules,
+    /// A sphere is small beside its distance: where a ray meets it is told by the way across the ray, not along it.
+    pub has_specks: bool,
+    /// Glass whose critical angle must be known better than from a rounded cosine, or for many rays.
+    pub has_steep_glass: bool,
+    /// What coordinates are measured from, in the scene's.
+    pub origin: DVec3,
     groups: Groups,
+    facts: Arc<Facts>,
+    warnings: Vec<String>,
 }
 
-/// Which spheres are intersected how: indices in the scene, rising.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Groups {
-    opaque: Vec<u32>,
-    two_root: Vec<u32>,
-    anchored: Vec<u32>,
-}
-
-impl Groups {
-    fn of(job: &RenderJob) -> Self {
-        let (scene, camera) = (job.scene(), job.camera());
-        let exact = job.rules().surface == Surface::Exact;
-        let scale = smallest_length(scene, camera);
-        let is_anchored =
-            |s: &Sphere| exact && f64::from(f32::EPSILON) / 2.0 * s.radius > ANCHOR_SHARE * scale;
-        let lens_radius =
-            camera.effective_focus_distance() * (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
-        let needs_both_roots = |s: &Sphere| {
-            matches!(scene.material_of(s), Material::Dielectric { .. })
-                || holds_the_eye(s, camera, lens_radius)
-        };
-        let mut groups = Groups::default();
-        for (index, sphere) in scene.spheres.iter().enumerate() {
-            let group = if is_anchored(sphere) {
-                &mut groups.anchored
-            } else if needs_both_roots(sphere) {
-                &mut groups.two_root
-            } else {
-                &mut groups.opaque
-            };
-            group.push(index as u32);
-        }
-        groups
-    }
-}
-
-/// A sphere far larger than the scene: `anchor` is a point on it near the scene, `inward` the unit vector from
-/// there to the centre, `curvature` the inverse of the radius.
+/// A sphere as seen from a point of its surface: `anchor` is that point, near what is looked at, `inward` the unit
+/// vector from there to the centre, `curvature` the inverse of the radius.
 #[derive(Clone, Copy, Debug)]
 pub struct AnchoredSphere<R> {
     /// A point of the surface.
@@ -111,90 +99,75 @@ pub struct AnchoredSphere<R> {
     pub inward: [R; 3],
     /// 1 / radius.
     pub curvature: R,
-}
-
-/// The camera in the form that gives a ray with a few multiplications and no difference of far points.
-///
-/// A pixel position `p` (with the point in the pixel) lies at `s = p scale + offset` on the plane at distance 1.
-/// With a point `xi` of the unit disk on the lens, the direction is
-/// `(s.x - tau xi.x) u + (s.y - tau xi.y) v - w`, the origin `eye + focus_tau (xi.x u + xi.y v)`.
-#[derive(Clone, Copy, Debug)]
-pub struct CameraTable<R> {
-    /// The eye.
-    pub eye: [R; 3],
-    /// Right.
-    pub u: [R; 3],
-    /// Up.
-    pub v: [R; 3],
-    /// Against the view.
-    pub w: [R; 3],
-    /// Of x and y.
-    pub scale: [R; 2],
-    /// Of x and y.
-    pub offset: [R; 2],
-    /// Tangent of half the defocus angle; 0 without a lens.
-    pub tau: R,
-    /// Radius of the lens.
-    pub focus_tau: R,
-}
-
-impl<R: Real> CameraTable<R> {
-    /// For a picture of `width` by `height` pixels.
-    pub fn new(camera: &Camera, width: u32, height: u32) -> Self {
-        let basis = camera.basis();
-        let half_height = (camera.vfov_degrees.to_radians() / 2.0).tan();
-        let half_width = half_height * f64::from(width) / f64::from(height);
-        let tau = (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
-        CameraTable {
-            eye: rounded(camera.look_from),
-            u: rounded(basis.u),
-            v: rounded(basis.v),
-            w: rounded(basis.w),
-            scale: [
-                R::from_f64(2.0 * half_width / f64::from(width)),
-                R::from_f64(-2.0 * half_height / f64::from(height)),
-            ],
-            offset: [R::from_f64(-half_width), R::from_f64(half_height)],
-            tau: R::from_f64(tau),
-            focus_tau: R::from_f64(camera.effective_focus_distance() * tau),
-        }
-    }
-}
-
-impl<R: Copy> CameraTable<R> {
-    /// The same in another form of number.
-    pub fn map<T>(&self, f: impl Fn(R) -> T) -> CameraTable<T> {
-        CameraTable {
-            eye: self.eye.map(&f),
-            u: self.u.map(&f),
-            v: self.v.map(&f),
-            w: self.w.map(&f),
-            scale: self.scale.map(&f),
-            offset: self.offset.map(&f),
-            tau: f(self.tau),
-            focus_tau: f(self.focus_tau),
-        }
-    }
+    /// Which of the distances to it count.
+    pub roots: Roots,
+    /// Whether the eye is a point of the surface: rays that start at [`EYE`] leave it or enter it.
+    pub under_eye: bool,
 }
 
 impl<R: Real> Tables<R> {
     /// Sorts, anchors and rounds the scene, and builds the hierarchy if one is worth it.
     pub fn new(job: &RenderJob) -> Self {
-        let groups = Groups::of(job);
+        Tables::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES)
+    }
+
+    /// The same without a hierarchy, however many spheres there are: to compare with.
+    pub fn as_list(job: &RenderJob) -> Self {
+        Tables::with_hierarchy_from(job, usize::MAX)
+    }
+
+    fn with_hierarchy_from(job: &RenderJob, least_spheres: usize) -> Self {
+        let facts = Arc::new(Facts::of(job.scene()));
+        let groups = Groups::of(job, &facts);
         let has_hierarchy = job.rules().surface == Surface::Exact
-            && groups.opaque.len() + groups.two_root.len() >= HIERARCHY_MIN_SPHERES;
-        if !has_hierarchy {
-            return Tables::from_groups(job, &groups.opaque, &groups.two_root, &groups.anchored);
-        }
+            && groups.opaque.len() + groups.two_root.len() >= least_spheres;
         let begin = Instant::now();
-        let all: Vec<u32> = groups.opaque.iter().chain(&groups.two_root).copied().collect();
-        let (hierarchy, mut two_root) =
-            Hierarchy::build(all.iter().map(|i| &job.scene().spheres[*i as usize]));
-        two_root.iter_mut().for_each(|i| *i = all[*i as usize]);
-        drop(all);
-        let hierarchy_time = begin.elapsed();
-        let tables = Tables::from_groups(job, &[], &two_root, &groups.anchored);
-        Tables { hierarchy: Some(hierarchy), hierarchy_time, groups, ..tables }
+        let (mut listed, mut hierarchy) = (groups.in_list_order(), None);
+        if has_hierarchy {
+            let spheres = listed.iter().map(|index| &job.scene().spheres[*index as usize]);
+            let built = Hierarchy::build(spheres, groups.origin);
+            listed = built.ranks.iter().map(|rank| listed[*rank as usize]).collect();
+            hierarchy = Some(built);
+        }
+        let hierarchy_time = if has_hierarchy { begin.elapsed() } else { Duration::ZERO };
+        let (scene, settings) = (job.scene(), *job.settings());
+        let one_root = groups.opaque.len();
+        let packed = |(place, index): (usize, &u32)| {
+            let sphere = &scene.spheres[*index as usize];
+            let center = sphere.center - groups.origin;
+            // In the hierarchy the sign tells spheres of one root.
+            let is_signed = hierarchy.as_ref().is_some_and(|h| (h.ranks[place] as usize) < one_root);
+            let radius2 = sphere.radius * sphere.radius * if is_signed { -1.0 } else { 1.0 };
+            [center.x, center.y, center.z, radius2].map(R::from_f64)
+        };
+        let mut opaque: Vec<[R; 4]> = listed.iter().enumerate().map(packed).collect();
+        let two_root = opaque.split_off(if has_hierarchy { 0 } else { one_root });
+        let mut rows = Vec::with_capacity(listed.len() + groups.anchored.len() + 1);
+        rows.extend(listed.iter().map(|i| shading_row(scene, *i, groups.origin, None)));
+        let (bottom, top) = (scene.sky.bottom * FIXED_POINT_SCALE, scene.sky.top * FIXED_POINT_SCALE);
+        let mut tables = Tables {
+            opaque,
+            two_root,
+            anchored: Vec::new(),
+            hierarchy,
+            hierarchy_time,
+            rows,
+            scene_index: listed,
+            camera: CameraTable::new(job.camera(), settings.width, settings.height, groups.origin),
+            sky_middle: rounded((bottom + top) / 2.0),
+            sky_slope: rounded((top - bottom) / 2.0),
+            block_limit: block_limit(scene.sky.bottom.max(scene.sky.top).max_element()),
+            settings,
+            rules: *job.rules(),
+            has_specks: false,
+            has_steep_glass: has_steep_glass(job),
+            origin: groups.origin,
+            groups: Groups::default(),
+            facts,
+            warnings: Vec::new(),
+        };
+        tables.see(job, groups);
+        tables
     }
 
     /// The tables of `job`; where there are those of a job that differs in camera and settings alone, the
@@ -211,23 +184,75 @@ impl<R: Real> Tables<R> {
     /// Makes the tables of `before` those of `job`, if they have a hierarchy and it would be the same, so that camera
     /// and settings alone differ; else does nothing and returns false.
     pub fn follow(&mut self, before: &RenderJob, job: &RenderJob) -> bool {
-        let is_same = self.hierarchy.is_some() && job.shares_scene_with(before);
-        if !is_same || Groups::of(job) != self.groups {
+        if self.hierarchy.is_none() || !job.shares_scene_with(before) {
+            return false;
+        }
+        let groups = Groups::of(job, &self.facts);
+        if !groups.share_hierarchy(&self.groups) {
             return false;
         }
         let settings = *job.settings();
-        self.camera = CameraTable::new(job.camera(), settings.width, settings.height);
+        self.camera = CameraTable::new(job.camera(), settings.width, settings.height, groups.origin);
         self.settings = settings;
+        self.has_steep_glass = has_steep_glass(job);
         self.hierarchy_time = Duration::ZERO;
+        self.see(job, groups);
         true
+    }
+
+    /// Sets what depends on where the eye is.
+    fn see(&mut self, job: &RenderJob, groups: Groups) {
+        let scene = job.scene();
+        let listed = self.opaque.len() + self.two_root.len();
+        self.rows.truncate(listed);
+        self.scene_index.truncate(listed);
+        self.anchored =
+            groups.anchored.iter().map(|a| AnchoredSphere::new(scene, a, groups.origin)).collect();
+        for (anchored, sphere) in groups.anchored.iter().zip(&self.anchored) {
+            self.rows.push(shading_row(scene, anchored.index, groups.origin, Some(sphere)));
+            self.scene_index.push(anchored.index);
+        }
+        if self.rows.is_empty() {
+            // A ray that hits nothing looks up row 0 and ignores it.
+            self.rows.push(Row::default());
+        }
+        self.has_specks = groups.has_specks;
+        self.warnings = if job.rules().surface == Surface::Exact {
+            self.facts.warnings(scene, &groups)
+        } else {
+            Vec::new()
+        };
+        self.groups = groups;
+    }
+
+    /// What single precision does not hold of the scene, with the numbers and what to do.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Whether a kernel needs code that few scenes do: anchored spheres, specks, steep glass.
+    pub fn is_extreme(&self) -> bool {
+        !self.anchored.is_empty() || self.has_specks || self.has_steep_glass
+    }
+
+    /// Whether rays from the camera start on a surface.
+    pub fn is_eye_on_surface(&self) -> bool {
+        self.anchored.iter().any(|sphere| sphere.under_eye)
+    }
+
+    /// Whether all rays are inside a sphere that no light passes.
+    pub fn is_eye_in_cavity(&self) -> bool {
+        self.anchored.iter().any(|sphere| sphere.roots == Roots::Farther)
     }
 
     /// Memory that grows with the number of spheres.
     pub fn bytes(&self) -> usize {
-        let Groups { opaque, two_root, anchored } = &self.groups;
-        let indices = [opaque, two_root, anchored, &self.scene_index];
+        let Groups { opaque, two_root, .. } = &self.groups;
+        let indices = [opaque, two_root, &self.scene_index];
         let packed = [&self.opaque, &self.two_root];
-        let nodes = self.hierarchy.as_ref().map_or(0, |hierarchy| size_of_val(hierarchy.nodes.as_slice()));
+        let nodes = self.hierarchy.as_ref().map_or(0, |hierarchy| {
+            size_of_val(hierarchy.nodes.as_slice()) + size_of_val(hierarchy.ranks.as_slice())
+        });
         indices.iter().map(|list| size_of_val(list.as_slice())).sum::<usize>()
             + packed.iter().map(|list| size_of_val(list.as_slice())).sum::<usize>()
             + size_of_val(self.anchored.as_slice())
@@ -240,66 +265,56 @@ impl<R: Real> Tables<R> {
         let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());
         indices.map(|index| &job.scene().spheres[*index as usize])
     }
-
-    fn from_groups(job: &RenderJob, opaque: &[u32], two_root: &[u32], anchored: &[u32]) -> Self {
-        let (scene, settings) = (job.scene(), *job.settings());
-        let sphere = |index: &u32| &scene.spheres[*index as usize];
-        let packed = |index: &u32| {
-            let s = sphere(index);
-            [s.center.x, s.center.y, s.center.z, s.radius * s.radius].map(R::from_f64)
-        };
-        let focus = focus_of_interest(scene, anchored, job.camera());
-        let anchored_spheres: Vec<_> =
-            anchored.iter().map(|i| AnchoredSphere::new(sphere(i), focus)).collect();
-        let mut rows = Vec::with_capacity(scene.spheres.len().max(1));
-        rows.extend(opaque.iter().chain(two_root).map(|i| shading_row(scene, sphere(i), None)));
-        rows.extend(
-            anchored.iter().zip(&anchored_spheres).map(|(i, a)| shading_row(scene, sphere(i), Some(a))),
-        );
-        if rows.is_empty() {
-            // A ray that hits nothing looks up row 0 and ignores it.
-            rows.push(Row::default());
-        }
-        let (bottom, top) = (scene.sky.bottom * FIXED_POINT_SCALE, scene.sky.top * FIXED_POINT_SCALE);
-        Tables {
-            opaque: opaque.iter().map(packed).collect(),
-            two_root: two_root.iter().map(packed).collect(),
-            anchored: anchored_spheres,
-            hierarchy: None,
-            hierarchy_time: Duration::ZERO,
-            rows,
-            scene_index: opaque.iter().chain(two_root).chain(anchored).copied().collect(),
-            camera: CameraTable::new(job.camera(), settings.width, settings.height),
-            sky_middle: rounded((bottom + top) / 2.0),
-            sky_slope: rounded((top - bottom) / 2.0),
-            block_limit: block_limit(scene.sky.bottom.max(scene.sky.top).max_element()),
-            settings,
-            rules: *job.rules(),
-            groups: Groups::default(),
-        }
-    }
 }
 
 impl<R: Real> AnchoredSphere<R> {
-    fn new(sphere: &Sphere, focus: DVec3) -> Self {
-        let towards = (focus - sphere.center).try_normalize().unwrap_or(DVec3::Y);
-        let anchor: [R; 3] = rounded(sphere.center + towards * sphere.radius);
+    fn new(scene: &Scene, anchored: &Anchored, origin: DVec3) -> Self {
+        let sphere = &scene.spheres[anchored.index as usize];
+        let towards = (anchored.near - sphere.center).try_normalize().unwrap_or(DVec3::Y);
+        let center = sphere.center - origin;
+        let foot = if anchored.under_eye { anchored.near - origin } else { center + towards * sphere.radius };
+        let anchor: [R; 3] = rounded(foot);
         let [x, y, z] = anchor.map(R::to_f64);
-        let inward = (sphere.center - DVec3::new(x, y, z)).normalize();
-        AnchoredSphere { anchor, inward: rounded(inward), curvature: R::from_f64(1.0 / sphere.radius) }
+        let inward = (center - DVec3::new(x, y, z)).normalize();
+        AnchoredSphere {
+            anchor,
+            inward: rounded(inward),
+            curvature: R::from_f64(1.0 / sphere.radius),
+            roots: anchored.roots,
+            under_eye: anchored.under_eye,
+        }
     }
 }
 
-fn shading_row<R: Real>(scene: &Scene, sphere: &Sphere, anchored: Option<&AnchoredSphere<R>>) -> Row<R> {
-    let (albedo, weight, index) = match *scene.material_of(sphere) {
+/// Whether the angles of glass matter more than a rounded cosine tells.
+fn has_steep_glass(job: &RenderJob) -> bool {
+    let many_rays = job.settings().max_depth > GENTLE_DEPTH;
+    let [least, most] = GENTLE_INDICES;
+    job.rules().surface == Surface::Exact
+        && job.scene().materials.iter().any(|named| match named.material {
+            Material::Dielectric { refraction_index } => {
+                many_rays || !(least..=most).contains(&refraction_index)
+            }
+            _ => false,
+        })
+}
+
+fn shading_row<R: Real>(
+    scene: &Scene,
+    index: u32,
+    origin: DVec3,
+    anchored: Option<&AnchoredSphere<R>>,
+) -> Row<R> {
+    let sphere = &scene.spheres[index as usize];
+    let (albedo, weight, refraction_index) = match *scene.material_of(sphere) {
         Material::Lambertian { albedo } => (albedo, 1.0, 0.0),
         Material::Metal { albedo, fuzz } => (albedo, -fuzz.clamp(0.0, 1.0), 0.0),
         Material::Dielectric { refraction_index } => (DVec3::ONE, -0.0, refraction_index),
     };
-    let normal_share = ((1.0 - index) / (1.0 + index)).powi(2);
-    let inverse_index = if index > 0.0 { 1.0 / index } else { 0.0 };
+    let normal_share = ((1.0 - refraction_index) / (1.0 + refraction_index)).powi(2);
+    let inverse_index = if refraction_index > 0.0 { 1.0 / refraction_index } else { 0.0 };
     let r = R::from_f64;
-    let [x, y, z] = anchored.map_or_else(|| rounded(sphere.center), |a| a.anchor);
+    let [x, y, z] = anchored.map_or_else(|| rounded(sphere.center - origin), |a| a.anchor);
     let [mx, my, mz] = anchored.map_or([R::default(); 3], |a| a.inward);
     Row([
         x,
@@ -311,48 +326,18 @@ fn shading_row<R: Real>(scene: &Scene, sphere: &Sphere, anchored: Option<&Anchor
         r(albedo.z),
         r(weight),
         r(sphere.radius),
-        r(index),
+        r(refraction_index),
         r(inverse_index),
         r(normal_share),
         mx,
         my,
         mz,
-        r(if anchored.is_some() { 1.0 } else { 0.0 }),
+        r(anchored.map_or(0.0, |a| if a.roots == Roots::Farther { 2.0 } else { 1.0 })),
     ])
 }
 
 fn rounded<R: Real>(v: DVec3) -> [R; 3] {
     v.to_array().map(R::from_f64)
-}
-
-/// The smallest length that the picture can show a fault of: a radius, a distance from the eye to a surface, or
-/// the distance that the camera looks at.
-fn smallest_length(scene: &Scene, camera: &Camera) -> f64 {
-    let view = camera.effective_focus_distance().min(camera.look_from.distance(camera.look_at));
-    scene.spheres.iter().fold(view, |length, s| {
-        let height = (camera.look_from.distance(s.center) - s.radius).abs();
-        let length = length.min(s.radius);
-        if height > 0.0 { length.min(height) } else { length }
-    })
-}
-
-/// Whether a ray from the camera can start inside the sphere.
-fn holds_the_eye(sphere: &Sphere, camera: &Camera, lens_radius: f64) -> bool {
-    // The margin is far above what rounding can move the eye by.
-    let reach = sphere.radius * (1.0 + 1e-5) + lens_radius * (1.0 + 1e-5);
-    camera.look_from.distance(sphere.center) <= reach + 1e-6 * camera.look_from.abs().max_element()
-}
-
-/// Where the picture's detail is: the mean centre of the spheres that are not anchored, or else where the
-/// camera looks.
-fn focus_of_interest(scene: &Scene, anchored: &[u32], camera: &Camera) -> DVec3 {
-    let is_anchored = |index: usize| anchored.binary_search(&(index as u32)).is_ok();
-    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
-    for (_, sphere) in scene.spheres.iter().enumerate().filter(|(i, _)| !is_anchored(*i)) {
-        sum += sphere.center;
-        count += 1.0;
-    }
-    if count > 0.0 { sum / count } else { camera.look_at }
 }
 
 /// Most samples, as a power of two, whose sum is sure to fit 32 bits.

@@ -6,6 +6,8 @@ pub trait Real: Copy + Default + Send + Sync + PartialOrd + std::fmt::Debug + 's
     fn from_f64(x: f64) -> Self;
     /// Without loss.
     fn to_f64(self) -> f64;
+    /// With the other sign.
+    fn negated(self) -> Self;
 }
 
 impl Real for f32 {
@@ -17,6 +19,10 @@ impl Real for f32 {
     fn to_f64(self) -> f64 {
         f64::from(self)
     }
+    #[inline(always)]
+    fn negated(self) -> Self {
+        -self
+    }
 }
 
 impl Real for f64 {
@@ -27,6 +33,10 @@ impl Real for f64 {
     #[inline(always)]
     fn to_f64(self) -> f64 {
         self
+    }
+    #[inline(always)]
+    fn negated(self) -> Self {
+        -self
     }
 }
 

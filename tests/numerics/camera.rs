@@ -89,7 +89,7 @@ fn pixel_of(camera: &Camera, width: u32, height: u32, d: DVec3) -> [f64; 2] {
 
 fn pixel_error<L: Lanes>(l: L, camera: &Camera) -> f64 {
     let (width, height) = (800, 450);
-    let table = CameraTable::<L::Real>::new(camera, width, height).map(Wide::splat);
+    let table = CameraTable::<L::Real>::new(camera, width, height, DVec3::ZERO).map(Wide::splat);
     let tau = (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
     let pixel = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan() / f64::from(height);
     let mut random = Random::new(8);

@@ -12,7 +12,7 @@ use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
 use weekender::scene::{Camera, Sky};
 use weekender::tables::Tables;
 
-const GENERAL: u32 = needs::GLASS | needs::LENS | needs::ANCHORED | needs::HIERARCHY | needs::RULES;
+const GENERAL: u32 = needs::GLASS | needs::LENS | needs::EXTREMES | needs::HIERARCHY | needs::RULES;
 
 /// Traces tables as they are, in one tile of at most 256 pixels a side.
 pub fn trace_tables(tables: &Tables<f32>, film: &mut Film, samples: std::ops::Range<u64>) -> TileStats {

@@ -7,11 +7,11 @@ use glam::DVec3;
 use weekender::render::RenderSettings;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, Wide, WideU};
-use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, nearest_root, surface_point};
+use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, near_root, nearest_root, surface_point};
 use weekender::scene::Sphere;
 use weekender::scene::builtin::{BOOK_CAMERA, book};
-use weekender::tables::Tables;
 use weekender::tables::hierarchy::Hierarchy;
+use weekender::tables::{Real, Tables};
 
 /// Spheres of sizes over many powers of ten, some touching, some at one place.
 fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> Vec<Sphere> {
@@ -84,24 +84,58 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
     }
 }
 
+/// A hierarchy with every other sphere of one root alone.
+struct Tree<L: Lanes> {
+    hierarchy: Hierarchy<L::Real>,
+    /// In the order of the leaves.
+    ordered: Vec<Sphere>,
+    rows: Vec<[L::Real; 4]>,
+    /// The numbers of the spheres in the order of the list.
+    numbers: Vec<u32>,
+}
+
+impl<L: Lanes> Tree<L> {
+    fn over(listed: &[Sphere]) -> Self {
+        let hierarchy = Hierarchy::<L::Real>::build(listed, DVec3::ZERO);
+        let ordered: Vec<Sphere> = hierarchy.ranks.iter().map(|rank| listed[*rank as usize]).collect();
+        assert_eq!(ordered.len(), listed.len(), "each sphere is in one leaf");
+        let row = |(sphere, rank): (&Sphere, &u32)| {
+            let [x, y, z, radius2] = packed::<L>(sphere.center, sphere.radius);
+            [x, y, z, if rank % 2 == 0 { radius2 } else { radius2.negated() }]
+        };
+        let rows = ordered.iter().zip(&hierarchy.ranks).map(row).collect();
+        let mut numbers: Vec<u32> = (0..ordered.len() as u32).collect();
+        numbers.sort_by_key(|number| hierarchy.ranks[*number as usize]);
+        Tree { hierarchy, ordered, rows, numbers }
+    }
+}
+
+#[inline(always)]
+fn nearest_in_list<L: Lanes>(l: L, rays: &Rays<L>, rows: &[[L::Real; 4]], numbers: &[u32]) -> Nearest<L> {
+    let mut nearest = Nearest::nothing(l);
+    for index in numbers {
+        let ([x, y, z, radius2], number) = (rows[*index as usize], l.splat_u(*index));
+        let key = if radius2 < L::Real::default() {
+            near_root(l, rays, &Spheres::splat(l, [x, y, z, radius2.negated()], number))
+        } else {
+            nearest_root(l, rays, &Spheres::splat(l, [x, y, z, radius2], number))
+        };
+        nearest.take(key, number);
+    }
+    nearest
+}
+
 fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
     let mut random = Random::new(seed);
     let listed = spheres(&mut random, count, spread, radii);
-    let (hierarchy, order) = Hierarchy::<L::Real>::build(&listed);
-    let ordered: Vec<Sphere> = order.iter().map(|index| listed[*index as usize]).collect();
-    assert_eq!(ordered.len(), count, "each sphere is in one leaf");
-    let rows: Vec<_> = ordered.iter().map(|s| packed::<L>(s.center, s.radius)).collect();
+    let Tree { hierarchy, ordered, rows, numbers } = Tree::<L>::over(&listed);
     let mut stack = EMPTY_STACK;
     let mut hits = 0;
     for _ in 0..ray_count {
         let rays = one_ray(l, &mut random, &ordered, spread);
         let mut found = Nearest::nothing(l);
         traverse(l, &hierarchy, &rows, &rays, l.mask(1), &mut stack, &mut found);
-        let mut expected = Nearest::nothing(l);
-        for (number, row) in rows.iter().enumerate() {
-            let number = l.splat_u(number as u32);
-            expected.take_in_any_order(nearest_root(l, &rays, &Spheres::splat(l, *row, number)), number);
-        }
+        let expected = nearest_in_list(l, &rays, &rows, &numbers);
         let same = L::eq_key(found.key, expected.key) & L::eq_u(found.sphere, expected.sphere);
         assert_eq!(
             L::bits(same) & 1,
@@ -189,9 +223,7 @@ fn same_packets<L: Lanes<Real = f32>>(
 ) -> u32 {
     let mut random = Random::new(seed);
     let listed = spheres(&mut random, count, spread, radii);
-    let (hierarchy, order) = Hierarchy::<f32>::build(&listed);
-    let ordered: Vec<Sphere> = order.iter().map(|index| listed[*index as usize]).collect();
-    let rows: Vec<_> = ordered.iter().map(|s| packed::<L>(s.center, s.radius)).collect();
+    let Tree { hierarchy, ordered, rows, numbers } = Tree::<L>::over(&listed);
     let mut stack = EMPTY_STACK;
     let mut hits = 0;
     for _ in 0..ray_count / L::WIDTH {
@@ -202,7 +234,7 @@ fn same_packets<L: Lanes<Real = f32>>(
             wide.0.iter_mut().zip(&single).for_each(|(to, ray)| *to = f(ray));
             l.load(&wide)
         };
-        let numbers = |f: &dyn Fn(&Rays<Scalar<true>>) -> u32| {
+        let integers = |f: &dyn Fn(&Rays<Scalar<true>>) -> u32| {
             let mut wide = WideU::default();
             wide.0.iter_mut().zip(&single).for_each(|(to, ray)| *to = f(ray));
             l.load_u(&wide)
@@ -214,17 +246,13 @@ fn same_packets<L: Lanes<Real = f32>>(
                 y: column(&|r| r.direction.y),
                 z: column(&|r| r.direction.z),
             },
-            left: numbers(&|r| r.left.0),
-            inside: numbers(&|r| r.inside.0),
+            left: integers(&|r| r.left.0),
+            inside: integers(&|r| r.inside.0),
         };
         let mut found = Nearest::nothing(l);
         let all = l.mask((1 << L::WIDTH) - 1);
         traverse(l, &hierarchy, &rows, &rays, all, &mut stack, &mut found);
-        let mut expected = Nearest::nothing(l);
-        for (number, row) in rows.iter().enumerate() {
-            let number = l.splat_u(number as u32);
-            expected.take_in_any_order(nearest_root(l, &rays, &Spheres::splat(l, *row, number)), number);
-        }
+        let expected = nearest_in_list(l, &rays, &rows, &numbers);
         let same = L::eq_key(found.key, expected.key) & L::eq_u(found.sphere, expected.sphere);
         assert_eq!(L::bits(same), L::bits(all), "seed {seed}, {count} spheres, spread {spread}");
         hits += L::bits(!L::eq_u(found.sphere, l.splat_u(NONE))).count_ones();
@@ -236,12 +264,12 @@ fn same_packets<L: Lanes<Real = f32>>(
 #[test]
 fn hierarchy_and_list_render_the_same_film() {
     let job = job(&book(), BOOK_CAMERA, RenderSettings { estimate_error: true, ..size(48, 27) });
-    let mut tables = Tables::<f32>::new(&job);
+    let tables = Tables::<f32>::new(&job);
+    assert!(tables.hierarchy.is_some(), "the book has a hierarchy");
     let mut with = job.new_film();
     trace_tables(&tables, &mut with, 0..4);
-    assert!(tables.hierarchy.take().is_some(), "the book has a hierarchy");
     let mut without = job.new_film();
-    trace_tables(&tables, &mut without, 0..4);
+    trace_tables(&Tables::as_list(&job), &mut without, 0..4);
     assert_eq!(with, without);
     assert!(mean(&with) > 0.1);
 }

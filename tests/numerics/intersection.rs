@@ -4,7 +4,7 @@ use crate::common::*;
 use glam::DVec3;
 use weekender::render::RenderJob;
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, dot};
-use weekender::render_cpu::material::{Surface, scatter};
+use weekender::render_cpu::material::{Incidence, Surface, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, near_root, nearest_root,
     surface_point,
@@ -310,7 +310,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
         DielectricLaws::RefractOnly,
         rays.direction,
         point.outward,
-        cosine,
+        &Incidence::of(l, cosine),
         l.mask(1),
         zero,
         zero.x,
@@ -386,7 +386,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
             DielectricLaws::Schlick,
             rays.direction,
             inward,
-            cosine,
+            &Incidence::of(l, cosine),
             l.mask(0),
             v3(l, DVec3::ZERO),
             l.constant(0.999_999),

@@ -17,3 +17,4 @@ mod materials;
 mod parity;
 mod sampling;
 mod statistics;
+mod stiff;

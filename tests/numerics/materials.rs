@@ -4,7 +4,7 @@ use crate::common::*;
 use glam::DVec3;
 use weekender::render::{RenderSettings, SamplerKind};
 use weekender::render_cpu::lanes::Scalar;
-use weekender::render_cpu::material::{Surface, reflectance, scatter};
+use weekender::render_cpu::material::{Incidence, Surface, reflectance, scatter};
 use weekender::scene::{Camera, Material, Sky};
 use weekender::stages::DielectricLaws;
 
@@ -166,7 +166,17 @@ fn grazing<const FUSED: bool>() {
             let zero = v3(l, DVec3::ZERO);
             let scattered = |laws: DielectricLaws| {
                 let (direction, normal) = (v3(l, direction), v3(l, normal));
-                scatter::<_, true>(l, &surface, laws, direction, normal, 0.0, front, zero, coin)
+                scatter::<_, true>(
+                    l,
+                    &surface,
+                    laws,
+                    direction,
+                    normal,
+                    &Incidence::of(l, 0.0),
+                    front,
+                    zero,
+                    coin,
+                )
             };
             let bounced = scattered(DielectricLaws::Schlick);
             assert!(!bounced.refracts, "index {index} lets light through at a grazing angle");

@@ -17,15 +17,15 @@ pub use single::SinglePath;
 use super::bvh::{EMPTY_STACK, Stack, traverse};
 use super::camera::{lens_rays, pinhole_rays, screen};
 use super::lanes::{Lanes, V3, dot, mul_add3, select3};
-use super::material::{Surface, hemisphere, scatter};
-use super::sphere::{NONE, Nearest, Rays, Spheres, acne_root, anchored_root, near_root, nearest_root};
+use super::material::{Incidence, Scatter, Surface, hemisphere, refracted, scatter};
+use super::sphere::{EYE, NONE, Nearest, Rays, Spheres, acne_root, anchored_root, near_root, nearest_root};
 use super::wide::WideTables;
 use super::work::{LaneBlocks, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
-use crate::tables::NEAR_ZERO;
+use crate::tables::{NEAR_ZERO, Tables};
 use draw::{Draw, draw, has_lens, strides};
-use rows::{Rows, hit_points};
+use rows::{Rows, hit_points, is_cavity};
 use simpler::{shown_at_hit, strip_reflectance};
 
 /// Code that a kernel may carry, as bits of its constant parameter.
@@ -34,8 +34,8 @@ pub mod needs {
     pub const GLASS: u32 = 1;
     /// A lens of some size.
     pub const LENS: u32 = 2;
-    /// Anchored spheres.
-    pub const ANCHORED: u32 = 4;
+    /// What few scenes need: anchored spheres, specks, steep glass.
+    pub const EXTREMES: u32 = 4;
     /// The hierarchy.
     pub const HIERARCHY: u32 = 8;
     /// Stage rules.
@@ -52,6 +52,8 @@ struct Packet<L: Lanes> {
     rays: Rays<L>,
     nearest: Nearest<L>,
     throughput: V3<L::F>,
+    /// Squared sine between a ray inside steep glass and the normal where it starts, and so where it ends.
+    sine2: L::F,
     /// The sampler's counter: which sample.
     counter: L::U,
     /// The sampler's stream: which ray of it.
@@ -79,6 +81,7 @@ impl<L: Lanes> Packet<L> {
             rays: Rays { origin: nowhere, direction: nowhere, left: none, inside: none },
             nearest: Nearest::nothing(l),
             throughput: nowhere,
+            sine2: zero,
             counter: nought,
             stream: nought,
             screen: [zero; 2],
@@ -168,7 +171,7 @@ fn intersect<L: Lanes, const NEEDS: u32>(
             }
             _ => {}
         }
-        if NEEDS & needs::ANCHORED != 0 {
+        if NEEDS & needs::EXTREMES != 0 {
             let one = l.splat_u(1);
             let mut number = l.splat_u((tables.opaque.len() + tables.two_root.len()) as u32);
             for sphere in &tables.anchored {
@@ -260,6 +263,9 @@ fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet:
     } else {
         front = front & !L::eq_u(packet.rays.inside, hit);
     }
+    if NEEDS & needs::EXTREMES != 0 && wide.is_eye_in_cavity {
+        front = front & !is_cavity(l, wide, &rows);
+    }
     let normal = point.outward.scale(L::select(front, one, l.constant(-1.0)));
 
     // One set of numbers serves the camera and the surface alike.
@@ -282,12 +288,14 @@ fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet:
         pinhole_rays(l, &wide.camera, packet.screen, jitter)
     };
 
-    let incidence = L::min(one, L::abs(outward_cosine));
+    let incidence = Incidence::of(l, outward_cosine);
     let surface = Surface { weight, index, inverse_index, normal_share };
-    let mut bounced = if NEEDS & needs::GLASS != 0 {
-        scatter::<L, true>(l, &surface, rules.dielectric, direction, normal, incidence, front, unit, u0)
+    let mut bounced = if NEEDS & needs::GLASS == 0 {
+        scatter::<L, false>(l, &surface, rules.dielectric, direction, normal, &incidence, front, unit, u0)
+    } else if NEEDS & needs::EXTREMES != 0 && tables.has_steep_glass {
+        scatter_steeply(l, tables, packet, &surface, normal, &incidence, front, unit)
     } else {
-        scatter::<L, false>(l, &surface, rules.dielectric, direction, normal, incidence, front, unit, u0)
+        scatter::<L, true>(l, &surface, rules.dielectric, direction, normal, &incidence, front, unit, u0)
     };
     let mut albedo = V3 { x: red, y: green, z: blue };
     if with_rules {
@@ -308,14 +316,46 @@ fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet:
     // A fuzzy reflection into the surface is absorbed.
     packet.absorbed = bounced.is_metal & !L::lt(zero, dot::<L>(next, normal)) & !ended;
     let inward = (front & bounced.refracts) | !(front | bounced.refracts);
+    let mut left = l.fill(ended | inward, hit);
+    if NEEDS & needs::EXTREMES != 0 && wide.is_eye_on_surface {
+        left = L::select_u(ended, l.splat_u(EYE), left);
+    }
     packet.rays = Rays {
         origin: select3::<L>(ended, camera.origin, point.position),
         direction: next,
-        left: l.fill(ended | inward, hit),
+        left,
         inside: l.fill(ended | !inward, hit),
     };
     let throughput = packet.throughput.times(albedo);
     packet.throughput = select3::<L>(ended, V3 { x: one, y: one, z: one }, throughput);
+}
+
+/// Scatters where the angle of incidence must be known better than from its cosine. A ray inside glass meets it under
+/// the angle under which it started: that is remembered, so that total reflection lasts.
+#[inline(always)]
+fn scatter_steeply<L: Lanes>(
+    l: L,
+    tables: &Tables<L::Real>,
+    packet: &mut Packet<L>,
+    surface: &Surface<L>,
+    normal: V3<L::F>,
+    incidence: &Incidence<L>,
+    front: L::M,
+    unit: V3<L::F>,
+) -> Scatter<L> {
+    let direction = packet.rays.direction;
+    let across = mul_add3::<L>(normal, incidence.cosine, direction);
+    let runs_own_chord = L::eq_u(packet.rays.inside, packet.nearest.sphere);
+    let is_known = runs_own_chord & L::lt(l.constant(0.0), surface.index);
+    let incidence = Incidence::of_sine2(l, L::select(is_known, packet.sine2, dot::<L>(across, across)));
+    let coin = packet.draw.pair[0];
+    let laws = tables.rules.dielectric;
+    let mut bounced = scatter::<L, true>(l, surface, laws, direction, normal, &incidence, front, unit, coin);
+    let through = refracted(l, across, normal, bounced.ratio, incidence.sine2);
+    bounced.direction = select3::<L>(bounced.refracts, through, bounced.direction);
+    let refracted_sine2 = bounced.ratio * bounced.ratio * incidence.sine2;
+    packet.sine2 = L::select(bounced.refracts, refracted_sine2, incidence.sine2);
+    bounced
 }
 
 /// Column and row from `x | y << 16`.

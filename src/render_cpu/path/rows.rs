@@ -2,7 +2,9 @@
 
 use super::{Packet, needs};
 use crate::render_cpu::lanes::{Lanes, V3, WideU, select3};
-use crate::render_cpu::sphere::{NONE, SurfacePoint, anchored_surface_point, surface_point};
+use crate::render_cpu::sphere::{
+    NONE, SurfacePoint, anchored_surface_point, speck_surface_point, surface_point,
+};
 use crate::render_cpu::wide::WideTables;
 use crate::tables::Tables;
 
@@ -39,6 +41,13 @@ impl<L: Lanes> Rows<L> {
     }
 }
 
+/// Whether what was hit holds every ray, so that it is met from inside whatever rounding says.
+#[inline(always)]
+pub(super) fn is_cavity<L: Lanes>(l: L, wide: &WideTables<L::Real>, rows: &Rows<L>) -> L::M {
+    let [.., is_anchored] = rows.columns(l, wide, 3);
+    L::lt(l.constant(1.0), is_anchored)
+}
+
 /// The points that were hit, where anything was.
 #[inline(always)]
 pub(super) fn hit_points<L: Lanes, const NEEDS: u32>(
@@ -51,8 +60,15 @@ pub(super) fn hit_points<L: Lanes, const NEEDS: u32>(
     let [radius, ..] = rows.columns(l, wide, 2);
     let reference = V3 { x: cx, y: cy, z: cz };
     let t = packet.nearest.distance();
-    let mut point = surface_point(l, &packet.rays, t, reference, curvature, radius);
-    if NEEDS & needs::ANCHORED != 0 && !wide.tables.anchored.is_empty() {
+    if NEEDS & needs::EXTREMES == 0 || !wide.is_extreme {
+        return surface_point(l, &packet.rays, t, reference, curvature, radius);
+    }
+    let mut point = if wide.tables.has_specks {
+        speck_surface_point(l, &packet.rays, t, reference, curvature, radius)
+    } else {
+        surface_point(l, &packet.rays, t, reference, curvature, radius)
+    };
+    if !wide.tables.anchored.is_empty() {
         let [mx, my, mz, is_anchored] = rows.columns(l, wide, 3);
         let inward = V3 { x: mx, y: my, z: mz };
         let far = anchored_surface_point(l, &packet.rays, t, reference, inward, curvature);

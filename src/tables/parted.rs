@@ -1,0 +1,178 @@
+//! Trees from the top down, for spheres that a clustering from the bottom up chains: nested shells, copies, and
+//! crowds about one place, where obvhs takes a time that grows with the square of their number and gives a tree as
+//! deep as there are spheres.
+
+use obvhs::Boundable;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use rayon::slice::ParallelSliceMut;
+
+/// Levels that are parted where it pays most. Below them nodes are halved, so that no tree is deeper than this and
+/// the logarithm of the number of spheres.
+const CHOSEN_LEVELS: usize = 32;
+
+/// Classes that a node's spheres are sorted into to choose where to part them.
+const BINS: usize = 16;
+
+/// So few spheres are clustered in no time, whatever they are like.
+const FEW_SPHERES: usize = 2048;
+
+/// Spheres in nested runs, from which on a scene counts as crowded.
+const CROWD: usize = 1024;
+
+/// Fewer nested spheres in a row are a hollow ball or the like.
+const NESTED_RUN: usize = 32;
+
+/// A node's spheres and where it goes.
+struct Open {
+    node: usize,
+    first: usize,
+    count: usize,
+    depth: usize,
+}
+
+/// Whether so many of the boxes lie within each other that clustering them would take long.
+pub(super) fn is_crowded(spheres: &[impl Boundable]) -> bool {
+    if spheres.len() < FEW_SPHERES {
+        return false;
+    }
+    let whole = spheres.iter().fold(Aabb::empty(), |all, one| all.union(&one.aabb()));
+    let size = whole.diagonal().as_dvec3().max_element().max(f64::MIN_POSITIVE);
+    let mut order: Vec<(u64, u32)> = spheres
+        .iter()
+        .enumerate()
+        .map(|(index, sphere)| {
+            let place = (sphere.aabb().center() - whole.min).as_dvec3() / size;
+            (morton_code(place.to_array()), index as u32)
+        })
+        .collect();
+    order.par_sort_unstable();
+    let (mut nested, mut run) = (0, 0);
+    for pair in order.windows(2) {
+        let [a, b] = [0, 1].map(|i| spheres[pair[i].1 as usize].aabb());
+        let both = a.union(&b);
+        if both == a || both == b {
+            run += 1;
+            nested += usize::from(run >= NESTED_RUN);
+        } else {
+            run = 0;
+        }
+    }
+    nested >= CROWD
+}
+
+/// Interleaves 21 bits of each coordinate, which are within 0 and 1.
+fn morton_code(place: [f64; 3]) -> u64 {
+    place.iter().enumerate().fold(0, |code, (axis, x)| {
+        let mut bits = (x * f64::from((1 << 21) - 1)) as u64;
+        for (shift, mask) in [
+            (32, 0x001F_0000_0000_FFFF),
+            (16, 0x001F_0000_FF00_00FF),
+            (8, 0x100F_00F0_0F00_F00F),
+            (4, 0x10C3_0C30_C30C_30C3),
+            (2, 0x1249_2492_4924_9249),
+        ] {
+            bits = (bits | bits << shift) & mask;
+        }
+        code | bits << axis
+    })
+}
+
+/// A tree over at least one box, at most `leaf_size` to a leaf. `halved` parts all nodes in the middle, so that the
+/// tree is as low as can be; else the sum of areas times spheres decides (Wald 2007, "On fast Construction of
+/// SAH-based Bounding Volume Hierarchies").
+pub(super) fn build(spheres: &[impl Boundable], leaf_size: usize, halved: bool) -> Bvh2 {
+    let chosen_levels = if halved { 0 } else { CHOSEN_LEVELS };
+    let mut order: Vec<u32> = (0..spheres.len() as u32).collect();
+    let mut nodes = vec![Bvh2Node::default()];
+    let mut open = vec![Open { node: 0, first: 0, count: spheres.len(), depth: 0 }];
+    while let Some(Open { node, first, count, depth }) = open.pop() {
+        let part = &mut order[first..first + count];
+        let aabb = part.iter().fold(Aabb::empty(), |all, index| all.union(&spheres[*index as usize].aabb()));
+        if count <= leaf_size {
+            nodes[node] = Bvh2Node::new(aabb, count as u32, first as u32);
+            continue;
+        }
+        let chosen = if depth < chosen_levels { part_where_it_pays(spheres, part) } else { None };
+        let left = chosen.unwrap_or_else(|| part_in_the_middle(spheres, part));
+        let children = nodes.len();
+        nodes[node] = Bvh2Node::new(aabb, 0, children as u32);
+        nodes.extend([Bvh2Node::default(); 2]);
+        let depth = depth + 1;
+        open.push(Open { node: children, first, count: left, depth });
+        open.push(Open { node: children + 1, first: first + left, count: count - left, depth });
+    }
+    let mut tree = Bvh2::default();
+    tree.nodes = nodes;
+    tree.primitive_indices = order;
+    tree.children_are_ordered_after_parents = true;
+    tree
+}
+
+/// What boxes are parted by: where their middle lies along each axis, and their size.
+fn keys(aabb: &Aabb) -> [f32; 4] {
+    let center = aabb.center();
+    [center.x, center.y, center.z, aabb.diagonal().max_element()]
+}
+
+/// By key, the smallest and the largest.
+fn key_ranges(spheres: &[impl Boundable], part: &[u32]) -> [[f32; 2]; 4] {
+    let mut ranges = [[f32::INFINITY, f32::NEG_INFINITY]; 4];
+    for index in part {
+        for (range, key) in ranges.iter_mut().zip(keys(&spheres[*index as usize].aabb())) {
+            *range = [range[0].min(key), range[1].max(key)];
+        }
+    }
+    ranges
+}
+
+/// Puts those of one side first and returns their number; `None` where no split leaves both sides some.
+fn part_where_it_pays(spheres: &[impl Boundable], part: &mut [u32]) -> Option<usize> {
+    let ranges = key_ranges(spheres, part);
+    let bin_of = |key: f32, [low, high]: [f32; 2]| {
+        let share = f64::from(key - low) / f64::from(high - low);
+        ((share * BINS as f64) as usize).min(BINS - 1)
+    };
+    let mut best: Option<(f64, usize, usize)> = None;
+    for (which, range) in ranges.into_iter().enumerate().filter(|(_, [low, high])| high > low) {
+        let mut bins = [(Aabb::empty(), 0_usize); BINS];
+        for index in part.iter() {
+            let aabb = spheres[*index as usize].aabb();
+            let (whole, count) = &mut bins[bin_of(keys(&aabb)[which], range)];
+            *whole = whole.union(&aabb);
+            *count += 1;
+        }
+        let cost = |side: &[(Aabb, usize)]| {
+            let whole = side.iter().fold(Aabb::empty(), |all, bin| all.union(&bin.0));
+            let count: usize = side.iter().map(|bin| bin.1).sum();
+            if count == 0 { f64::INFINITY } else { f64::from(whole.half_area()) * count as f64 }
+        };
+        for split in 1..BINS {
+            let total = cost(&bins[..split]) + cost(&bins[split..]);
+            if total.is_finite() && best.is_none_or(|(least, ..)| total < least) {
+                best = Some((total, which, split));
+            }
+        }
+    }
+    let (_, which, split) = best?;
+    let is_left = |index: &u32| bin_of(keys(&spheres[*index as usize].aabb())[which], ranges[which]) < split;
+    let mut left = 0;
+    for place in 0..part.len() {
+        if is_left(&part[place]) {
+            part.swap(place, left);
+            left += 1;
+        }
+    }
+    Some(left)
+}
+
+/// Puts the lower half along the widest key first and returns their number.
+fn part_in_the_middle(spheres: &[impl Boundable], part: &mut [u32]) -> usize {
+    let widths = key_ranges(spheres, part).map(|[low, high]| high - low);
+    let widest = (0..4).max_by(|a, b| widths[*a].total_cmp(&widths[*b])).unwrap_or(0);
+    let key = |index: &u32| keys(&spheres[*index as usize].aabb())[widest];
+    let middle = part.len() / 2;
+    part.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)).then(a.cmp(b)));
+    middle
+}

@@ -1,0 +1,373 @@
+//! Scenes that are stiff: copies, shells, an eye on a surface or far from the origin, angles near the critical one.
+
+use crate::common::*;
+use crate::film::trace_tables;
+use glam::DVec3;
+use weekender::film::Film;
+use weekender::render::{RenderJob, RenderSettings};
+use weekender::scene::builtin::{LeftSphere, field, three_spheres};
+use weekender::scene::{Camera, Material, Scene, Sky};
+use weekender::tables::hierarchy::{DEPTH_LIMIT, Hierarchy};
+use weekender::tables::{Roots, Tables};
+
+type Ball = (DVec3, f64, Material);
+
+const WHITE: Sky = Sky { bottom: DVec3::ONE, top: DVec3::ONE };
+
+fn under_white_sky(balls: &[Ball]) -> Scene {
+    Scene { sky: WHITE, ..scene(balls) }
+}
+
+/// The balls and forty more far behind the eye, so many that there is a hierarchy.
+fn among_many(balls: &[Ball]) -> Vec<Ball> {
+    let far = |i: u32| (DVec3::new(f64::from(i) - 20.0, 0.0, 500.0), 0.1, lambertian(0.5));
+    balls.iter().copied().chain((0..40).map(far)).collect()
+}
+
+/// From 3 in front of the ball of radius 1 about the origin, so narrow that nothing else is seen.
+const AT_BALL: Camera =
+    Camera { look_from: DVec3::new(0.0, 0.0, 3.0), look_at: DVec3::ZERO, vfov_degrees: 20.0, ..Camera::BOOK };
+
+/// Renders as a list and with a hierarchy, checks that both are there and the same, and returns the film.
+fn as_list_and_hierarchy(job: &RenderJob, samples: u64) -> Film {
+    let tables = Tables::<f32>::new(job);
+    let [mut listed, mut boxed] = [job.new_film(), job.new_film()];
+    assert!(tables.hierarchy.is_some(), "there is a hierarchy");
+    trace_tables(&tables, &mut boxed, 0..samples);
+    trace_tables(&Tables::as_list(job), &mut listed, 0..samples);
+    assert_eq!(listed, boxed, "list and hierarchy");
+    boxed
+}
+
+fn shown_mean(job: &RenderJob, samples: u64) -> f64 {
+    mean(&render(&mut widest(), job, 0..samples))
+}
+
+#[test]
+fn copies_of_a_ball_are_the_ball() {
+    let ball = (DVec3::ZERO, 1.0, lambertian(0.5));
+    for copies in [1, 2, 110, 3000] {
+        let balls = among_many(&vec![ball; copies]);
+        let job = job(&under_white_sky(&balls), AT_BALL, size(4, 4));
+        let film = as_list_and_hierarchy(&job, 16);
+        for pixel in 0..16 {
+            assert_eq!(film.mean(pixel), [0.5; 3], "{copies} copies");
+        }
+    }
+}
+
+#[test]
+fn a_field_with_copies_is_the_field() {
+    let (plain, camera) = field(2000);
+    let mut copied = plain.clone();
+    copied.spheres.extend([plain.spheres[77]; 120]);
+    let film = |scene: &Scene| render(&mut widest(), &job(scene, camera, size(32, 18)), 0..4);
+    assert_eq!(film(&plain), film(&copied));
+}
+
+#[test]
+fn nearly_equal_balls_reflect_what_one_does() {
+    for offset in [1e-9, 1e-7, 1e-6, 1e-5, 1e-4] {
+        let balls: Vec<Ball> = (0..3)
+            .map(|i| (DVec3::new(offset, -0.3 * offset, 0.2 * offset) * f64::from(i), 1.0, lambertian(0.5)))
+            .collect();
+        let job = job(&under_white_sky(&among_many(&balls)), AT_BALL, size(16, 16));
+        let mean = mean(&as_list_and_hierarchy(&job, 64));
+        println!("offset {offset:e}: {mean}");
+        // Light that goes from one to another is lost; there is as much of it as the balls stand out.
+        assert!((mean - 0.5).abs() < 1e-5 + 2.0 * offset, "{offset:e}: {mean}");
+    }
+}
+
+#[test]
+fn overlapping_balls_far_away_are_one_picture() {
+    let mut random = Random::new(4);
+    let at = DVec3::new(1e4, 0.0, 0.0);
+    let balls: Vec<Ball> =
+        (0..30).map(|_| (at + random.in_box(1.0), random.within(0.3, 1.0), lambertian(0.8))).collect();
+    let camera = Camera { look_from: at + DVec3::new(0.0, 1.0, 5.0), look_at: at, ..AT_BALL };
+    as_list_and_hierarchy(&job(&under_white_sky(&balls), camera, size(32, 32)), 16);
+}
+
+#[test]
+fn of_copies_in_two_colours_the_first_is_seen() {
+    let coloured = |albedo| (DVec3::ZERO, 1.0, Material::Lambertian { albedo });
+    for (first, second) in [(DVec3::X, DVec3::Y), (DVec3::Y, DVec3::X)] {
+        let balls = [coloured(first), coloured(second)];
+        let alone = render(&mut widest(), &job(&under_white_sky(&balls), AT_BALL, size(2, 2)), 0..4);
+        let many = as_list_and_hierarchy(&job(&under_white_sky(&among_many(&balls)), AT_BALL, size(2, 2)), 4);
+        for pixel in 0..4 {
+            assert_eq!(alone.mean(pixel), first.to_array());
+            assert_eq!(many.mean(pixel), first.to_array());
+        }
+    }
+}
+
+/// Shells about one centre, and crowds of balls about one place, make no tree too deep to go through.
+#[test]
+fn shells_and_crowds_have_low_trees() {
+    let ball = |center, radius| weekender::scene::Sphere { center, radius, material: 0 };
+    let mut random = Random::new(5);
+    let shells: Vec<_> = (1..=6000).map(|i| ball(DVec3::ZERO, 1e-3 * f64::from(i))).collect();
+    let halves: Vec<_> = (0..60).map(|i| ball(DVec3::X, 0.5_f64.powi(i))).collect();
+    let crowd: Vec<_> = (0..6000).map(|_| ball(random.in_box(1e-3), random.within(0.5, 1.5))).collect();
+    let copies = vec![ball(DVec3::Y, 1.0); 6000];
+    let row: Vec<_> = (0..6000).map(|i| ball(DVec3::X * f64::from(i), 0.5)).collect();
+    for spheres in [&shells, &halves, &crowd, &copies, &row] {
+        let hierarchy = Hierarchy::<f32>::build(spheres, DVec3::ZERO);
+        let mut order = hierarchy.ranks.clone();
+        order.sort_unstable();
+        assert!(order.iter().enumerate().all(|(place, rank)| place == *rank as usize), "each once");
+        println!("{} spheres: {} levels", spheres.len(), hierarchy.depth());
+        assert!(hierarchy.depth() <= DEPTH_LIMIT);
+        assert!(weekender::tables::cwbvh::Cwbvh::build(spheres, DVec3::ZERO).depth() <= 24);
+    }
+}
+
+#[test]
+fn many_shells_are_a_picture() {
+    for count in [108, 1000] {
+        let shell = |i: u32| (DVec3::ZERO, 1.0 - f64::from(i) / f64::from(2 * count), lambertian(0.5));
+        let shells: Vec<Ball> = (0..count).map(shell).collect();
+        let film = as_list_and_hierarchy(&job(&under_white_sky(&shells), AT_BALL, size(4, 4)), 4);
+        assert_eq!(film.mean(5), [0.5; 3]);
+    }
+}
+
+#[test]
+fn an_eye_on_a_surface_sees_the_sky_before_it() {
+    let up = DVec3::new(0.3, 0.8, -0.5).normalize();
+    for material in [lambertian(0.5), mirror(0.9), glass(1.5)] {
+        for radius in [1e-3, 0.5, 1000.0, 1e7] {
+            for center in [DVec3::ZERO, DVec3::new(3.0, -7.0, 11.0), DVec3::new(1e4, 1e5, -3e3)] {
+                let ball = (center, radius, material);
+                let foot = center + up * radius;
+                for height in [0.0, 1e-9, 1e-6, 1e-4] {
+                    let eye = foot + up * height * radius.min(1.0);
+                    let camera = Camera { look_from: eye, look_at: eye + up, ..AT_BALL };
+                    for balls in [vec![ball], among_many(&[ball])] {
+                        let film =
+                            render(&mut widest(), &job(&under_white_sky(&balls), camera, size(8, 8)), 0..4);
+                        for pixel in 0..64 {
+                            assert_eq!(
+                                film.mean(pixel),
+                                [1.0; 3],
+                                "{radius} {center} {height:e} {material:?}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn an_eye_on_a_matte_surface_is_dark_inside() {
+    let ball = (DVec3::ZERO, 0.5, lambertian(1.0));
+    let eye = DVec3::new(0.0, 0.5, 0.0);
+    let camera = Camera { look_from: eye, look_at: DVec3::ZERO, vup: DVec3::X, ..AT_BALL };
+    for renderer in [&mut widest(), &mut reference()] {
+        let film = render(renderer, &job(&under_white_sky(&[ball]), camera, size(8, 8)), 0..4);
+        assert_eq!(mean(&film), 0.0);
+    }
+}
+
+/// A shell of glass and a coat of glass on a matte ball, beside the eye.
+fn shells_at(at: DVec3, thickness: f64) -> (Scene, Camera) {
+    let left = at + DVec3::new(-1.1, 0.0, 0.0);
+    let right = at + DVec3::new(1.1, 0.0, 0.0);
+    let balls = [
+        (left, 1.0, glass(1.5)),
+        (left, 1.0 - thickness, glass(1.0 / 1.5)),
+        (right, 1.0, glass(1.5)),
+        (right, 1.0 - thickness, lambertian(0.7)),
+    ];
+    let camera =
+        Camera { look_from: at + DVec3::new(0.0, 0.3, 4.0), look_at: at, vfov_degrees: 40.0, ..Camera::BOOK };
+    (scene(&balls), camera)
+}
+
+#[test]
+fn thin_shells_far_from_the_origin_are_right() {
+    for thickness in [1e-2, 1e-3, 1e-4] {
+        for distance in [0.0, 1e2, 1e4, 1e5, 1e7] {
+            let (scene, camera) = shells_at(DVec3::new(0.6, -0.3, 0.9) * distance, thickness);
+            let job = job(&scene, camera, size(64, 36));
+            let found = paired(&job, 8, &mut widest(), &mut reference());
+            println!("{thickness:e} at {distance:e}: {found:?}");
+            assert!(found.outliers < 2e-3, "{thickness:e} at {distance:e}: {found:?}");
+            assert!(found.bias.abs() < 2e-5, "{thickness:e} at {distance:e}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_scene_is_the_same_wherever_it_is() {
+    let scene = three_spheres(LeftSphere::HollowGlass);
+    let film = |by: DVec3| {
+        let mut scene = scene.clone();
+        scene.spheres.iter_mut().for_each(|sphere| sphere.center += by);
+        let camera = Camera {
+            look_from: Camera::BOOK.look_from + by,
+            look_at: Camera::BOOK.look_at + by,
+            ..Camera::BOOK
+        };
+        render(&mut widest(), &job(&scene, camera, size(64, 36)), 0..32)
+    };
+    let here = film(DVec3::ZERO);
+    for distance in [1e3, 1e5, 1e7, 1e9] {
+        let there = film(DVec3::new(0.7, -0.5, 0.3) * distance);
+        let off = mean(&there) - mean(&here);
+        println!("{distance:e}: {off:e}");
+        assert!(off.abs() < 2e-5, "{distance:e}: {off:e}");
+    }
+}
+
+/// One odd sphere, distance or eye does not make a list of all spheres.
+#[test]
+fn oddities_anchor_few_spheres() {
+    let (scene, camera) = field(4000);
+    let tables = |scene: &Scene, camera: Camera| Tables::<f32>::new(&job(scene, camera, size(8, 8)));
+    let check = |tables: Tables<f32>, what: &str| {
+        println!("{what}: {} anchored", tables.anchored.len());
+        assert!(
+            tables.hierarchy.is_some() && tables.anchored.len() <= 8,
+            "{what}: {}",
+            tables.anchored.len()
+        );
+    };
+    let plain = tables(&scene, camera).anchored.len();
+    let mut speck = scene.clone();
+    speck.add_sphere(DVec3::new(0.3, 0.7, 0.3), 1e-4, 0);
+    check(tables(&speck, camera), "a tiny sphere");
+    assert_eq!(tables(&speck, camera).anchored.len(), plain, "it is near none");
+    check(
+        tables(&scene, Camera { focus_distance: Some(1e-4), defocus_angle_degrees: 1.0, ..camera }),
+        "focus",
+    );
+    let ball = scene.spheres[100];
+    let eye = ball.center + DVec3::new(0.0, 1.0, 0.0) * (ball.radius + 1e-4);
+    check(tables(&scene, Camera { look_from: eye, look_at: eye + DVec3::X, ..camera }), "near a ball");
+    let eye = ball.center + DVec3::new(0.0, 1.0, 0.0) * ball.radius;
+    check(tables(&scene, Camera { look_from: eye, look_at: eye + DVec3::X, ..camera }), "on a ball");
+}
+
+#[test]
+fn total_reflection_lasts() {
+    let scene = under_white_sky(&[(DVec3::ZERO, 1.0, glass(1.5))]);
+    // Rays at the picture's edge meet the surface near the critical angle, sine 2/3.
+    let eye = DVec3::new(0.9, 0.0, 0.0);
+    let side = Camera {
+        look_from: eye,
+        look_at: eye + DVec3::Y,
+        vup: DVec3::Z,
+        vfov_degrees: 100.0,
+        ..Camera::BOOK
+    };
+    let settings = RenderSettings { max_depth: 10_000, ..size(64, 64) };
+    let job = job(&scene, side, settings);
+    let film = render(&mut widest(), &job, 0..4);
+    let exact = render(&mut reference(), &job, 0..4);
+    let off = mean(&film) - mean(&exact);
+    println!("total reflection: {:e} of {}", off, mean(&exact));
+    assert!(mean(&exact) > 0.01 && off.abs() < 1e-6, "{off:e}");
+    // All of these are reflected for ever.
+    let narrow = Camera { vfov_degrees: 60.0, ..side };
+    let dark = render(&mut widest(), &crate::common::job(&scene, narrow, settings), 0..4);
+    assert_eq!(mean(&dark), 0.0);
+}
+
+#[test]
+fn steep_glass_is_right() {
+    for index in [10.0, 100.0, 1e4, 1e6] {
+        // So near the centre that about half the rays meet the surface within the critical angle.
+        for offset in [0.0, 1.5 / index] {
+            let eye = DVec3::new(offset, 0.0, 0.0);
+            let camera =
+                Camera { look_from: eye, look_at: eye + DVec3::Z, vfov_degrees: 120.0, ..Camera::BOOK };
+            let scene = under_white_sky(&[(DVec3::ZERO, 1.0, glass(index))]);
+            let settings = RenderSettings { max_depth: 50, ..size(32, 32) };
+            let job = job(&scene, camera, settings);
+            let film = render(&mut widest(), &job, 0..64);
+            let exact = render(&mut reference(), &job, 0..64);
+            let off = mean(&film) - mean(&exact);
+            println!("index {index}, eye at {offset:e}: {:e} of {}", off, mean(&exact));
+            // Two paths of 65,536 may go another way: a direction is rounded by 6e-8, the critical sine is 1 / index.
+            assert!(off.abs() <= 2.0 / 65_536.0, "index {index} at {offset}: {off:e}");
+        }
+    }
+}
+
+#[test]
+fn no_light_gets_into_a_closed_ball() {
+    let inside = |at: DVec3| Camera { look_from: at, look_at: at + DVec3::new(0.3, -1.0, 0.2), ..AT_BALL };
+    let settings = RenderSettings { max_depth: 2000, ..size(8, 8) };
+    for at in [DVec3::ZERO, DVec3::new(1000.0, 0.0, -300.0)] {
+        for sunk in [0.0, 1e-9, 1e-7, 1e-5, 1e-3] {
+            for material in [lambertian(1.0), mirror(1.0), Material::Metal { albedo: DVec3::ONE, fuzz: 0.5 }]
+            {
+                let ground = (at - DVec3::Y * (1001.0 - sunk), 1000.0, lambertian(1.0));
+                let beside = (at + DVec3::X * (1.5 - sunk), 0.5, mirror(1.0));
+                let ball = (at, 1.0, material);
+                let scene = under_white_sky(&[ground, ball, beside]);
+                let eye = at + DVec3::new(0.2, 0.1, -0.3);
+                assert_eq!(shown_mean(&job(&scene, inside(eye), settings), 16), 0.0, "{at} {sunk:e}");
+                // The eye near the wall.
+                let eye = at + DVec3::Z * (1.0 - 1e-6);
+                assert_eq!(shown_mean(&job(&scene, inside(eye), settings), 4), 0.0, "{at} {sunk:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_closed_ball_hides_is_left_out() {
+    let ball = (DVec3::ZERO, 1.0, lambertian(1.0));
+    let crossing = (DVec3::X, 0.5, lambertian(0.5));
+    let tangent = (DVec3::Y * 3.0, 2.0, lambertian(0.5));
+    let around = (DVec3::ZERO, 5.0, lambertian(0.5));
+    let scene = scene(&[ball, crossing, tangent, around]);
+    let camera = Camera { look_from: DVec3::Z * 0.1, look_at: DVec3::X, ..Camera::BOOK };
+    let tables = Tables::<f32>::new(&job(&scene, camera, size(2, 2)));
+    assert_eq!(tables.scene_index, [1, 0]);
+    assert_eq!(tables.anchored[0].roots, Roots::Farther);
+}
+
+#[test]
+fn layers_too_thin_for_single_precision_are_told() {
+    let warnings = |thickness: f64| {
+        let (scene, camera) = shells_at(DVec3::ZERO, thickness);
+        Tables::<f32>::new(&job(&scene, camera, size(2, 2))).warnings().to_vec()
+    };
+    assert!(warnings(1e-4).is_empty(), "{:?}", warnings(1e-4));
+    let thin = warnings(1e-7);
+    assert!(
+        thin.len() == 1 && thin[0].contains("--device reference") && thin[0].contains("1.0e-7"),
+        "{thin:?}"
+    );
+}
+
+/// How thin a layer may be: printed, and held where no warning is given.
+#[test]
+fn layers_without_a_warning_are_right() {
+    for thickness in [1e-7, 2e-7, 5e-7, 1e-6, 3e-6, 1e-5, 1e-4] {
+        let (scene, camera) = shells_at(DVec3::ZERO, thickness);
+        let job = job(&scene, camera, size(64, 36));
+        let is_told = !Tables::<f32>::new(&job).warnings().is_empty();
+        let found = paired(&job, 16, &mut widest(), &mut reference());
+        println!("{thickness:e} ({is_told}): {found:?}");
+        assert!(is_told || found.bias.abs() < 1e-4, "{thickness:e}: {found:?}");
+    }
+}
+
+/// Far balls: the normal at a hit has length 1, however coarsely the distance is rounded.
+#[test]
+fn specks_are_shaded_as_balls_are() {
+    for radius in [1e-4, 1e-6, 1e-8] {
+        let balls = [(DVec3::new(0.0, 0.0, -1.0), radius, lambertian(0.5))];
+        let camera = Camera { vfov_degrees: 0.01, ..Camera::BOOK };
+        let tables = Tables::<f32>::new(&job(&under_white_sky(&balls), camera, size(2, 2)));
+        assert!(tables.has_specks || radius > 5e-5, "{radius:e}");
+    }
+}
