@@ -12,11 +12,6 @@ const LAYER_SHARE: f64 = 1e-2;
 /// A layer is right while it is thicker than this many units of rounding of the coordinates that it lies at.
 const LAYER_UNITS: f64 = 16.0;
 
-/// Grids on which spheres are looked for that lie close together. Two that are close by one fifth of a cell in each of
-/// four numbers (size and place) share a cell in one of five grids, each moved by a fifth: a border parts them in one
-/// grid a number.
-const GRIDS: u32 = 5;
-
 /// So many spheres are compared with each other in a cell; in a fuller one each with the next larger.
 const CELL_LIMIT: usize = 64;
 
@@ -39,9 +34,7 @@ struct Layer {
 impl Facts {
     pub fn of(scene: &Scene) -> Self {
         let mut facts = Facts::default();
-        for grid in 0..GRIDS {
-            facts.look_on(grid, &scene.spheres);
-        }
+        facts.compare_neighbours(&scene.spheres);
         facts.covered.sort_unstable();
         facts.covered.dedup();
         facts.layers.sort_by(|a, b| a.spheres.cmp(&b.spheres));
@@ -82,13 +75,11 @@ impl Facts {
         )]
     }
 
-    /// Compares spheres that lie in one cell.
-    fn look_on(&mut self, grid: u32, spheres: &[Sphere]) {
-        let mut cells: Vec<(u64, u32)> = spheres
-            .par_iter()
-            .enumerate()
-            .map(|(index, sphere)| (cell_of(sphere, grid), index as u32))
-            .collect();
+    /// Compares spheres of about one size and place: those of one cell, and those beyond its border where one lies close
+    /// to it.
+    fn compare_neighbours(&mut self, spheres: &[Sphere]) {
+        let mut cells: Vec<(u64, u32)> =
+            spheres.par_iter().enumerate().map(|(index, sphere)| (own_mark(sphere), index as u32)).collect();
         cells.par_sort_unstable();
         for cell in cells.chunk_by(|a, b| a.0 == b.0).filter(|cell| cell.len() > 1) {
             let mut members: Vec<u32> = cell.iter().map(|(_, index)| *index).collect();
@@ -96,9 +87,21 @@ impl Facts {
             let reach = if members.len() <= CELL_LIMIT { members.len() } else { 1 };
             for (place, a) in members.iter().enumerate() {
                 for b in members.iter().skip(place + 1).take(reach) {
-                    self.note_layer(spheres, *a.min(b), *a.max(b));
+                    self.note_layer(spheres, *a, *b);
                 }
             }
+        }
+        let beyond_borders: Vec<[u32; 2]> = spheres
+            .par_iter()
+            .enumerate()
+            .flat_map_iter(|(index, sphere)| {
+                let beyond =
+                    marks_beyond_borders(sphere).into_iter().flat_map(|mark| members_of(&cells, mark));
+                beyond.map(move |other| [index as u32, other])
+            })
+            .collect();
+        for [a, b] in beyond_borders {
+            self.note_layer(spheres, a, b);
         }
     }
 
@@ -126,25 +129,111 @@ impl Facts {
 
     fn note_layer(&mut self, spheres: &[Sphere], a: u32, b: u32) {
         let [first, second] = [a, b].map(|index| spheres[index as usize]);
+        let spheres = [a.min(b), a.max(b)];
         let apart = first.center.distance(second.center);
         let thickness = apart + (first.radius - second.radius).abs();
         // Surfaces that cross differ by no more where they do.
         if thickness < LAYER_SHARE * first.radius.min(second.radius) {
-            self.layers.push(Layer { spheres: [a, b], thickness });
+            self.layers.push(Layer { spheres, thickness });
         }
     }
 }
 
-/// A mark that spheres of about one place and size share: cells are as wide as five layers, and by the radius.
-fn cell_of(sphere: &Sphere, grid: u32) -> u64 {
-    let shift = f64::from(grid) / f64::from(GRIDS);
-    // A power of two near the radius, by which neighbouring sizes are told apart on all grids but one.
-    let size = (sphere.radius.log2() + shift).floor();
-    let width = size.exp2() * LAYER_SHARE * f64::from(GRIDS) * 2.0;
-    let numbers = [size, sphere.center.x / width, sphere.center.y / width, sphere.center.z / width];
-    numbers.into_iter().fold(0x9E37_79B9_7F4A_7C15, |hash: u64, number| {
-        let cell = (number + shift).floor() + 0.0;
-        let mixed = (hash ^ cell.to_bits()).wrapping_mul(0xFF51_AFD7_ED55_8CCD);
+/// At most [`CELL_LIMIT`] spheres of the cell with this mark.
+fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
+    let first = cells.partition_point(|cell| cell.0 < mark);
+    cells[first..].iter().take_while(move |cell| cell.0 == mark).take(CELL_LIMIT).map(|(_, index)| *index)
+}
+
+/// How far beyond a border of its cell a sphere may lie that makes a layer with another, in cells.
+const REACH: f64 = 2.0 * LAYER_SHARE;
+
+/// Radii that are powers of two are common: so moved, they lie far from a border of sizes.
+const SIZE_SHIFT: f64 = 0.37;
+
+/// The mark of the cell that a sphere lies in. A cell holds spheres of about one size and place, and is about as wide as
+/// their radius: hardly any two spheres of a plain scene share one.
+fn own_mark(sphere: &Sphere) -> u64 {
+    let size = (sphere.radius.log2() + SIZE_SHIFT).floor();
+    let [x, y, z] = (sphere.center / size.exp2()).floor().to_array();
+    mark([size, x, y, z])
+}
+
+fn mark(cell: [f64; 4]) -> u64 {
+    cell.into_iter().fold(0x9E37_79B9_7F4A_7C15, |hash, number| {
+        let mixed = (hash ^ (number + 0.0).to_bits()).wrapping_mul(0xFF51_AFD7_ED55_8CCD);
         mixed ^ (mixed >> 29)
     })
+}
+
+/// The marks of the cells that a sphere lies close to.
+fn marks_beyond_borders(sphere: &Sphere) -> Vec<u64> {
+    let mut marks = Vec::new();
+    let sizes = cells_near(sphere.radius.log2() + SIZE_SHIFT);
+    for (which, size) in sizes.into_iter().flatten().enumerate() {
+        let [x, y, z] = (sphere.center / size.exp2()).to_array().map(cells_near);
+        if which == 0 && [x, y, z].iter().all(|cells| cells[1].is_none()) {
+            continue;
+        }
+        let all = x.into_iter().flatten().flat_map(|x| {
+            y.into_iter().flatten().flat_map(move |y| z.into_iter().flatten().map(move |z| [x, y, z]))
+        });
+        // The first of all is the sphere's own.
+        marks.extend(all.skip(usize::from(which == 0)).map(|[x, y, z]| mark([size, x, y, z])));
+    }
+    marks
+}
+
+/// The cell that a number lies in, and the next where it lies close to its border.
+fn cells_near(number: f64) -> [Option<f64>; 2] {
+    let cell = number.floor();
+    let within = number - cell;
+    let next = if within < REACH {
+        Some(cell - 1.0)
+    } else if within > 1.0 - REACH {
+        Some(cell + 1.0)
+    } else {
+        None
+    };
+    [Some(cell), next]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Material;
+
+    fn scene(spheres: impl IntoIterator<Item = (DVec3, f64)>) -> Scene {
+        let mut scene = Scene::default();
+        let material = scene.add_material("m", Material::Lambertian { albedo: DVec3::ONE });
+        spheres.into_iter().for_each(|(center, radius)| scene.add_sphere(center, radius, material));
+        scene
+    }
+
+    /// Wherever two spheres lie and however large they are, they are found to be close if they are.
+    #[test]
+    fn layers_are_found_across_borders() {
+        let random =
+            |i: u32, k: u32| f64::from(crate::sampling::pcg4d([i, k, 0, 0])[0]) / f64::from(u32::MAX);
+        for i in 0..5000 {
+            let at = |k: u32| 10.0 * random(i, k) - 5.0;
+            let radius = (6.0 * random(i, 3) - 3.0).exp2();
+            let center = DVec3::new(at(0), at(1), at(2)).round() * f64::from(i % 2) + DVec3::X * at(4);
+            let by = DVec3::new(random(i, 5), random(i, 6), random(i, 7)) - 0.5;
+            let near = (center + by * 0.005 * radius, radius * (1.0 - 0.004 * random(i, 8)));
+            let far = (center + DVec3::X * 0.02 * radius, radius);
+            let facts = Facts::of(&scene([(center, radius), near, far, (center, radius)]));
+            assert_eq!(facts.covered, [3], "{center} {radius}");
+            assert!(facts.layers.iter().any(|layer| layer.spheres == [0, 1]), "{center} {radius}");
+            assert!(facts.layers.iter().all(|layer| layer.spheres != [0, 2]), "{center} {radius}");
+        }
+    }
+
+    #[test]
+    fn the_first_of_many_copies_stays() {
+        let copies = (0..10_000).map(|i| (DVec3::new(f64::from(i % 3), 0.0, -0.0), 1.0 + f64::from(i % 2)));
+        let facts = Facts::of(&scene(copies));
+        assert_eq!(facts.covered, (6..10_000).collect::<Vec<_>>());
+        assert!(facts.layers.is_empty());
+    }
 }

@@ -108,14 +108,15 @@ impl Groups {
         let (scene, eye) = (job.scene(), Eye::of(job.camera()));
         let is_exact = job.rules().surface == Surface::Exact;
         let is_opaque = |s: &Sphere| !matches!(scene.material_of(s), Material::Dielectric { .. });
-        let listed = || scene.spheres.iter().enumerate();
-        let cavity = listed()
+        let uncovered = || {
+            let listed = scene.spheres.iter().enumerate();
+            listed.filter(|(index, _)| !is_exact || !facts.covers(*index as u32))
+        };
+        let cavity = uncovered()
             .map(|(_, sphere)| sphere)
             .filter(|s| is_exact && is_opaque(s) && eye.is_inside(s))
             .min_by(|a, b| a.radius.total_cmp(&b.radius));
-        let is_in_sight = |s: &Sphere| cavity.is_none_or(|cavity| reaches_into(s, cavity));
-        let shown =
-            || listed().filter(|(index, s)| !is_exact || (!facts.covers(*index as u32) && is_in_sight(s)));
+        let shown = || uncovered().filter(|(_, s)| cavity.is_none_or(|cavity| reaches_into(s, cavity)));
         let mut groups = Groups::default();
         if is_exact {
             groups.origin = origin(shown().map(|(_, sphere)| sphere), &eye);
@@ -162,14 +163,13 @@ fn is_speck(sphere: &Sphere, eye: &Eye) -> bool {
 
 /// A point near what the eye is nearest to, on a grid; 0 where coordinates are small enough as they are.
 fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> DVec3 {
-    let nearest = spheres.clone().min_by(|a, b| eye.height(a).abs().total_cmp(&eye.height(b).abs()));
-    let Some(nearest) = nearest else { return DVec3::ZERO };
+    let by_height = spheres.clone().map(|sphere| (eye.height(sphere).abs(), sphere));
+    let Some((height, nearest)) = by_height.min_by(|a, b| a.0.total_cmp(&b.0)) else { return DVec3::ZERO };
     // Layers about or in the nearest sphere are lengths, too.
     let layers = spheres.filter_map(|other| {
         let gap = (other.radius - nearest.radius).abs() - other.center.distance(nearest.center);
         (gap > 0.0).then_some(gap)
     });
-    let height = eye.height(nearest).abs();
     let length = layers.fold(height.min(nearest.radius), f64::min);
     let away = (eye.position - nearest.center).try_normalize().unwrap_or_default();
     let foot = if height == 0.0 { eye.position } else { nearest.center + away * nearest.radius };

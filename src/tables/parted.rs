@@ -6,7 +6,7 @@ use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
-use rayon::slice::ParallelSliceMut;
+use rayon::prelude::*;
 
 /// Levels that are parted where it pays most. Below them nodes are halved, so that no tree is deeper than this and
 /// the logarithm of the number of spheres.
@@ -33,14 +33,15 @@ struct Open {
 }
 
 /// Whether so many of the boxes lie within each other that clustering them would take long.
-pub(super) fn is_crowded(spheres: &[impl Boundable]) -> bool {
+pub(super) fn is_crowded(spheres: &[impl Boundable + Sync]) -> bool {
     if spheres.len() < FEW_SPHERES {
         return false;
     }
-    let whole = spheres.iter().fold(Aabb::empty(), |all, one| all.union(&one.aabb()));
+    let union = |a: Aabb, b: Aabb| a.union(&b);
+    let whole = spheres.par_iter().map(Boundable::aabb).reduce(Aabb::empty, union);
     let size = whole.diagonal().as_dvec3().max_element().max(f64::MIN_POSITIVE);
     let mut order: Vec<(u64, u32)> = spheres
-        .iter()
+        .par_iter()
         .enumerate()
         .map(|(index, sphere)| {
             let place = (sphere.aabb().center() - whole.min).as_dvec3() / size;
@@ -49,15 +50,17 @@ pub(super) fn is_crowded(spheres: &[impl Boundable]) -> bool {
         .collect();
     order.par_sort_unstable();
     let (mut nested, mut run) = (0, 0);
-    for pair in order.windows(2) {
-        let [a, b] = [0, 1].map(|i| spheres[pair[i].1 as usize].aabb());
-        let both = a.union(&b);
-        if both == a || both == b {
+    let mut last = Aabb::empty();
+    for (_, index) in order {
+        let next = spheres[index as usize].aabb();
+        let both = last.union(&next);
+        if both == last || both == next {
             run += 1;
             nested += usize::from(run >= NESTED_RUN);
         } else {
             run = 0;
         }
+        last = next;
     }
     nested >= CROWD
 }

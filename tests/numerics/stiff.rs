@@ -334,6 +334,16 @@ fn what_a_closed_ball_hides_is_left_out() {
     assert_eq!(tables.anchored[0].roots, Roots::Farther);
 }
 
+/// A copy that is covered closes nothing.
+#[test]
+fn a_covered_ball_is_no_cavity() {
+    let balls = [(DVec3::ZERO, 1.0, glass(1.5)), (DVec3::ZERO, 1.0, lambertian(0.5))];
+    let camera = Camera { look_from: DVec3::Z * 0.1, look_at: DVec3::X, ..Camera::BOOK };
+    let [both, glass] =
+        [&balls[..], &balls[..1]].map(|balls| job(&under_white_sky(balls), camera, size(8, 8)));
+    assert_eq!(render(&mut widest(), &both, 0..8), render(&mut widest(), &glass, 0..8));
+}
+
 #[test]
 fn layers_too_thin_for_single_precision_are_told() {
     let warnings = |thickness: f64| {
