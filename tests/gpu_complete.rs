@@ -36,7 +36,7 @@ fn few_pixels_with_many_samples_are_whole() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [4, 4], 50, SamplerKind::Sobol, true);
-    let samples = 4 * u64::from(TURN_LIMIT);
+    let samples = 2 * u64::from(TURN_LIMIT);
     let [on_gpu, on_cpu] =
         [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, samples)));
     assert!((on_gpu - on_cpu).abs() < 1e-4, "{on_gpu} {on_cpu}");
@@ -120,10 +120,7 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
         let mut short = gpu(options.clone()).unwrap();
         assert!(rendered(&mut short, &job, 32) == expected, "{after}");
         let said = short.take_messages().join("; ");
-        assert!(
-            said.contains("traced again") && said.contains("of 4300 samples the device added 0"),
-            "{said}"
-        );
+        assert!(said.contains("traced again") && said.contains("samples the device added 0"), "{said}");
         // From pass to pass, too, whenever it is noticed.
         let mut short = gpu(options).unwrap();
         let mut film = job.new_film();

@@ -98,13 +98,16 @@ impl Together {
     fn leave_out(&mut self, failed: Vec<(usize, RenderError)>) -> Result<(), RenderError> {
         let mut last = None;
         for (index, error) in failed.into_iter().rev() {
-            let member = self.members.remove(index);
+            let mut member = self.members.remove(index);
             self.departed.extend((member.added > 0).then(|| (member.renderer.info(), member.added)));
             if !self.members.is_empty() {
                 let names: Vec<&str> = self.members.iter().map(|m| m.renderer.info().name).collect();
                 self.messages.push(format!("{error}; {} goes on with the same picture", names.join(", ")));
             }
             last = Some(error);
+            self.messages.extend(member.renderer.take_messages());
+            // A driver that hangs keeps waiting whoever closes it. Without a thread, it is closed here.
+            let _ = std::thread::Builder::new().name("close".to_owned()).spawn(move || drop(member));
         }
         match last {
             Some(error) if self.members.is_empty() => Err(error),

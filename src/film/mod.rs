@@ -86,18 +86,6 @@ impl ErrorEstimate {
         if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
     }
 
-    /// What to say where few of the film's pixels dominate it. It is then most likely too low, and its deviation with it:
-    /// what paths find rarely is missing in most estimates.
-    pub fn doubt(&self, film_pixels: usize) -> Option<String> {
-        let pixels = self.pixels_in_effect();
-        (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * film_pixels as f64).then(|| {
-            format!(
-                "few pixels dominate the error estimate: it is worth that of {pixels:.0} of {film_pixels} pixels, \
-                 where {PIXELS_IN_EFFECT_MIN:.0} would do; it may be off by a factor, and only more samples tell"
-            )
-        })
-    }
-
     /// How far off it may be by chance, as "± 0.2 %": one deviation.
     pub fn uncertainty(&self) -> String {
         let share = if self.rmse > 0.0 { self.rmse_deviation / self.rmse } else { 0.0 };
@@ -365,6 +353,25 @@ impl Film {
             rmse,
             rmse_deviation: if rmse > 0.0 { 0.5 * deviation_of_square / rmse } else { 0.0 },
             rel_mse: relative_sum / (3.0 * pixels),
+        })
+    }
+
+    /// What to say where an estimate of this film's error is in doubt: few pixels dominate it, or no path has found any
+    /// light. It is then most likely too low, and its deviation with it.
+    pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
+        if estimate.rmse == 0.0 && self.halves.iter().flatten().all(|sum| sum.0 == [0; 3]) {
+            let count = self.sample_count();
+            return Some(format!(
+                "no path has found any light in {count} samples per pixel, so that the error cannot be estimated; only \
+                 more samples tell whether there is some"
+            ));
+        }
+        let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
+        (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64).then(|| {
+            format!(
+                "few pixels dominate the error estimate: it is worth that of {pixels:.0} of {all} pixels, where \
+                 {PIXELS_IN_EFFECT_MIN:.0} would do; it may be off by a factor, and only more samples tell"
+            )
         })
     }
 

@@ -116,8 +116,7 @@ impl Render {
 
     pub fn end(&mut self, reason: EndReason) {
         self.estimate_error();
-        let doubt = self.status.error.and_then(|error| error.doubt(self.film.halves()[0].len()));
-        self.status.say(doubt.into_iter().collect());
+        self.status.say(self.status.doubt.iter().cloned().collect());
         self.status.phase = Phase::Done(reason);
     }
 
@@ -385,6 +384,7 @@ impl Render {
         if self.estimated_samples != self.film.sample_count() {
             let begin = Instant::now();
             self.status.error = self.film.error();
+            self.status.doubt = self.status.error.and_then(|error| self.film.doubt(&error));
             self.estimated_samples = self.film.sample_count();
             self.estimate_took = begin.elapsed();
             self.estimated_at = Instant::now();

@@ -290,7 +290,8 @@ impl Dispatches {
 
 impl Work {
     fn shortfall(&self, finished: u64) -> String {
-        let GpuDispatch { first_tile, tile_count, block_count, first_row, .. } = self.order;
+        let GpuDispatch { first_tile, tile_count, first_row, .. } = self.order;
+        let block_count = self.blocks.len();
         let last_tile = first_tile + tile_count.saturating_sub(1);
         format!(
             "of {} samples the device added {finished}, in {block_count} blocks of the tiles {first_tile} to \
