@@ -430,7 +430,10 @@ impl GpuRenderer {
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
         let mut missing = prepared.film.held();
-        missing.insert(range)?;
+        // It may have been noted before.
+        if missing.overlap(&range).is_none() {
+            missing.insert(range)?;
+        }
         while self.dispatches.caution < CAUTION_LIMIT {
             self.dispatches.caution += 1;
             self.messages.push(format!("{shortfall}; they are traced again in smaller pieces"));
