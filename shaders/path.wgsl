@@ -157,9 +157,9 @@ fn intersect(ray: Ray) -> Nearest {
     let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
     let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
     let listed = opaque_count + two_root_count;
-    if ACNE {
+    if BOOK_ARITHMETIC {
         for (var i = 0u; i < listed; i++) {
-            nearest = take(nearest, acne_root(ray, sphere_at(i)), i);
+            nearest = take(nearest, book_root(ray, sphere_at(i), BOOK_T_MIN), i);
         }
         return nearest;
     }
@@ -187,15 +187,14 @@ fn intersect(ray: Ray) -> Nearest {
 
 fn hit_point(ray: Ray, t: f32, row: Row) -> SurfacePoint {
     var point: SurfacePoint;
-    if ANCHORED && row.is_anchored > 0.0 {
+    if BOOK_ARITHMETIC {
+        point = book_point(ray, t, row.reference, row.curvature);
+    } else if ANCHORED && row.is_anchored > 0.0 {
         point = anchored_surface_point(ray, t, row.reference, row.inward, row.curvature);
     } else if SPECKS {
         point = speck_surface_point(ray, t, row.reference, row.curvature, row.radius);
     } else {
         point = surface_point(ray, t, row.reference, row.curvature, row.radius);
-    }
-    if ACNE {
-        point.position = mul_add3(ray.direction, t, ray.origin);
     }
     return point;
 }
@@ -268,7 +267,7 @@ fn scatter_path(
     let direction = (*path).ray.direction;
     let outward_cosine = dot3(direction, point.outward);
     var front = outward_cosine < 0.0;
-    if !ACNE {
+    if !BOOK_ARITHMETIC {
         front = front && (*path).ray.inside != hit;
     }
     if CAVITY {

@@ -60,7 +60,7 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             let sphere = vec4f(v3(base, 8u), f(base, 11u));
             words[base] = near_root(ray, sphere, 1u);
             words[base + 1u] = nearest_root(ray, sphere, 1u);
-            words[base + 2u] = acne_root(ray, sphere);
+            words[base + 2u] = book_root(ray, sphere, f(base, 14u));
             words[base + 3u] = signed_root(ray, sphere, 1u);
             words[base + 4u] = signed_root(ray, vec4f(sphere.xyz, -sphere.w), 1u);
         }

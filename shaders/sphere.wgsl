@@ -121,8 +121,8 @@ fn anchored_root(ray: Ray, sphere: AnchoredSphere, number: u32) -> u32 {
     return smaller_key(first, select(-1.0, second, (meets || enters) && !leaves));
 }
 
-// The book's own arithmetic with 0 as the smallest distance and no memory of the surface left.
-fn acne_root(ray: Ray, sphere: vec4f) -> u32 {
+// The book's own quadratic, without memory of the surface left: the nearer root that is beyond `t_min`.
+fn book_root(ray: Ray, sphere: vec4f, t_min: f32) -> u32 {
     let f = sphere.xyz - ray.origin;
     let a = dot3(ray.direction, ray.direction);
     let h = dot3(ray.direction, f);
@@ -132,7 +132,7 @@ fn acne_root(ray: Ray, sphere: vec4f) -> u32 {
     let near = (h - s) / a;
     let far = (h + s) / a;
     let meets = discriminant >= 0.0;
-    return smaller_key(select(-1.0, near, meets && near > 0.0), select(-1.0, far, meets && far > 0.0));
+    return smaller_key(select(-1.0, near, meets && near > t_min), select(-1.0, far, meets && far > t_min));
 }
 
 // A point on a surface, and the unit normal away from the centre.
@@ -146,6 +146,12 @@ fn surface_point(ray: Ray, t: f32, center: vec3f, curvature: f32, radius: f32) -
     let w = mul_add3(ray.direction, t, ray.origin - center) * curvature;
     let outward = w * fma(-0.5, dot3(w, w), 1.5);
     return SurfacePoint(mul_add3(outward, radius, center), outward);
+}
+
+// The same by the book's own arithmetic: the point stays where rounding leaves it.
+fn book_point(ray: Ray, t: f32, center: vec3f, curvature: f32) -> SurfacePoint {
+    let position = mul_add3(ray.direction, t, ray.origin);
+    return SurfacePoint(position, (position - center) * curvature);
 }
 
 // The same on a sphere so far away that `t` is rounded by a part of its radius: the way from the centre to the ray, and

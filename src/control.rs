@@ -149,14 +149,20 @@ impl Control {
         command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(failed)?;
         let (lines, said) = mpsc::channel();
-        let reader = child.stdout.take().map(|pipe| {
-            std::thread::spawn(move || {
+        let read = |pipe: std::process::ChildStdout| {
+            move || {
                 for line in BufReader::new(pipe).lines().map_while(Result::ok) {
                     // Nobody listens any more where the run was cancelled.
                     let _ = lines.send((Instant::now(), line));
                 }
-            })
-        });
+            }
+        };
+        let reader = child.stdout.take().map(|pipe| std::thread::Builder::new().spawn(read(pipe)));
+        let reader = reader.transpose().map_err(|reason| {
+            // If it has just ended there is nothing to end.
+            let _ = child.kill();
+            failed(reason)
+        })?;
         let (mut begin, mut run) = (None, None);
         loop {
             match said.recv_timeout(POLL) {

@@ -1,12 +1,60 @@
-//! Ctrl-C: the first asks for an orderly end, the second ends at once.
+//! Ctrl-C and its kin (SIGINT, SIGTERM, SIGHUP): the first asks for an orderly end, a later one ends at once, but
+//! never while files are being written.
 
+use crate::console;
 use crate::failure::INTERRUPTED;
 use anyhow::{Context, Result};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A second signal this soon is the first one's echo: `timeout` and shells signal a program and then its group.
+const ECHO: Duration = Duration::from_millis(500);
 
 /// Whether Ctrl-C has been pressed.
-pub struct Interrupt(Arc<AtomicBool>);
+pub struct Interrupt(Arc<Shared>);
+
+#[derive(Default)]
+struct Shared {
+    is_set: AtomicBool,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    /// When the first came.
+    since: Option<Instant>,
+    /// What is being written, in words.
+    writing: Option<String>,
+}
+
+/// What a signal leads to.
+#[derive(Debug, PartialEq, Eq)]
+enum Answer {
+    /// Whoever looks at the flag sees it.
+    Nothing,
+    /// It is said.
+    Say(String),
+    /// The program ends.
+    Exit,
+}
+
+impl Shared {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn signalled(&self, now: Instant) -> Answer {
+        let mut state = self.state();
+        let first = *state.since.get_or_insert(now);
+        let was_set = self.is_set.swap(true, Ordering::Relaxed);
+        match &state.writing {
+            Some(what) => Answer::Say(format!("still writing {what}; the program ends when that is done")),
+            None if was_set && now.duration_since(first) >= ECHO => Answer::Exit,
+            None => Answer::Nothing,
+        }
+    }
+}
 
 impl Interrupt {
     /// Listens from now on. Once a process.
@@ -14,24 +62,86 @@ impl Interrupt {
     /// # Errors
     /// If the system does not let it.
     pub fn install() -> Result<Self> {
-        let flag = Arc::new(AtomicBool::new(false));
-        let seen = Arc::clone(&flag);
-        ctrlc::set_handler(move || {
-            if seen.swap(true, Ordering::Relaxed) {
+        let shared = Arc::new(Shared::default());
+        let seen = Arc::clone(&shared);
+        ctrlc::set_handler(move || match seen.signalled(Instant::now()) {
+            Answer::Nothing => {}
+            Answer::Say(words) => console::note(&words),
+            Answer::Exit => {
+                console::note("ended at once; what had not been written is lost");
                 std::process::exit(i32::from(INTERRUPTED));
             }
         })
         .context("cannot listen for Ctrl-C")?;
-        Ok(Interrupt(flag))
+        Ok(Interrupt(shared))
+    }
+
+    /// One that hears nothing, for tests.
+    #[cfg(test)]
+    pub(crate) fn unheard() -> Self {
+        Interrupt(Arc::default())
     }
 
     /// Becomes `true` when an end is asked for.
     pub fn flag(&self) -> &AtomicBool {
-        &self.0
+        &self.0.is_set
     }
 
     /// Whether an end has been asked for.
     pub fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.is_set.load(Ordering::Relaxed)
+    }
+
+    /// Until the result is dropped, signals do not end the program but are answered with what it writes.
+    pub fn while_writing(&self, what: impl Into<String>) -> Writing<'_> {
+        self.0.state().writing = Some(what.into());
+        Writing(&self.0)
+    }
+}
+
+/// Files are being written: see [`Interrupt::while_writing`].
+pub struct Writing<'a>(&'a Shared);
+
+impl Drop for Writing<'_> {
+    fn drop(&mut self) {
+        self.0.state().writing = None;
+    }
+}
+
+/// Lets a write beyond the largest size allowed for files (`ulimit -f`) fail with an error, which can be dealt with;
+/// by default the system ends the program by SIGXFSZ.
+pub fn survive_file_size_limit() {
+    #[cfg(unix)]
+    {
+        // The flag itself is of no interest: having a handler is enough. Without one, all is as it was.
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_asks_and_a_later_one_ends() {
+        let (shared, now) = (Shared::default(), Instant::now());
+        assert_eq!(shared.signalled(now), Answer::Nothing);
+        assert!(shared.is_set.load(Ordering::Relaxed));
+        assert_eq!(shared.signalled(now + ECHO / 2), Answer::Nothing, "an echo");
+        assert_eq!(shared.signalled(now + ECHO), Answer::Exit);
+    }
+
+    #[test]
+    fn nothing_ends_the_program_while_it_writes() {
+        let interrupt = Interrupt::unheard();
+        let now = Instant::now();
+        let writing = interrupt.while_writing("film.exr");
+        for late in 0..3 {
+            let answer = interrupt.0.signalled(now + late * ECHO);
+            assert!(matches!(&answer, Answer::Say(words) if words.contains("film.exr")), "{answer:?}");
+        }
+        drop(writing);
+        assert!(interrupt.is_set());
+        assert_eq!(interrupt.0.signalled(now + 3 * ECHO), Answer::Exit);
     }
 }

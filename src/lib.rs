@@ -1,5 +1,8 @@
 //! Weekender: the path tracer of *Ray Tracing in One Weekend* as a viewer, a headless renderer and a lesson.
 
+// See clippy.toml. Tests and examples may print.
+#![warn(clippy::disallowed_macros)]
+
 pub mod app;
 pub mod backends;
 pub mod batch;
@@ -7,6 +10,7 @@ pub mod bench;
 pub mod chart;
 pub mod cli;
 pub mod compare;
+pub mod console;
 pub mod control;
 pub mod describe;
 pub mod diff;
@@ -27,5 +31,6 @@ pub mod sampling;
 pub mod scene;
 pub mod stages;
 pub mod statistics;
+pub mod stress;
 pub mod tables;
 pub mod terminal;

@@ -1,11 +1,15 @@
 //! The program: parse, run, exit code.
 
+#![warn(clippy::disallowed_macros)]
+
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
-use weekender::failure::Failure;
-use weekender::{app, batch, bench, compare, diff, report};
+use weekender::failure::{self, Failure};
+use weekender::{app, batch, bench, compare, diff, interrupt, report, stress};
 
 fn main() -> ExitCode {
+    failure::install_panic_hook();
+    interrupt::survive_file_size_limit();
     run().unwrap_or_else(|failure| failure.report())
 }
 
@@ -19,6 +23,7 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Diff(options) => diff::run(&options),
         Request::Compare(options) => compare::run(&options),
         Request::Report(options) => report::run(&options),
+        Request::Stress(options) => stress::run(&options),
         Request::Batch(options) => batch::run(*options),
     }
 }

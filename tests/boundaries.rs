@@ -26,8 +26,9 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("progressive", &["stages", "film", "heat", "render", "backends"]),
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
     ("control", &["scene", "render"]),
-    ("failure", &[]),
-    ("interrupt", &["failure"]),
+    ("console", &[]),
+    ("failure", &["console"]),
+    ("interrupt", &["console", "failure"]),
     ("statistics", &[]),
     (
         "cli",
@@ -46,7 +47,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "failure",
         ],
     ),
-    ("terminal", &["film", "cli"]),
+    ("terminal", &["film", "cli", "console", "failure"]),
     (
         "batch",
         &[
@@ -61,6 +62,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "backends",
             "progressive",
             "cli",
+            "console",
             "describe",
             "failure",
             "interrupt",
@@ -100,6 +102,7 @@ const ROOMS: &[(&str, &[&str])] = &[
             "statistics",
             "chart",
             "cli",
+            "console",
             "control",
             "failure",
             "interrupt",
@@ -133,7 +136,26 @@ const ROOMS: &[(&str, &[&str])] = &[
             "render_gpu",
             "backends",
             "cli",
+            "console",
             "failure",
+            "terminal",
+        ],
+    ),
+    (
+        "stress",
+        &[
+            "scene",
+            "stages",
+            "film",
+            "render",
+            "recipe",
+            "output",
+            "sampling",
+            "render_cpu",
+            "backends",
+            "cli",
+            "failure",
+            "interrupt",
             "terminal",
         ],
     ),
@@ -154,6 +176,8 @@ const CRATES: &[(&str, &[&str])] = &[
     ("indicatif", &["terminal", "report"]),
     ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
+    ("ctrlc", &["interrupt"]),
+    ("signal_hook", &["interrupt"]),
 ];
 
 fn source_root() -> PathBuf {

@@ -166,6 +166,116 @@ fn outputs_that_cannot_be_written_are_found_before_rendering() {
 }
 
 #[test]
+fn files_that_get_in_each_other_s_way_are_refused_before_rendering() {
+    let directory = temp();
+    let path = |name: &str| directory.path().join(name);
+    render(directory.path(), &["--samples", "2", "--checkpoint", "g.exr"]);
+    let saved = run(directory.path(), &["--save-scene", "s.toml"]);
+    assert!(saved.status.success(), "{}", text(&saved.stderr));
+    let before = std::fs::read(path("g.exr")).unwrap();
+    let endless = ["--batch", "--samples", "4294967296", "--size", "32x18"];
+    let refused =
+        |more: &[&str], parts: &[&str]| refused_in(&directory, &[&endless[..], more].concat(), parts);
+    // Outputs over outputs.
+    refused(&["--out", "x.exr", "--checkpoint", "./x.exr"], &["--out", "--checkpoint", "x.exr"]);
+    refused(&["--out", "x.png", "--json", "../x.png/../x.png"], &["x.png"]);
+    refused(&["--checkpoint", "x.exr", "--save-scene", "x.exr"], &["--checkpoint", "--save-scene"]);
+    // Outputs over inputs.
+    refused(&["--resume", "g.exr", "--json", "g.exr"], &["--json", "--resume", "g.exr"]);
+    refused(&["--resume", "g.exr", "--save-scene", "./g.exr"], &["--save-scene", "--resume"]);
+    refused(&["--scene", "s.toml", "--json", "s.toml"], &["--json", "--scene"]);
+    refused(&["--scene", "s.toml", "--save-scene", "./s.toml"], &["--save-scene", "--scene"]);
+    refused_in(&directory, &["--scene", "s.toml", "--save-scene", "s.toml"], &["--save-scene"]);
+    refused_in(&directory, &["merge", "g.exr", "--out", "./g.exr"], &["--out", "the film"]);
+    refused_in(&directory, &["compare", "g.exr", "cpu", "--json", "./g.exr"], &["--json", "comparison"]);
+    std::fs::copy(path("three-spheres.png"), path("p.png")).unwrap();
+    refused_in(&directory, &["compare", "p.png", "cpu", "--heat-map", "./p.png"], &["--heat-map"]);
+    refused_in(&directory, &["diff", "--pixel", "1,1", "--scene", "s.toml", "--json", "s.toml"], &["--json"]);
+    refused_in(&directory, &["bench", "--scene", "s.toml", "--json", "./s.toml"], &["--json", "--scene"]);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::symlink;
+        symlink("g.exr", path("link.exr")).unwrap();
+        refused(&["--resume", "link.exr", "--json", "g.exr"], &["--json", "--resume"]);
+        symlink("unborn.exr", path("future.exr")).unwrap();
+        refused(&["--out", "future.exr", "--checkpoint", "unborn.exr"], &["--out", "--checkpoint"]);
+        std::fs::remove_file(path("future.exr")).unwrap();
+    }
+    assert_eq!(std::fs::read(path("g.exr")).unwrap(), before);
+    // What lives on in the output may be replaced.
+    let resumed =
+        ["--resume", "g.exr", "--checkpoint", "./g.exr", "--samples", "4", "--batch", "--out", "y.png"];
+    let output = run(directory.path(), &resumed);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(film(path("g.exr")).sample_count(), 4);
+}
+
+#[test]
+fn places_that_look_like_files_and_are_none_are_found_before_rendering() {
+    let endless = ["--batch", "--samples", "4294967296", "--size", "1600x900"];
+    refused(&[&endless[..], &["--out", "nodir.png/"]].concat(), &["nodir.png/", "stands for a directory"]);
+    refused(&[&endless[..], &["--out", "nodir.png/."]].concat(), &["nodir.png", "stands for a directory"]);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::symlink;
+        let directory = temp();
+        symlink("gone/target.png", directory.path().join("to-nowhere.png")).unwrap();
+        let dangling = [&endless[..], &["--out", "to-nowhere.png"]].concat();
+        refused_in(&directory, &dangling, &["to-nowhere.png", "it is a link to gone/target.png"]);
+        symlink("circle.png", directory.path().join("circle.png")).unwrap();
+        refused_in(&directory, &[&endless[..], &["--out", "circle.png"]].concat(), &["circle.png"]);
+        // One whose target can be made is followed.
+        symlink("target.png", directory.path().join("link.png")).unwrap();
+        render(directory.path(), &["--samples", "1", "--out", "link.png"]);
+        assert!(directory.path().join("link.png").is_symlink());
+        assert!(std::fs::read(directory.path().join("target.png")).unwrap().starts_with(b"\x89PNG"));
+    }
+}
+
+#[test]
+fn nothing_from_outside_steers_or_floods_a_terminal() {
+    let directory = temp();
+    let steers = |bytes: &[u8]| text(bytes).chars().any(|c| c.is_control() && c != '\n');
+    let scene = "[camera]\nlook_from = [0.0, 0.0, 3.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n\
+                 [materials.\"a\\u001b[2Jb\\u009bc\"]\nkind = \"lambertian\"\nalbedo = [0.5, 0.5, 0.5]\n\
+                 [[spheres]]\ncenter = [0.0, 0.0, 0.0]\nradius = 1.0\nmaterial = \"a\\u001b[2Jb\\u009bc\"\n";
+    std::fs::write(directory.path().join("s.toml"), scene).unwrap();
+    for more in [&[][..], &["--json", "-"]] {
+        let path =
+            ["diff", "--scene", "s.toml", "--size", "9x9", "--pixel", "4,4", "--sides", "cpu,reference"];
+        let output = run(directory.path(), &[&path[..], more].concat());
+        assert!(!steers(&output.stdout) && !steers(&output.stderr), "{output:?}");
+        assert!(
+            text(&output.stdout).contains("u001b") || text(&output.stdout).contains("\\u{1b}"),
+            "{output:?}"
+        );
+    }
+    let long = "x".repeat(100_000);
+    for arguments in [
+        &["--batch", "--scene", "a\x1b[31mb"][..],
+        &["--batch", "--out", "a\x1b]0;title\x07.png/"],
+        &["--batch", "--stage", &long],
+        &["--batch", "--scene", &long],
+        &["--batch", "--size", &long],
+        &["--batch", "--out", &long],
+        &[&long],
+    ] {
+        let output = run(directory.path(), arguments);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(!steers(&output.stderr) && output.stdout.is_empty(), "{output:?}");
+        assert!(output.stderr.len() < 10_000, "{} bytes", output.stderr.len());
+        assert!(text(&output.stderr).starts_with("error"), "{output:?}");
+    }
+}
+
+#[test]
+fn how_often_a_film_is_kept_is_a_time() {
+    refused(&["--batch", "--checkpoint", "x.exr", "--every", "5 weeks"], &["5 weeks", "30d", "--every"]);
+    refused(&["--batch", "--checkpoint", "x.exr", "--every", "-1s"], &["-1s", "0.1s"]);
+    refused(&["--batch", "--every", "5m"], &["--every", "--checkpoint"]);
+}
+
+#[test]
 fn scene_files_are_refused_with_their_reason() {
     let directory = temp();
     let write = |content: &str| std::fs::write(directory.path().join("s.toml"), content).unwrap();

@@ -5,9 +5,9 @@ use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use std::collections::HashMap;
 use std::mem::offset_of;
+use weekender::render_gpu::Overrides;
 use weekender::render_gpu::layout::*;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
-use weekender::render_gpu::{Constant, Overrides};
 
 fn parsed(entry_point: EntryPoint) -> naga::Module {
     let text = source(entry_point);
@@ -25,11 +25,7 @@ fn variants() -> [Vec<(String, f64)>; 3] {
         Overrides { hierarchy: true, ..general },
         Overrides { hierarchy: true, cwbvh: true, ..general },
     ];
-    let value = |constant| match constant {
-        Constant::Flag(flag) => f64::from(u8::from(flag)),
-        Constant::Number(number) => f64::from(number),
-    };
-    variants.map(|v| v.constants().into_iter().map(|(name, c)| (name.to_owned(), value(c))).collect())
+    variants.map(|v| v.constants().into_iter().map(|(name, c)| (name.to_owned(), c.value())).collect())
 }
 
 #[test]

@@ -12,7 +12,7 @@ use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, V3, Wide};
 use weekender::render_cpu::material::{Incidence, Surface, reflectance, refracted, scatter};
 use weekender::render_cpu::sphere::{
-    NONE, Rays, Spheres, acne_root, anchored_root, anchored_surface_point, near_root, nearest_root,
+    NONE, Rays, Spheres, anchored_root, anchored_surface_point, book_root, near_root, nearest_root,
     speck_surface_point, surface_point,
 };
 use weekender::render_gpu::shader_source::{PROBE_STRIDE, Probe};
@@ -176,6 +176,8 @@ fn sine_and_cosine() {
     ulps.within("sin_cos_turns", 4.0);
 }
 
+const BOOK_T_MIN: f32 = weekender::stages::BOOK_T_MIN as f32;
+
 /// A ray that meets the sphere, not at its rim, where the distance is as uncertain as a root of 0.
 fn ray_words(i: u32) -> Words {
     let [radius, distance, inside, code] = uniform(i, 20);
@@ -196,6 +198,7 @@ fn ray_words(i: u32) -> Words {
     for (to, x) in words[8..12].iter_mut().zip([center[0], center[1], center[2], radius * radius]) {
         *to = x.to_bits();
     }
+    words[12] = BOOK_T_MIN.to_bits();
     words
 }
 
@@ -231,7 +234,12 @@ fn intersections() {
         compare_keys(&mut ulps, output[1], nearest_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
         compare_keys(&mut ulps, output[3], nearest_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
         compare_keys(&mut ulps, output[4], near_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
-        compare_keys(&mut ulps, output[2], acne_root(L, &rays, &Spheres::splat(L, sphere, one)), &input);
+        compare_keys(
+            &mut ulps,
+            output[2],
+            book_root(L, &rays, &Spheres::splat(L, sphere, one), BOOK_T_MIN),
+            &input,
+        );
     }
     ulps.within("roots", 64.0);
 

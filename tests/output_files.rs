@@ -181,6 +181,9 @@ fn what_cannot_be_written_is_found_beforehand() {
         ("read-only.png", "marked read-only"),
         (&"long".repeat(200), "choose another name"),
         ("nul\0.png", "choose another name"),
+        ("directory.png/", "name a file in that directory"),
+        ("new.png/", "choose another name"),
+        ("file/", "choose another"),
     ] {
         let message = check_writable(&at(name)).unwrap_err().to_string();
         assert!(message.contains(reason) && message.contains(name), "{message}");

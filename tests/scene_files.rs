@@ -102,7 +102,7 @@ fn rules() -> impl Strategy<Value = Rules> {
         DielectricLaws::TotalReflection,
         DielectricLaws::Schlick,
     ]);
-    let surface = prop::sample::select(vec![Surface::Exact, Surface::Acne]);
+    let surface = prop::sample::select(vec![Surface::Exact, Surface::Acne, Surface::Book]);
     let transfer =
         prop::sample::select(vec![Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2]);
     (shading, diffuse, dielectric, surface, any::<bool>(), any::<bool>(), transfer).prop_map(
@@ -455,17 +455,18 @@ fn unreadable_files_are_told_from_bad_ones() {
 
 #[test]
 fn the_example_scenes_are_valid() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes");
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/scenes");
     let mut count = 0;
-    for entry in std::fs::read_dir(folder).expect("the folder") {
-        let path = entry.expect("an entry").path();
+    let files =
+        |folder| std::fs::read_dir(folder).expect("the folder").map(|entry| entry.expect("an entry").path());
+    for path in files(scenes.clone()).filter(|path| path.is_file()).chain(files(scenes.join("stress"))) {
         let recipe = load(&path).unwrap_or_else(|error| panic!("{error}"));
         assert!(!recipe.scene.spheres.is_empty(), "{}", path.display());
         assert_eq!(recipe.rules, Rules::default(), "{}", path.display());
         assert_round_trip(&recipe);
         count += 1;
     }
-    assert!(count >= 4);
+    assert!(count >= 10);
 }
 
 /// The text of a large scene stays readable: a line for a sphere.

@@ -5,9 +5,9 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::Lanes;
 use weekender::render_cpu::sphere::{
-    Nearest, Spheres, WideSphere, acne_root, anchored_root, near_root, nearest_root,
+    Nearest, Spheres, WideSphere, anchored_root, book_root, near_root, nearest_root,
 };
-use weekender::tables::AnchoredSphere;
+use weekender::tables::{AnchoredSphere, Roots};
 
 /// Spheres that each ray is tested against: so many that loading the rays does not matter.
 const SPHERES: usize = 32;
@@ -16,7 +16,7 @@ const SPHERES: usize = 32;
 enum Root {
     Near,
     Nearest,
-    Acne,
+    Book,
     Anchored,
 }
 
@@ -41,6 +41,8 @@ impl Intersect {
             anchor: [0.0, -0.5 - index as f32, -1.0],
             inward: [0.0, -1.0, 0.0],
             curvature: 0.001,
+            roots: Roots::Nearer,
+            under_eye: false,
         };
         let grounds = (0..SPHERES).map(ground).collect();
         Intersect { root, origins: Vectors::within(-0.1, 0.1), directions, spheres, grounds }
@@ -59,7 +61,7 @@ impl Body for Intersect {
                 let key = match self.root {
                     Root::Near => near_root(l, &rays, &sphere),
                     Root::Nearest => nearest_root(l, &rays, &sphere),
-                    Root::Acne => acne_root(l, &rays, &sphere),
+                    Root::Book => book_root(l, &rays, &sphere, l.constant(0.001)),
                     Root::Anchored => anchored_root(l, &rays, ground, number),
                 };
                 nearest.take(key, number);
@@ -86,8 +88,8 @@ fn nearest(bencher: Bencher, width: usize) {
 }
 
 #[divan::bench(args = widths())]
-fn acne(bencher: Bencher, width: usize) {
-    measure(bencher, width, Root::Acne);
+fn book(bencher: Bencher, width: usize) {
+    measure(bencher, width, Root::Book);
 }
 
 #[divan::bench(args = widths())]

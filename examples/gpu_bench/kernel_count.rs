@@ -7,8 +7,8 @@ use naga::{Arena, BinaryOperator, Block, Expression, Function, Handle, Literal, 
 use naga::{Module, ScalarKind, TypeInner};
 use std::collections::HashMap;
 use std::ops::AddAssign;
+use weekender::render_gpu::Overrides;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
-use weekender::render_gpu::{Constant, Overrides};
 
 /// A specialised kernel.
 pub struct Counted {
@@ -53,13 +53,7 @@ impl Counted {
         let constants = overrides
             .constants()
             .into_iter()
-            .map(|(name, value)| {
-                let value = match value {
-                    Constant::Flag(flag) => f64::from(u8::from(flag)),
-                    Constant::Number(number) => f64::from(number),
-                };
-                (name.to_owned(), value)
-            })
+            .map(|(name, constant)| (name.to_owned(), constant.value()))
             .collect();
         let entry = Some((naga::ShaderStage::Compute, EntryPoint::PathTrace.name()));
         let (module, info) = process_overrides(&module, &info, entry, &constants)?;

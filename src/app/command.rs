@@ -5,6 +5,7 @@ use super::remembered::Theme;
 use super::viewport::Show;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
+use crate::stress::{Case, shown_cases};
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 /// Where a command stands in the menus.
@@ -20,14 +21,16 @@ pub enum Group {
     Render,
     /// Where in the book.
     Stage,
+    /// Scenes that are hard to get right.
+    Extreme,
     /// Help.
     Help,
 }
 
 impl Group {
     /// The menus, in order.
-    pub const ALL: [Group; 6] =
-        [Group::File, Group::Edit, Group::View, Group::Render, Group::Stage, Group::Help];
+    pub const ALL: [Group; 7] =
+        [Group::File, Group::Edit, Group::View, Group::Render, Group::Stage, Group::Extreme, Group::Help];
 
     /// The menu's name.
     pub fn name(self) -> &'static str {
@@ -37,6 +40,7 @@ impl Group {
             Group::View => "View",
             Group::Render => "Render",
             Group::Stage => "Stage",
+            Group::Extreme => "Extreme scenes",
             Group::Help => "Help",
         }
     }
@@ -77,6 +81,8 @@ pub enum Command {
     Wipe,
     /// Heat map of the difference from the other stage.
     WipeDifference,
+    /// Divider between this picture and the same by the book's own arithmetic.
+    BookArithmetic,
     /// Whole picture in the window.
     Fit,
     /// One pixel to one pixel.
@@ -111,6 +117,8 @@ pub enum Command {
     NextStage,
     /// A certain stage.
     Stage(&'static Stage),
+    /// A certain extreme scene.
+    Extreme(&'static Case),
     /// The book on the web.
     Book,
     /// All commands by name.
@@ -146,6 +154,8 @@ impl Command {
         all.extend(super::Device::ALL.map(Device));
         all.extend([PreviousStage, NextStage, Book]);
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
+        all.push(BookArithmetic);
+        all.extend(shown_cases().iter().map(Extreme));
         all.extend([Palette, Help]);
         all
     }
@@ -171,6 +181,7 @@ impl Command {
             Command::Show(show) => format!("Show {}", show.name()),
             Command::Wipe => "Wipe against the other stage".into(),
             Command::WipeDifference => "Difference from the other stage".into(),
+            Command::BookArithmetic => "The book's arithmetic".into(),
             Command::Fit => "Fit in the window".into(),
             Command::ActualSize => "Actual size (100 %)".into(),
             Command::ZoomIn => "Zoom in".into(),
@@ -188,6 +199,7 @@ impl Command {
             Command::PreviousStage => "Previous stage".into(),
             Command::NextStage => "Next stage".into(),
             Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
+            Command::Extreme(case) => case.title().to_owned(),
             Command::Book => "Read this section of the book".into(),
             Command::Palette => "Command palette".into(),
             Command::Help => "Keyboard and mouse".into(),
@@ -219,6 +231,10 @@ impl Command {
             Command::Show(show) => show.help(),
             Command::Wipe => "A divider to drag between this stage and its pair, or the next; same camera",
             Command::WipeDifference => "Where this stage and its pair differ, and by how much",
+            Command::BookArithmetic => {
+                "A divider between this picture and the same by the book's own quadratic, with .001 as the smallest \
+                 distance"
+            }
             Command::Fit => "The whole picture, as large as there is room",
             Command::ActualSize => "One pixel of the picture on one of the screen",
             Command::ZoomIn => "Larger; Ctrl and the wheel zoom at the pointer",
@@ -236,6 +252,7 @@ impl Command {
             Command::PreviousStage => "One step back in the book",
             Command::NextStage => "One step on in the book",
             Command::Stage(stage) => stage.what_is_new,
+            Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
             Command::Book => "Opens the web browser",
             Command::Palette => "Every command by its name",
             Command::Help => "All keys, and what the mouse does",
@@ -264,6 +281,7 @@ impl Command {
             }
             Command::Pause | Command::Restart | Command::SwitchDevice | Command::Device(_) => Group::Render,
             Command::PreviousStage | Command::NextStage | Command::Stage(_) | Command::Book => Group::Stage,
+            Command::BookArithmetic | Command::Extreme(_) => Group::Extreme,
             Command::Palette | Command::Help => Group::Help,
             _ => Group::View,
         }

@@ -1,4 +1,5 @@
-//! A second picture beside the main one: another stage for the wipe and the difference.
+//! A second picture beside the main one, for the wipe and the difference: another stage, or the same picture by the
+//! book's own arithmetic.
 
 use super::document::{Document, Origin};
 use super::files::Message;
@@ -12,7 +13,7 @@ use eframe::egui;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 
-/// How two stages are compared.
+/// How two pictures are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// One at each side of a divider.
@@ -21,10 +22,41 @@ pub enum Mode {
     Difference,
 }
 
+/// What the main picture is compared with.
+#[derive(Clone, Debug)]
+pub enum Other {
+    /// Another stage.
+    Stage(&'static Stage),
+    /// The same picture by the book's own arithmetic.
+    ByTheBook(Arc<Origin>),
+}
+
+impl PartialEq for Other {
+    /// Origins are never changed, so that it is enough to compare which one it is.
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Other::Stage(a), Other::Stage(b)) => a == b,
+            (Other::ByTheBook(a), Other::ByTheBook(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+impl Other {
+    fn origin(&self) -> Origin {
+        match self {
+            Other::Stage(stage) => Origin::of_stage(stage),
+            Other::ByTheBook(mine) => mine.by_the_book(),
+        }
+    }
+}
+
 /// The second picture.
 pub struct Compare {
-    /// Whether and how two stages are compared.
+    /// Whether and how two pictures are compared.
     pub mode: Option<Mode>,
+    /// With the book's arithmetic, where there is another stage to compare with.
+    pub is_by_book: bool,
     /// With the next stage, where there is a pair.
     pub is_with_next: bool,
     /// Where the divider stands, `0..=1` of the picture's width.
@@ -34,7 +66,7 @@ pub struct Compare {
     /// The tracer of the second picture, once there has been one.
     pub tracer: Option<Tracer>,
     show: Show,
-    origin: Option<(&'static Stage, Arc<Origin>)>,
+    origin: Option<(Other, Arc<Origin>)>,
     is_awake: bool,
     measured_samples: u64,
 }
@@ -43,6 +75,7 @@ impl Default for Compare {
     fn default() -> Self {
         Compare {
             mode: None,
+            is_by_book: false,
             is_with_next: false,
             divider: 0.5,
             reference: None,
@@ -56,9 +89,27 @@ impl Default for Compare {
 }
 
 impl Compare {
-    pub fn toggle(&mut self, mode: Mode) {
-        self.mode = if self.mode == Some(mode) { None } else { Some(mode) };
+    pub fn toggle(&mut self, mode: Mode, is_by_book: bool) {
+        let is_on = self.mode == Some(mode) && self.is_by_book == is_by_book;
+        self.mode = if is_on { None } else { Some(mode) };
+        self.is_by_book = is_by_book;
         self.measured_samples = 0;
+    }
+
+    /// What `document` is compared with; `None` if there is nothing.
+    pub fn other(&self, document: &Document) -> Option<Other> {
+        match document.stage().filter(|_| !self.is_by_book) {
+            Some(stage) => self.other_of(stage).map(Other::Stage),
+            None => {
+                let origin = &document.origin;
+                origin.is_other_by_the_book().then(|| Other::ByTheBook(Arc::clone(origin)))
+            }
+        }
+    }
+
+    /// Whether the camera is what `document` and the other picture differ in, so that each keeps its own.
+    pub fn has_other_camera(&self, document: &Document) -> bool {
+        !self.is_by_book && document.stage().is_some_and(|stage| self.is_of_cameras(stage))
     }
 
     /// The stage that `stage` is compared with.
@@ -74,11 +125,15 @@ impl Compare {
         self.other_of(stage).is_some_and(|other| differ_in_camera(&mine, &other.recipe()))
     }
 
-    /// Whether the stage that `stage` is compared with has been pictured.
-    pub fn has_picture(&self, stage: Option<&'static Stage>) -> bool {
-        let wanted = stage.and_then(|stage| self.other_of(stage));
+    /// Whether what `document` is compared with has been pictured.
+    pub fn has_picture(&self, document: &Document) -> bool {
         let shown = self.tracer.as_ref().and_then(Tracer::shown);
-        wanted.is_some() && shown.is_some_and(|shown| shown.document.stage() == wanted)
+        match (self.other(document), &self.origin, shown) {
+            (Some(wanted), Some((kept, origin)), Some(shown)) => {
+                wanted == *kept && Arc::ptr_eq(origin, &shown.document.origin)
+            }
+            _ => false,
+        }
     }
 
     pub fn pause(&self) {
@@ -109,7 +164,7 @@ impl Compare {
         }
     }
 
-    /// The other stage's film has arrived.
+    /// The other picture's film has arrived.
     pub fn measured(&mut self, main: &Tracer, reference: Reference) {
         if self.mode == Some(Mode::Difference) {
             main.set_view(View::Difference(Arc::new(reference)));
@@ -124,10 +179,7 @@ impl Compare {
         main: &Tracer,
         sender: &Sender<Message>,
     ) {
-        let other = match (self.mode, want.document.stage()) {
-            (Some(_), Some(stage)) => self.other_of(stage),
-            _ => None,
-        };
+        let other = self.mode.and_then(|_| self.other(want.document));
         let Some(other) = other else {
             if let Some(tracer) = &mut self.tracer {
                 tracer.abandon();
@@ -176,11 +228,14 @@ impl Compare {
         }
     }
 
-    fn document_of(&mut self, other: &'static Stage, mine: &Document) -> Document {
+    fn document_of(&mut self, other: Other, mine: &Document) -> Document {
         if self.origin.as_ref().is_none_or(|(kept, _)| *kept != other) {
             self.origin = None;
         }
-        let (_, origin) = self.origin.get_or_insert_with(|| (other, Arc::new(Origin::of_stage(other))));
+        let (_, origin) = self.origin.get_or_insert_with(|| {
+            let origin = Arc::new(other.origin());
+            (other, origin)
+        });
         let (theirs, base) = (&origin.recipe, &mine.origin.recipe);
         let mut settings = mine.settings;
         if theirs.settings.max_depth != base.settings.max_depth {
@@ -226,6 +281,8 @@ fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stages::Surface;
+    use crate::stress::shown_cases;
 
     #[test]
     fn the_others_camera_moves_along_but_keeps_its_own() {
@@ -245,7 +302,7 @@ mod tests {
             let mut mine = Document::new(Origin::of_stage(stage));
             mine.camera.look_from += glam::DVec3::new(0.25, 0.5, 0.125);
             let other = compare.other_of(stage).unwrap();
-            let theirs = compare.document_of(other, &mine);
+            let theirs = compare.document_of(Other::Stage(other), &mine);
             if compare.is_of_cameras(stage) {
                 of_cameras.push(stage.id);
                 assert_ne!(theirs.camera, mine.camera, "{}", stage.id);
@@ -257,6 +314,28 @@ mod tests {
             of_cameras.contains(&"view-distant") && !of_cameras.contains(&"glass-schlick"),
             "{of_cameras:?}"
         );
+    }
+
+    #[test]
+    fn what_is_no_stage_is_compared_with_the_books_arithmetic() {
+        let mut compare = Compare::default();
+        for case in shown_cases() {
+            let mine = Document::new(Origin::of_case(case));
+            let other = compare.other(&mine).unwrap();
+            assert_eq!(other, Other::ByTheBook(Arc::clone(&mine.origin)));
+            let theirs = compare.document_of(other, &mine);
+            assert_eq!(theirs.rules().surface, Surface::Book, "{}", case.id);
+            assert_eq!(
+                (theirs.camera, theirs.settings, theirs.stop),
+                (mine.camera, mine.settings, mine.stop)
+            );
+        }
+        let stage = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        assert!(matches!(compare.other(&stage), Some(Other::Stage(_))));
+        compare.toggle(Mode::Wipe, true);
+        assert!(matches!(compare.other(&stage), Some(Other::ByTheBook(_))));
+        let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
+        assert_eq!(compare.other(&no_rays), None);
     }
 
     #[test]

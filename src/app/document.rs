@@ -4,7 +4,8 @@ use crate::progressive::Plan;
 use crate::recipe::Recipe;
 use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT};
 use crate::scene::{Camera, Scene};
-use crate::stages::{Rules, Shading, Stage};
+use crate::stages::{Rules, Shading, Stage, Surface};
+use crate::stress::{Case, by_the_book};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -19,6 +20,10 @@ pub enum Source {
     Builtin,
     /// A scene file.
     File(PathBuf),
+    /// An extreme scene.
+    Extreme(&'static Case),
+    /// Another picture by the book's own arithmetic.
+    ByTheBook,
     /// A picture that said how it was made, of a scene that is in no file.
     Embedded,
 }
@@ -43,6 +48,23 @@ impl Origin {
     /// A stage's picture.
     pub fn of_stage(stage: &'static Stage) -> Self {
         Origin::new(stage.recipe(), Source::Stage(stage))
+    }
+
+    /// An extreme scene's picture.
+    pub fn of_case(case: &'static Case) -> Self {
+        Origin::new(case.shown(), Source::Extreme(case))
+    }
+
+    /// The same picture by the book's own arithmetic.
+    pub fn by_the_book(&self) -> Self {
+        let recipe = Recipe { name: "The book's arithmetic".to_owned(), ..by_the_book(&self.recipe) };
+        Origin::new(recipe, Source::ByTheBook)
+    }
+
+    /// Whether the book's own arithmetic would give a picture to hold against this one.
+    pub fn is_other_by_the_book(&self) -> bool {
+        let rules = &self.recipe.rules;
+        rules.surface == Surface::Exact && rules.shading != Shading::ImageGradient
     }
 
     /// The origin of a recipe from elsewhere, which may have been changed. If a stage or a built-in scene has
@@ -163,6 +185,23 @@ impl Document {
         self.origin.stage()
     }
 
+    /// The extreme scene.
+    pub fn case(&self) -> Option<&'static Case> {
+        match self.origin.source {
+            Source::Extreme(case) => Some(case),
+            _ => None,
+        }
+    }
+
+    /// What a badge or a menu calls the picture.
+    pub fn title(&self) -> String {
+        match &self.origin.source {
+            Source::Stage(stage) => format!("{} {}", stage.section, stage.title),
+            Source::Extreme(case) => case.title().to_owned(),
+            _ => self.origin.recipe.name.clone(),
+        }
+    }
+
     /// Width by height.
     pub fn aspect(&self) -> f64 {
         f64::from(self.settings.width) / f64::from(self.settings.height)
@@ -221,7 +260,9 @@ impl Document {
             Source::Stage(stage) => add("--stage", &stage.id),
             Source::Builtin => add("--scene", &origin.name),
             Source::File(path) => add("--scene", &path.display()),
-            Source::Embedded => add("--scene", &format!("{}.toml", origin.name)),
+            Source::Embedded | Source::Extreme(_) | Source::ByTheBook => {
+                add("--scene", &format!("{}.toml", origin.name))
+            }
         }
         let (mine, theirs) = (&self.settings, &origin.settings);
         if (mine.width, mine.height) != (theirs.width, theirs.height) {

@@ -78,7 +78,7 @@ fn section(command: Command) -> u8 {
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => 2,
         Command::Panels | Command::Controls | Command::Info | Command::Plot | Command::FullScreen => 3,
         Command::Theme(_) => 4,
-        Command::Device(_) => 1,
+        Command::Device(_) | Command::Extreme(_) => 1,
         _ => 0,
     }
 }
@@ -160,7 +160,8 @@ fn is_on(window: &Window, command: Command) -> bool {
         Command::Show(show) => {
             window.viewport.show == show && (show != Show::Picture || window.compare.mode.is_none())
         }
-        Command::Wipe => window.compare.mode == Some(Mode::Wipe),
+        Command::Wipe => window.compare.mode == Some(Mode::Wipe) && !window.compare.is_by_book,
+        Command::BookArithmetic => window.compare.mode.is_some() && window.compare.is_by_book,
         Command::WipeDifference => window.compare.mode == Some(Mode::Difference),
         Command::Controls => remembered.has_controls,
         Command::Info => remembered.has_info,
@@ -169,6 +170,7 @@ fn is_on(window: &Window, command: Command) -> bool {
         Command::Theme(theme) => remembered.theme == theme,
         Command::Device(device) => remembered.device == device,
         Command::Stage(stage) => window.document.stage() == Some(stage),
+        Command::Extreme(case) => window.document.case() == Some(case),
         _ => false,
     }
 }
@@ -178,7 +180,7 @@ fn stage_bar(window: &mut Window, ui: &mut Ui, is_wide: bool) {
     step(window, ui, Command::PreviousStage, "‹");
     let title = match window.document.stage() {
         Some(stage) => format!("{}  {}", stage.section, stage.title),
-        None => window.document.origin.recipe.name.clone(),
+        None => window.document.title(),
     };
     let width = if is_wide { (ui.available_width() - 400.0).clamp(160.0, 340.0) } else { 240.0 };
     let button = Button::new(RichText::new(title).strong()).min_size(egui::vec2(width, 0.0)).truncate();

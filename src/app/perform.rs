@@ -32,8 +32,13 @@ impl Window {
             Command::CopyPlot | Command::SavePlot if self.main.status().history.is_empty() => {
                 no("No error has been estimated yet")
             }
-            Command::Wipe | Command::WipeDifference if self.document.stage().is_none() => {
-                no("Only stages of the book have something to be compared with; choose one")
+            Command::Wipe | Command::WipeDifference
+                if self.document.stage().is_none() && !self.document.origin.is_other_by_the_book() =>
+            {
+                no("Nothing is there to compare this picture with; choose a stage of the book")
+            }
+            Command::BookArithmetic if !self.document.origin.is_other_by_the_book() => {
+                no("This picture has the book's arithmetic already, or sends no rays; choose another")
             }
             Command::PreviousStage if self.neighbour(false).is_none() => no("This is the first stage"),
             Command::NextStage if self.neighbour(true).is_none() => no("This is the last stage"),
@@ -87,9 +92,9 @@ impl Window {
     }
 
     /// One thing at a time is shown in the picture's place.
-    fn toggle_compare(&mut self, mode: Mode) {
+    fn toggle_compare(&mut self, mode: Mode, is_by_book: bool) {
         self.choose_show(Show::Picture);
-        self.compare.toggle(mode);
+        self.compare.toggle(mode, is_by_book);
     }
 
     pub(super) fn neighbour(&self, is_next: bool) -> Option<&'static crate::stages::Stage> {
@@ -152,8 +157,9 @@ impl Window {
                 self.compare.mode = None;
                 self.choose_show(show);
             }
-            Command::Wipe => self.toggle_compare(Mode::Wipe),
-            Command::WipeDifference => self.toggle_compare(Mode::Difference),
+            Command::Wipe => self.toggle_compare(Mode::Wipe, self.document.stage().is_none()),
+            Command::WipeDifference => self.toggle_compare(Mode::Difference, self.compare.is_by_book),
+            Command::BookArithmetic => self.toggle_compare(Mode::Wipe, true),
             Command::Fit => self.viewport.zoom = Zoom::Fit,
             Command::ActualSize => self.viewport.actual_size(),
             Command::ZoomIn => self.viewport.zoom_by(1.25),
@@ -209,6 +215,7 @@ impl Window {
                 }
             }
             Command::Stage(stage) => self.show_origin(Origin::of_stage(stage)),
+            Command::Extreme(case) => self.show_origin(Origin::of_case(case)),
             Command::Book => {
                 let url = self.document.stage().map_or_else(|| crate::stages::BOOK_URL.into(), |s| s.url());
                 self.toasts.good(format!("Opening {url}"));
@@ -238,7 +245,9 @@ impl Window {
         let line = self.document.command_line(samples.max(1), device.name(), adapter);
         context.copy_text(line);
         self.toasts.good(match &self.document.origin.source {
-            Source::Embedded => "Copied; the scene is in no file yet: save the scene file beside it",
+            Source::Embedded | Source::Extreme(_) => {
+                "Copied; the scene is in no file yet: save the scene file beside it"
+            }
             _ => "Copied: the command line that renders this picture",
         });
     }

@@ -7,6 +7,7 @@ use super::menu::item;
 use super::viewport::Show;
 use super::widgets::{About, control};
 use super::window::Window;
+use crate::stress::Case;
 use eframe::egui::{self, RichText, Ui};
 
 pub fn ui(window: &mut Window, ui: &mut Ui) {
@@ -32,19 +33,47 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
             ui.add_space(10.0);
             compare_ui(window, ui, stage);
         }
-        None => {
-            let recipe = &window.document.origin.recipe;
-            ui.add(egui::Label::new(RichText::new(&recipe.name).heading()).wrap());
-            let scene = window.document.scene();
-            let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
-            ui.label(format!("{spheres} spheres, {materials} materials"));
-        }
+        None => match window.document.case() {
+            Some(case) => case_ui(window, ui, case),
+            None => recipe_ui(window, ui),
+        },
     }
     ui.add_space(8.0);
     ui.separator();
     ui.add_space(4.0);
     view_ui(window, ui);
     inspector::ui(window, ui);
+}
+
+/// A scene that is no stage.
+fn recipe_ui(window: &Window, ui: &mut Ui) {
+    let recipe = &window.document.origin.recipe;
+    ui.add(egui::Label::new(RichText::new(&recipe.name).heading()).wrap());
+    let scene = window.document.scene();
+    let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
+    ui.label(format!("{spheres} spheres, {materials} materials"));
+}
+
+/// An extreme scene: what is stiff about it and what to watch.
+fn case_ui(window: &mut Window, ui: &mut Ui, case: &'static Case) {
+    let weak = ui.visuals().weak_text_color();
+    ui.add(egui::Label::new(RichText::new(case.family.title).small().color(weak)).wrap());
+    ui.add(egui::Label::new(RichText::new(case.title()).heading()).wrap());
+    let watch = case.watch.map_or("", |watch| watch.look_for);
+    for (heading, text) in
+        [("Watch", watch), ("What is stiff", case.stiff.as_str()), ("What it teaches", case.family.lesson)]
+    {
+        ui.add_space(6.0);
+        ui.label(RichText::new(heading).small().color(weak));
+        ui.add(egui::Label::new(text).wrap());
+    }
+    ui.add_space(10.0);
+    let is_on = window.compare.mode.is_some();
+    let command = Command::BookArithmetic;
+    let response = ui.add(egui::Button::new(command.name()).selected(is_on)).on_hover_text(command.help());
+    if response.clicked() {
+        window.send(command);
+    }
 }
 
 /// What the picture's place shows.

@@ -1,6 +1,7 @@
 //! Short messages over the picture.
 
 use super::theme;
+use crate::console;
 use eframe::egui::{self, Align2, Color32, RichText};
 use std::time::{Duration, Instant};
 
@@ -40,7 +41,7 @@ impl Toasts {
     /// Says that something went wrong: here and, for whoever started the program from a terminal, there.
     pub fn bad(&mut self, text: impl Into<String>) {
         let text = text.into();
-        eprintln!("weekender: {text}");
+        console::note(&format!("weekender: {text}"));
         self.add(text, Tone::Bad);
     }
 

@@ -180,14 +180,14 @@ impl Window {
         self.dialog.is_some()
     }
 
-    /// Whether two stages are compared.
+    /// Whether two pictures are compared.
     pub fn is_comparing(&self) -> bool {
         self.compare.mode.is_some()
     }
 
     /// Whether there is a second picture, of what is compared now.
     pub fn has_other_picture(&self) -> bool {
-        self.compare.has_picture(self.document.stage())
+        self.compare.has_picture(&self.document)
     }
 
     /// What the picture's place shows.

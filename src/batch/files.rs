@@ -1,85 +1,177 @@
 //! The picture and the film, written with what they say about themselves.
 
+use super::rescue;
+use super::resuming::same_job;
 use crate::cli::RenderOptions;
 use crate::describe::describe;
-use crate::film::{Description, Film, checkpoint};
+use crate::film::{FileIdentity, Film, Saved, SharedFile};
 use crate::output::{OutputFormat, write_image};
 use crate::progressive::Status;
-use crate::recipe::plain_name;
 use anyhow::anyhow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The film files of a render, watched from before it begins: another run may write them, too.
+pub(super) struct Places {
+    /// That of `--checkpoint`.
+    pub checkpoint: Option<SharedPlace>,
+    /// That of `--out`, if it is a film.
+    out: Option<SharedPlace>,
+}
+
+/// A film file that the render's threads take turns at.
+#[derive(Clone)]
+pub(super) struct SharedPlace(Arc<Mutex<SharedFile>>);
+
+impl SharedPlace {
+    fn new(path: &Path) -> Self {
+        SharedPlace(Arc::new(Mutex::new(SharedFile::new(path))))
+    }
+
+    /// The place, for whoever writes there now. It is whole after every statement, whatever became of its last user.
+    pub fn lock(&self) -> MutexGuard<'_, SharedFile> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Places {
+    /// The places as they are now. A film that goes on is read after this.
+    pub fn of(render: &RenderOptions) -> Places {
+        let out = is_film(&render.out).then(|| SharedPlace::new(&render.out));
+        Places { checkpoint: render.checkpoint.as_deref().map(SharedPlace::new), out }
+    }
+
+    /// Notes that `film`, which the render resumes, stands at one of the places, if it does.
+    pub fn go_on(&self, render: &RenderOptions, film: &Film) {
+        let resumed = render.resume.as_deref().and_then(FileIdentity::of);
+        for (path, place) in [(render.checkpoint.as_ref(), &self.checkpoint), (Some(&render.out), &self.out)]
+        {
+            let identity = path.and_then(|path| FileIdentity::of(path));
+            if let (Some(place), Some(resumed), Some(identity)) = (place, &resumed, identity)
+                && identity.is_same_as(resumed)
+            {
+                place.lock().holds(film.samples());
+            }
+        }
+    }
+}
 
 /// Files that were written, and what kept the others from being so.
 #[derive(Debug, Default)]
 pub(super) struct Written {
     pub files: Vec<PathBuf>,
+    /// What a user should know of those files.
+    pub notes: Vec<String>,
     pub failure: Option<anyhow::Error>,
 }
 
-/// Writes picture and film. If one cannot be written, the other still is, and if that is not the film, then the film
-/// among the system's temporary files: its samples may have taken hours. `seconds_before` is what the film's earlier
-/// samples took, if that is known.
+/// Writes film and picture, each after saying so by `say`. If one cannot be written, the other still is, and if no
+/// film could be, then the film at some other place: its samples may have taken hours. `seconds_before` is what the
+/// film's earlier samples took, if that is known.
 pub(super) fn write(
     render: &RenderOptions,
+    places: &Places,
     film: &Film,
     status: &Status,
     seconds_before: Option<f64>,
+    mut say: impl FnMut(&Path),
 ) -> Written {
     let description = describe(&render.recipe, render.stage, film, status, seconds_before);
     let mut written = Written::default();
-    let mut note = |path: &PathBuf, outcome: anyhow::Result<()>| match outcome {
-        Ok(()) => written.files.push(path.clone()),
-        Err(error) => written.failure = Some(error),
-    };
-    if let Some(path) = &render.checkpoint {
-        note(path, checkpoint::save(path, film, &description).map_err(Into::into));
-    }
-    let transfer = render.job.rules().transfer;
-    note(&render.out, write_image(&render.out, film, transfer, &description).map_err(Into::into));
-    let is_film =
-        |path: &PathBuf| OutputFormat::from_path(path).is_ok_and(|format| format == OutputFormat::Exr);
-    if let Some(error) = written.failure.take() {
-        let rescued =
-            (!written.files.iter().any(is_film)).then(|| rescue(render, film, &description)).flatten();
-        written.failure = Some(match &rescued {
-            Some(path) => {
-                anyhow!("{error}; the samples are in {}: --resume goes on with them", path.display())
+    let mut failures = Vec::new();
+    let mut is_film_kept = false;
+    let film_places = [(render.checkpoint.as_ref(), &places.checkpoint), (Some(&render.out), &places.out)];
+    for (path, place) in film_places {
+        let (Some(path), Some(place)) = (path, place) else { continue };
+        say(path);
+        match place.lock().save(film, &description, &same_job) {
+            Ok(Saved { path, note, is_elsewhere }) => {
+                is_film_kept = true;
+                written.files.push(path);
+                match note {
+                    Some(note) if is_elsewhere => failures.push(note),
+                    note => written.notes.extend(note),
+                }
             }
-            None => error,
-        });
-        written.files.extend(rescued);
+            Err(error) => failures.push(error.to_string()),
+        }
     }
+    if places.out.is_none() {
+        say(&render.out);
+        let transfer = render.job.rules().transfer;
+        match write_image(&render.out, film, transfer, &description) {
+            Ok(()) => written.files.push(render.out.clone()),
+            Err(error) => failures.push(error.to_string()),
+        }
+    }
+    if !failures.is_empty() && !is_film_kept {
+        match rescue::rescue(render, film, &description) {
+            Ok(path) => {
+                failures
+                    .push(format!("the samples are in {0}: --resume {0} goes on with them", path.display()));
+                written.files.push(path);
+            }
+            Err(lost) => failures.push(lost),
+        }
+    }
+    written.failure = (!failures.is_empty()).then(|| anyhow!("{}", failures.join("; ")));
     written
 }
 
-/// Keeps the film where there may be room still; `None` if there is none either.
-fn rescue(render: &RenderOptions, film: &Film, description: &Description) -> Option<PathBuf> {
-    let name = format!("weekender-{}-{}.exr", plain_name(&render.recipe.name), std::process::id());
-    let path = std::env::temp_dir().join(name);
-    checkpoint::save(&path, film, description).ok()?;
-    Some(path)
+fn is_film(path: &Path) -> bool {
+    OutputFormat::from_path(path).is_ok_and(|format| format == OutputFormat::Exr)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::{Request, parse};
+    use crate::batch::tests::options;
+    use crate::film::checkpoint;
 
-    #[test]
-    fn a_film_that_cannot_be_written_is_rescued() {
-        let directory = tempfile::tempdir().unwrap();
-        let out = directory.path().join("gone/picture.png");
-        let words = ["weekender", "--batch", "--size", "4x3", "--out", out.to_str().unwrap()];
-        let Request::Batch(options) = parse(words.into_iter().map(Into::into)).unwrap() else { panic!() };
-        let render = &options.renders[0];
+    fn write_two_samples(render: &RenderOptions) -> (Film, Written) {
         let mut film = render.job.new_film();
         film.record(0..2, 0).unwrap();
-        let written = write(render, &film, &Status::default(), None);
+        let written = write(render, &Places::of(render), &film, &Status::default(), None, |_| {});
+        (film, written)
+    }
+
+    #[test]
+    fn a_film_that_cannot_be_written_is_rescued_and_all_failures_are_told() {
+        let directory = tempfile::tempdir().unwrap();
+        let [out, film] = ["gone/picture.png", "missing/film.exr"].map(|name| directory.path().join(name));
+        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
+        let (film, written) = write_two_samples(&render);
         let told = written.failure.unwrap().to_string();
         let [path] = written.files.as_slice() else { panic!("{told}") };
-        assert!(told.contains("gone") && told.contains(&format!("in {}", path.display())), "{told}");
+        let rescued = format!("in {}", path.display());
+        for part in ["gone", "missing", "--resume", &rescued] {
+            assert!(told.contains(part), "{told} should say {part}");
+        }
         let read = checkpoint::load(path);
         std::fs::remove_file(path).unwrap();
         assert!(read.unwrap().film == film);
+    }
+
+    #[test]
+    fn the_rescue_is_beside_the_output_if_there_is_room() {
+        let directory = tempfile::tempdir().unwrap();
+        let out = directory.path().join("picture.png");
+        let render = options(&["--out", out.to_str().unwrap()]);
+        std::fs::create_dir(&out).unwrap();
+        let (film, written) = write_two_samples(&render);
+        let [path] = written.files.as_slice() else { panic!("{written:?}") };
+        assert_eq!(path.parent(), Some(directory.path()));
+        assert!(checkpoint::load(path).unwrap().film == film);
+    }
+
+    #[test]
+    fn a_film_that_is_written_needs_no_rescue() {
+        let directory = tempfile::tempdir().unwrap();
+        let [out, film] = ["gone/picture.png", "film.exr"].map(|name| directory.path().join(name));
+        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
+        let (_, written) = write_two_samples(&render);
+        assert_eq!(written.files, [film]);
+        let told = written.failure.unwrap().to_string();
+        assert!(told.contains("gone") && !told.contains("--resume"), "{told}");
     }
 }

@@ -11,9 +11,9 @@ use std::process::ExitCode;
 /// Prints what there is to choose from.
 ///
 /// # Errors
-/// None now; a device that cannot be asked might be one.
+/// [`Failure::Run`] if standard output cannot be written.
 pub fn list() -> Result<ExitCode, Failure> {
-    print(&text());
+    print(&text()).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -26,6 +26,7 @@ pub fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
         samples.count(),
         options.films.len(),
         options.out.display()
-    ));
+    ))
+    .map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }

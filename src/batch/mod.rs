@@ -1,10 +1,12 @@
 //! Rendering without a window: pictures to files, progress to standard error, figures at the end.
 
 mod files;
+mod keeping;
 mod listing;
 mod memory;
 mod merging;
 mod progress;
+mod rescue;
 mod resuming;
 mod summary;
 
@@ -13,6 +15,7 @@ pub use merging::merge;
 
 use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
+use crate::console;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::film::{Film, check_writable, write_text};
 use crate::interrupt::Interrupt;
@@ -21,6 +24,8 @@ use crate::recipe::{Recipe, file};
 use crate::render::Renderer;
 use crate::terminal::{print, print_beside, write_json};
 use anyhow::{Context, anyhow};
+use files::{Places, SharedPlace};
+use keeping::Keeper;
 use progress::Progress;
 use resuming::Resumed;
 use std::path::Path;
@@ -31,14 +36,19 @@ use summary::{Report, Summary};
 /// Renders and writes everything that is asked for.
 ///
 /// # Errors
-/// [`Failure::Input`] before anything is rendered or written; [`Failure::Run`] later.
+/// [`Failure::Input`] before anything is rendered or written; [`Failure::BrokeOff`] if a render broke off whose
+/// samples are in its files; [`Failure::Run`] for everything else later.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
+    let places: Vec<Places> = options.renders.iter().map(Places::of).collect();
     // Found out now, the film of a resumed render is read before a kernel is built.
     let mut resumed = match options.renders.as_slice() {
         [only] => resuming::load(only).map_err(Failure::Input)?,
         _ => None,
     };
+    if let ([render], [places], Some(resumed)) = (options.renders.as_slice(), places.as_slice(), &resumed) {
+        places.go_on(render, &resumed.film);
+    }
     let mut renderer = Some(backends::create(&options.backend).map_err(Failure::input)?);
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut progressive =
@@ -48,11 +58,12 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     }
 
     let mut summaries = Vec::with_capacity(options.renders.len());
-    let mut failure = None;
-    for render in &options.renders {
-        let begun = Begun { options: &options, interrupt: &interrupt };
+    let (mut failure, mut printed) = (None, Ok(()));
+    for (render, places) in options.renders.iter().zip(&places) {
+        let begun = Begun { options: &options, interrupt: &interrupt, places };
         let (summary, outcome) = begun.render(render, &mut progressive, renderer.take(), resumed.take());
-        print_beside(options.json.as_ref(), &format!("{summary}\n"));
+        // That nobody reads the figures is no reason to leave pictures out.
+        printed = printed.and(print_beside(options.json.as_ref(), &format!("{summary}\n")));
         summaries.push(summary);
         if let Err(error) = outcome {
             failure = Some(error);
@@ -62,21 +73,26 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
             break;
         }
     }
-    let json = write_figures(&options, summaries);
-    match (failure, json) {
-        (Some(error), _) | (None, Err(error)) => Err(Failure::Run(error)),
-        _ if interrupt.is_set() => Ok(ExitCode::from(INTERRUPTED)),
-        _ => Ok(ExitCode::SUCCESS),
+    let figures = printed.and(write_figures(&options, summaries));
+    match (failure, figures) {
+        (Some(failure), _) => Err(failure),
+        (None, figures) if interrupt.is_set() => {
+            if let Err(error) = figures {
+                console::note(&format!("error: {error:#}"));
+            }
+            Ok(ExitCode::from(INTERRUPTED))
+        }
+        (None, figures) => figures.map(|()| ExitCode::SUCCESS).map_err(Failure::Run),
     }
 }
 
 /// Writes a scene file.
 ///
 /// # Errors
-/// [`Failure::Input`] if it cannot be written.
+/// [`Failure::Input`] if it cannot be written, [`Failure::Run`] if that cannot be said.
 pub fn save_scene(options: &SaveSceneOptions) -> Result<ExitCode, Failure> {
     write_scene(&options.recipe, &options.path).map_err(Failure::Input)?;
-    print(&format!("wrote {}\n", options.path.display()));
+    print(&format!("wrote {}\n", options.path.display())).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -112,6 +128,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
 struct Begun<'a> {
     options: &'a BatchOptions,
     interrupt: &'a Interrupt,
+    places: &'a Places,
 }
 
 impl Begun<'_> {
@@ -122,11 +139,14 @@ impl Begun<'_> {
         progressive: &mut Progressive,
         renderer: Option<Box<dyn Renderer>>,
         resumed: Option<Resumed>,
-    ) -> (Summary, anyhow::Result<()>) {
+    ) -> (Summary, Result<(), Failure>) {
         let (film, seconds_before) = match resumed {
             Some(Resumed { film, seconds }) => (Some(film), seconds),
             None => (None, Some(0.0)),
         };
+        let held_before = film.as_ref().map_or(0, Film::sample_count);
+        let keeper = |place: &SharedPlace| Keeper::new(render, place.clone(), held_before, seconds_before);
+        let mut keeper = self.places.checkpoint.as_ref().map(keeper);
         let mut progress = Progress::new(self.options.progress, render);
         progressive.start(Work {
             job: render.job.clone(),
@@ -135,21 +155,43 @@ impl Begun<'_> {
             plan: render.plan.clone(),
             film,
         });
-        let status = self.watch(progressive, &mut progress);
+        let mut status = self.watch(progressive, &mut progress, keeper.as_mut());
+        let names: Vec<String> = [render.checkpoint.as_ref(), Some(&render.out)]
+            .into_iter()
+            .flatten()
+            .map(|path| path.display().to_string())
+            .collect();
+        let writing = self.interrupt.while_writing(names.join(" and "));
         let film = progressive.take_film();
         let begin = Instant::now();
-        progress.writing();
-        let written = match &film {
-            Some(film) if film.sample_count() > 0 => files::write(render, film, &status, seconds_before),
+        if let Some(keeper) = &mut keeper {
+            keeper.finish();
+        }
+        let mut written = match &film {
+            Some(film) if film.sample_count() > 0 => {
+                files::write(render, self.places, film, &status, seconds_before, |path| {
+                    progress.writing(path)
+                })
+            }
             _ => files::Written::default(),
         };
+        drop(writing);
+        for note in &written.notes {
+            progress.say(&format!("warning: {note}"));
+        }
+        status.messages.append(&mut written.notes);
         progress.finish();
-        let outcome = outcome(&status, film.as_ref(), written.failure);
-        let files = written.files;
-        (Summary::new(render, &status, film.as_ref(), files, begin.elapsed()), outcome)
+        let kept = keeper.and_then(|keeper| keeper.kept());
+        let outcome = outcome(render, &status, film.as_ref(), &written, kept);
+        (Summary::new(render, &status, film.as_ref(), written.files, begin.elapsed()), outcome)
     }
 
-    fn watch(&self, progressive: &Progressive, progress: &mut Progress) -> Status {
+    fn watch(
+        &self,
+        progressive: &Progressive,
+        progress: &mut Progress,
+        mut keeper: Option<&mut Keeper>,
+    ) -> Status {
         let mut is_stopping = false;
         let mut told = 0;
         loop {
@@ -163,22 +205,46 @@ impl Begun<'_> {
             }
             if self.interrupt.is_set() && !is_stopping {
                 is_stopping = true;
-                progress.say("stopping after these samples; press Ctrl-C again to exit at once");
+                progress.say(
+                    "stopping after these samples, then the files are written; press Ctrl-C again to exit at once \
+                     without them",
+                );
                 progressive.stop();
+            }
+            if let Some(words) = keeper.as_mut().and_then(|keeper| keeper.look(progressive, &status)) {
+                progress.say(&format!("warning: {words}"));
             }
             progress.update(&status);
         }
     }
 }
 
-fn outcome(status: &Status, film: Option<&Film>, writing: Option<anyhow::Error>) -> anyhow::Result<()> {
-    if let Phase::Failed(reason) = &status.phase {
-        return Err(match film.map_or(0, Film::sample_count) {
-            0 => anyhow!("{reason}"),
-            kept => anyhow!("{reason}; {kept} samples per pixel were kept"),
-        });
-    }
-    writing.map_or(Ok(()), Err)
+/// What a render and its writing came to. `kept` are the samples per pixel that the checkpoint had before the end.
+fn outcome(
+    render: &RenderOptions,
+    status: &Status,
+    film: Option<&Film>,
+    written: &files::Written,
+    kept: Option<u64>,
+) -> Result<(), Failure> {
+    let failure = written.failure.as_ref();
+    let Phase::Failed(reason) = &status.phase else {
+        return failure.map_or(Ok(()), |failure| Err(Failure::Run(anyhow!("{failure}"))));
+    };
+    let held = film.map_or(0, Film::sample_count);
+    Err(match (failure, kept, &render.checkpoint) {
+        (Some(failure), ..) => Failure::Run(anyhow!("{reason}; {failure}")),
+        (None, ..) if held > 0 => {
+            let files: Vec<String> = written.files.iter().map(|path| path.display().to_string()).collect();
+            let files = files.join(", ");
+            Failure::BrokeOff(anyhow!("{reason}; the {held} samples per pixel before that are in {files}"))
+        }
+        (None, Some(kept), Some(path)) => {
+            let path = path.display();
+            Failure::BrokeOff(anyhow!("{reason}; {kept} samples per pixel are in {path}"))
+        }
+        _ => Failure::Run(anyhow!("{reason}")),
+    })
 }
 
 fn write_figures(options: &BatchOptions, mut summaries: Vec<Summary>) -> anyhow::Result<()> {
@@ -189,5 +255,83 @@ fn write_figures(options: &BatchOptions, mut summaries: Vec<Summary>) -> anyhow:
             summaries.extend(last);
             write_json(&Report::of_all(summaries), target)
         }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::backends::BackendChoice;
+    use crate::cli::{Request, parse};
+    use crate::film::checkpoint;
+    use crate::render::{BackendInfo, RenderError, RenderJob, Stats};
+    use crate::render_cpu::CpuOptions;
+    use std::ops::Range;
+    use std::sync::atomic::AtomicBool;
+
+    /// What a small render with `flags` is asked for.
+    pub(crate) fn options(flags: &[&str]) -> RenderOptions {
+        batch(flags).renders.remove(0)
+    }
+
+    fn batch(flags: &[&str]) -> BatchOptions {
+        let words = ["weekender", "--batch", "--size", "4x3", "--progress", "off"];
+        let words = words.into_iter().chain(flags.iter().copied());
+        let Request::Batch(options) = parse(words.map(Into::into)).unwrap() else { panic!("{flags:?}") };
+        *options
+    }
+
+    /// Fails when it has added four samples.
+    struct Failing;
+
+    impl Renderer for Failing {
+        fn info(&self) -> BackendInfo {
+            BackendInfo { name: "failing", device: String::new(), lanes: 1, threads: 1 }
+        }
+
+        fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+            Ok(())
+        }
+
+        fn accumulate(
+            &mut self,
+            _: &RenderJob,
+            samples: Range<u64>,
+            film: &mut Film,
+            _: &AtomicBool,
+        ) -> Result<Stats, RenderError> {
+            if samples.end > 4 {
+                return Err(RenderError::Backend { backend: "failing", reason: "it broke".to_owned() });
+            }
+            film.record(samples, 0)?;
+            Ok(Stats::default())
+        }
+    }
+
+    #[test]
+    fn a_render_that_breaks_off_has_an_exit_code_of_its_own_and_its_files() {
+        let directory = tempfile::tempdir().unwrap();
+        let [out, film] = ["a.png", "a.exr"].map(|name| directory.path().join(name));
+        let options = batch(&[
+            "--samples",
+            "64",
+            "--out",
+            out.to_str().unwrap(),
+            "--checkpoint",
+            film.to_str().unwrap(),
+        ]);
+        let options = BatchOptions { backend: BackendChoice::Cpu(CpuOptions::default()), ..options };
+        let render = &options.renders[0];
+        let mut progressive = Progressive::with_factory(Box::new(|_| Ok(Box::new(Failing)))).unwrap();
+        let interrupt = Interrupt::unheard();
+        let places = Places::of(render);
+        let begun = Begun { options: &options, interrupt: &interrupt, places: &places };
+        let (_, outcome) = begun.render(render, &mut progressive, None, None);
+        let failure = outcome.unwrap_err();
+        let told = failure.to_string();
+        assert!(matches!(failure, Failure::BrokeOff(_)), "{told}");
+        assert!(told.contains("it broke") && told.contains("4 samples") && told.contains("a.exr"), "{told}");
+        assert_eq!(checkpoint::load(&film).unwrap().film.sample_count(), 4);
+        assert!(out.exists());
     }
 }

@@ -3,6 +3,7 @@
 use crate::cli::{ProgressChoice, RenderOptions};
 use crate::progressive::{Phase, Plan, Status};
 use crate::terminal::Display;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Time between lines where there is no terminal.
@@ -49,9 +50,9 @@ impl Progress {
         self.display.update((share * STEPS as f64) as u64, words);
     }
 
-    /// Says that the files are being written.
-    pub(super) fn writing(&mut self) {
-        self.display.announce(STEPS, || "write".to_owned());
+    /// Says that `path` is being written.
+    pub(super) fn writing(&mut self, path: &Path) {
+        self.display.announce(STEPS, || format!("write {}", path.display()));
     }
 
     /// Says something that must be read, whatever the display.

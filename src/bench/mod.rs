@@ -163,12 +163,13 @@ fn warnings(report: &Report) -> Vec<String> {
 
 fn write(options: &BenchOptions, report: &Report) -> anyhow::Result<()> {
     let text = table::text(report);
-    terminal::print_beside(options.json.as_ref(), &text);
+    // What could not be printed is written all the same.
+    let printed = terminal::print_beside(options.json.as_ref(), &text);
     if let Some(target) = &options.json {
         terminal::write_json(report, target)?;
     }
     if let Some(path) = &options.plot {
         chart::save(path, &plot::figure(report))?;
     }
-    Ok(())
+    printed
 }

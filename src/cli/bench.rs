@@ -1,5 +1,6 @@
 //! The flags of `weekender bench`, and what they mean together.
 
+use super::paths::Paths;
 use super::raw::{ProgressChoice, RawSampler};
 use super::sources::{self, CliError};
 use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size};
@@ -170,11 +171,12 @@ pub(super) fn bench(raw: RawBench) -> Result<BenchOptions, CliError> {
         sampler: raw.sampler.map(Into::into),
         path_limit: if raw.quick { QUICK_PATH_LIMIT } else { PATH_LIMIT },
     };
-    if let (Some(JsonTarget::File(json)), Some(plot)) = (&options.json, &options.plot)
-        && json == plot
-    {
-        return Err(CliError::SameFile { first: "--json", second: "--plot", path: plot.clone() });
-    }
+    let files = raw.scene.iter().filter_map(|scene| sources::scene_file(Some(scene)));
+    files
+        .fold(Paths::default(), |paths, file| paths.read("--scene", Some(file)))
+        .write_json(options.json.as_ref())
+        .write("--plot", options.plot.as_deref())
+        .check(&[])?;
     if !options.scale.is_empty() {
         return Ok(options);
     }

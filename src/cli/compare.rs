@@ -1,5 +1,6 @@
 //! The flags of `weekender compare`, and what they mean together.
 
+use super::paths::Paths;
 use super::raw::RawPicture;
 use super::sources::{self, CliError, Source};
 use super::values::JsonTarget;
@@ -116,6 +117,18 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         return Err(CliError::Needs { flag: "--adapter", other: "gpu as a side", reason });
     }
     let sides = [side(raw.first), side(raw.second)];
+    let json = raw.json.map(JsonTarget::from);
+    let read = |paths: Paths, side: &CompareSide| match side {
+        CompareSide::File(path) => paths.read("the comparison", Some(path)),
+        CompareSide::Backend { .. } => paths,
+    };
+    sides
+        .iter()
+        .fold(Paths::default(), read)
+        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
+        .write("--heat-map", raw.heat_map.as_deref())
+        .write_json(json.as_ref())
+        .check(&[])?;
     // Pictures of other programs do not say what they show.
     let told = sides.iter().find_map(|side| match side {
         CompareSide::File(path) => sources::find(&raw.picture, Some(path)).ok(),
@@ -135,6 +148,6 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         samples: raw.samples,
         encoding: raw.encoding.into(),
         heat_map: raw.heat_map,
-        json: raw.json.map(JsonTarget::from),
+        json,
     })
 }

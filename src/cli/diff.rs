@@ -1,5 +1,6 @@
 //! The flags of `weekender diff`, and what they mean together.
 
+use super::paths::Paths;
 use super::raw::{RawPicture, RawSwitch};
 use super::sources::{self, CliError, Source};
 use super::values::{JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance};
@@ -115,6 +116,11 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
             return Err(CliError::Needs { flag, other, reason: "it is for that side alone; leave it out" });
         }
     }
+    let json = raw.json.map(JsonTarget::from);
+    Paths::default()
+        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
+        .write_json(json.as_ref())
+        .check(&[])?;
     let Source { mut recipe, stage } = sources::find(&raw.picture, None)?;
     sources::change(&mut recipe, &raw.picture, raw.estimate_error);
     if raw.find.is_some() {
@@ -145,6 +151,6 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
         path,
         sides,
         tolerance: raw.tolerance,
-        json: raw.json.map(JsonTarget::from),
+        json,
     })
 }

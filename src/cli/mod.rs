@@ -3,10 +3,12 @@
 mod bench;
 mod compare;
 mod diff;
+mod paths;
 mod raw;
 mod render;
 mod report;
 mod sources;
+mod stress;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
@@ -16,10 +18,12 @@ pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
 pub use sources::CliError;
+pub use stress::StressOptions;
 pub use values::JsonTarget;
 
 use crate::failure::Failure;
 use clap::Parser;
+use paths::Paths;
 use raw::{Raw, RawCommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -43,6 +47,8 @@ pub enum Request {
     Compare(Box<CompareOptions>),
     /// Measure error against time.
     Report(Box<ReportOptions>),
+    /// Render stiff scenes and judge them.
+    Stress(Box<StressOptions>),
     /// Render to files.
     Batch(Box<BatchOptions>),
 }
@@ -69,7 +75,12 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Some(RawCommand::Bench(raw)) => {
             bench::bench(*raw).map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)
         }
-        Some(RawCommand::Merge { films, out }) => Ok(Request::Merge(MergeOptions { films, out })),
+        Some(RawCommand::Merge { films, out }) => {
+            let read = |paths: Paths, film: &PathBuf| paths.read("the film", Some(film));
+            let paths = films.iter().fold(Paths::default(), read).write("--out", Some(&out));
+            paths.check(&[]).map_err(Failure::input)?;
+            Ok(Request::Merge(MergeOptions { films, out }))
+        }
         Some(RawCommand::Diff(raw)) => {
             diff::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)
         }
@@ -79,6 +90,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Some(RawCommand::Report(raw)) => report::report(*raw, command)
             .map(|options| Request::Report(Box::new(options)))
             .map_err(Failure::input),
+        Some(RawCommand::Stress(raw)) => {
+            stress::stress(*raw).map(|options| Request::Stress(Box::new(options))).map_err(Failure::input)
+        }
         None if raw.render.list => Ok(Request::List),
         None => render::request(raw.render).map_err(Failure::input),
     }

@@ -5,19 +5,22 @@ use super::bench::RawBench;
 use super::compare::RawCompare;
 use super::diff::RawDiff;
 use super::report::RawReport;
+use super::stress::RawStress;
 use super::values::{
-    Level, Simd, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds, parse_simd,
-    parse_size, parse_vector,
+    Level, Simd, parse_duration, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds,
+    parse_simd, parse_size, parse_vector,
 };
+use crate::failure::EXIT_CODES;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
 #[derive(Debug, Parser)]
-#[command(name = "weekender", version, args_conflicts_with_subcommands = true)]
+#[command(name = "weekender", version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
 pub(super) struct Raw {
     #[command(flatten)]
     pub render: RawRender,
@@ -53,6 +56,12 @@ pub(super) enum RawCommand {
     ///
     /// Goes on where an interrupted report of the same settings ended.
     Report(Box<RawReport>),
+    /// Render stiff and extreme scenes and say whether each is right: a table beside the book's own arithmetic
+    ///
+    /// Each scene is rendered as it is and with 40 distant spheres, which switch the hierarchy on, by a CPU level
+    /// that fuses multiply and add, by one that does not, in f64, and by the GPU that there is. The exit code is 0
+    /// where all are right, 1 where one is not and 2 where nothing could be run.
+    Stress(Box<RawStress>),
 }
 
 #[derive(Debug, Args)]
@@ -135,9 +144,14 @@ pub(super) struct RawRender {
     /// [default: SCENE.png]
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub out: Option<PathBuf>,
-    /// Keep the film, so that it can be resumed or merged; written at the end, after Ctrl-C, too
+    /// Keep the film, so that it can be resumed or merged; written while it renders and at the end, after Ctrl-C, too
     #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
     pub checkpoint: Option<PathBuf>,
+    /// Time between two writings of --checkpoint: what a power cut can cost; 0.1s to 30d, such as 30s, 5m or 1h
+    /// [default: 60s]
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true,
+          help_heading = "Files")]
+    pub every: Option<Duration>,
     /// Go on with a film; without --scene and --stage its own scene is taken
     #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
     pub resume: Option<PathBuf>,

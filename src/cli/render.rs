@@ -1,6 +1,7 @@
 //! What the flags of rendering mean together, for the window and for files.
 
 use super::Request;
+use super::paths::Paths;
 use super::raw::{DrawWith, ProgressChoice, RawDevice, RawRender};
 use super::sources::{self, CliError, Source};
 use super::values::{JsonTarget, Level, Simd};
@@ -12,8 +13,11 @@ use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::CpuOptions;
 use crate::render_gpu::{Drill, DrillPoint, Fault, GpuOptions};
 use crate::stages::Stage;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
+
+/// Time between two writings of a film while it renders, unless another is asked for.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
 
 /// What `--batch` renders.
 #[derive(Debug)]
@@ -70,6 +74,8 @@ pub struct RenderOptions {
     pub out: PathBuf,
     /// Where the film is kept.
     pub checkpoint: Option<PathBuf>,
+    /// Time between two writings of that film while it renders.
+    pub every: Duration,
     /// The film that goes on.
     pub resume: Option<PathBuf>,
 }
@@ -109,6 +115,8 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
         (Some(path), [only]) => Some(SaveSceneOptions { recipe: only.recipe.clone(), path: path.clone() }),
         _ => None,
     };
+    let json = raw.json.clone().map(JsonTarget::from);
+    check_paths(&raw, &renders, json.as_ref())?;
     match save_scene {
         Some(options) if !raw.batch => Ok(Request::SaveScene(Box::new(options))),
         save_scene => Ok(Request::Batch(Box::new(BatchOptions {
@@ -117,7 +125,7 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
             save_scene,
             backend,
             progress: raw.progress,
-            json: raw.json.map(JsonTarget::from),
+            json,
         }))),
     }
 }
@@ -133,6 +141,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
     for (flag, is_given) in [
         ("--out", raw.out.is_some()),
         ("--checkpoint", raw.checkpoint.is_some()),
+        ("--every", raw.every.is_some()),
         ("--json", raw.json.is_some()),
         ("--sample-range", raw.sample_range.is_some()),
     ] {
@@ -146,12 +155,17 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
     source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
     source.recipe.job()?;
     let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
-    let is_file = raw.picture.scene.as_deref().is_some_and(sources::is_file);
+    let file = sources::scene_file(raw.picture.scene.as_deref());
+    Paths::default()
+        .read("--scene", file)
+        .read("--resume", raw.resume.as_deref())
+        .write("--frame-log", raw.frame_log.as_deref())
+        .check(&[])?;
     Ok(WindowOptions {
         plan: ends.then(|| plan(raw, &source.recipe)),
         recipe: source.recipe,
         stage: source.stage,
-        file: raw.picture.scene.as_ref().filter(|_| is_file).map(PathBuf::from),
+        file: file.map(PathBuf::from),
         backend,
         is_device_given: raw.device != RawDevice::Auto
             || raw.threads.is_some()
@@ -175,7 +189,10 @@ fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOpt
         });
     }
     OutputFormat::from_path(&out)?;
-    check_distinct(raw, &out)?;
+    if raw.every.is_some() && raw.checkpoint.is_none() {
+        let reason = "it says how often the film is written there";
+        return Err(CliError::Needs { flag: "--every", other: "--checkpoint FILE.exr", reason });
+    }
     Ok(RenderOptions {
         plan: plan(raw, &source.recipe),
         recipe: source.recipe,
@@ -183,6 +200,7 @@ fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOpt
         stage: source.stage,
         out,
         checkpoint: raw.checkpoint.clone(),
+        every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
         resume: raw.resume.clone(),
     })
 }
@@ -196,22 +214,22 @@ fn check_film_names(raw: &RawRender) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Refuses two outputs of one name: the second would replace the first.
-fn check_distinct(raw: &RawRender, out: &Path) -> Result<(), CliError> {
-    let json = raw.json.as_deref().filter(|path| *path != Path::new("-"));
-    let outputs = [
-        ("--out", Some(out)),
-        ("--checkpoint", raw.checkpoint.as_deref()),
-        ("--save-scene", raw.save_scene.as_deref()),
-        ("--json", json),
-    ];
-    for (index, (second, path)) in outputs.iter().enumerate() {
-        let Some(path) = path else { continue };
-        if let Some((first, _)) = outputs[..index].iter().find(|(_, other)| other.as_ref() == Some(path)) {
-            return Err(CliError::SameFile { first, second, path: path.to_path_buf() });
-        }
-    }
-    Ok(())
+/// Refuses outputs that would replace each other or what is read. A film that goes on may be replaced by its
+/// continuation.
+fn check_paths(
+    raw: &RawRender,
+    renders: &[RenderOptions],
+    json: Option<&JsonTarget>,
+) -> Result<(), CliError> {
+    let paths = Paths::default()
+        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
+        .read("--resume", raw.resume.as_deref());
+    let outs = renders.iter().filter(|_| raw.batch).map(|render| render.out.as_path());
+    outs.fold(paths, |paths, out| paths.write("--out", Some(out)))
+        .write("--checkpoint", raw.checkpoint.as_deref())
+        .write("--save-scene", raw.save_scene.as_deref())
+        .write_json(json)
+        .check(&[("--out", "--resume"), ("--checkpoint", "--resume")])
 }
 
 fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {

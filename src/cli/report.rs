@@ -1,5 +1,6 @@
 //! The flags of `weekender report`, and what they mean together.
 
+use super::paths::Paths;
 use super::raw::{ProgressChoice, RawSampler, RawSwitch};
 use super::sources::{self, CliError};
 use super::values::{parse_rmse, parse_seconds, parse_size};
@@ -197,12 +198,17 @@ const CONTROL: &str = "c89";
 /// Errors that times are told for in any case.
 const TARGETS: [f64; 2] = [0.01, 0.001];
 
+/// What a report writes into its directory, beside references.
+const REPORT_FILES: [&str; 5] =
+    ["report.json", "report.md", "report.csv", "error-vs-time.png", "error-vs-time.svg"];
+
 /// What `weekender report` is asked for; `command` is what was typed.
 pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, CliError> {
     let defaults = if raw.calibration { CALIBRATION } else { RACE };
     let backends = report_backends(&raw, &defaults)?;
     let size = raw.size.unwrap_or(defaults.size);
     let scenes = report_scenes(&raw, &defaults, size)?;
+    check_paths(&raw)?;
     let max_samples = raw.max_samples.unwrap_or(defaults.max_samples);
     let reference = match raw.reference {
         Some(_) if scenes.len() > 1 => {
@@ -234,6 +240,18 @@ pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, C
         progress: raw.progress,
         command,
     })
+}
+
+/// Refuses a report that would replace what it reads.
+fn check_paths(raw: &RawReport) -> Result<(), CliError> {
+    let files = raw.scenes.iter().filter_map(|scene| sources::scene_file(Some(scene)));
+    let paths = files.fold(Paths::default(), |paths, file| paths.read("--scenes", Some(file)));
+    REPORT_FILES
+        .iter()
+        .fold(paths.read("--reference", raw.reference.as_deref()), |paths, name| {
+            paths.write("a file of --out,", Some(&raw.out.join(name)))
+        })
+        .check(&[])
 }
 
 /// `more` are names that are possible besides.

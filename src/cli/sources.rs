@@ -72,15 +72,27 @@ pub enum CliError {
         /// What there is.
         choices: String,
     },
-    /// Two files of one name.
-    #[error("{first} and {second} are both {}; give them different names", path.display())]
+    /// Two outputs in one file.
+    #[error("{first} and {second} are one file, {}; give them different names", both(path, other))]
     SameFile {
         /// A flag.
         first: &'static str,
         /// Another.
         second: &'static str,
-        /// Their file.
+        /// The first's file.
         path: PathBuf,
+        /// The same file as the other names it.
+        other: PathBuf,
+    },
+    /// An output in the place of an input.
+    #[error("{output} {} would replace the file that {input} reads; give it another name", path.display())]
+    Overwrites {
+        /// The output's flag.
+        output: &'static str,
+        /// Its file.
+        path: PathBuf,
+        /// The input's flag.
+        input: &'static str,
     },
     /// A file whose name says that it is something else.
     #[error("{flag} is {}, but the name of {what} must end in {ending}", path.display())]
@@ -100,6 +112,14 @@ pub enum CliError {
         /// Their name.
         name: String,
     },
+}
+
+fn both(path: &Path, other: &Path) -> String {
+    if path == other {
+        path.display().to_string()
+    } else {
+        format!("{} and {}", path.display(), other.display())
+    }
 }
 
 /// The scene that is rendered if none is asked for.
@@ -146,6 +166,11 @@ pub(super) fn carried(name: &str) -> Result<Recipe, CliError> {
 pub(super) fn is_file(scene: &str) -> bool {
     let path = Path::new(scene);
     path.extension().is_some() || path.components().count() > 1
+}
+
+/// The scene file that `--scene` names, if it names one.
+pub(super) fn scene_file(scene: Option<&str>) -> Option<&Path> {
+    scene.filter(|scene| is_file(scene)).map(Path::new)
 }
 
 /// Refuses a file whose name does not end in `ending`, with the dot, in capitals or not.

@@ -5,8 +5,9 @@ use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::render_cpu::Isa;
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
 use glam::DVec3;
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// Where JSON goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -122,6 +123,22 @@ pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
     positive(text, 1e9).ok_or_else(|| "must be above 0 and at most 1e9 seconds, such as 60".to_owned())
 }
 
+/// Shortest and longest [`parse_duration`], seconds.
+const DURATION_LIMITS: RangeInclusive<f64> = 0.1..=30.0 * 86_400.0;
+
+/// A time with its unit; seconds without one.
+pub(super) fn parse_duration(text: &str) -> Result<Duration, String> {
+    let text = text.trim();
+    let units = [("ms", 1e-3), ("s", 1.0), ("min", 60.0), ("m", 60.0), ("h", 3600.0), ("d", 86_400.0)];
+    let with_unit = units.into_iter().find_map(|(unit, seconds)| Some((text.strip_suffix(unit)?, seconds)));
+    let (number, unit_seconds) = with_unit.unwrap_or((text, 1.0));
+    let seconds = number.trim_end().parse().ok().map(|number: f64| number * unit_seconds);
+    let seconds = seconds.filter(|seconds| DURATION_LIMITS.contains(seconds));
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| {
+        "must be within 0.1s and 30d, with s, m, h or d behind the number, such as 90s".to_owned()
+    })
+}
+
 pub(super) fn parse_rmse(text: &str) -> Result<f64, String> {
     positive(text, 100.0).ok_or_else(|| "must be above 0 and at most 100, such as 0.005".to_owned())
 }
@@ -197,6 +214,20 @@ mod tests {
         assert_eq!(parse_counts("1e3..2e4").as_deref(), Ok(&[1000, 3000, 10_000][..]));
         assert_eq!(parse_counts("7..7").as_deref(), Ok(&[7][..]));
         assert_eq!(parse_tolerance("0"), Ok(0.0));
+    }
+
+    #[test]
+    fn times_have_units() {
+        let seconds = |text| parse_duration(text).map(|time| time.as_secs_f64());
+        for (text, time) in
+            [("60s", 60.0), ("5m", 300.0), ("1.5h", 5400.0), ("2 min", 120.0), ("250ms", 0.25)]
+        {
+            assert_eq!(seconds(text), Ok(time), "{text}");
+        }
+        assert_eq!((seconds("90"), seconds("30d"), seconds("0.1s")), (Ok(90.0), Ok(2_592_000.0), Ok(0.1)));
+        for text in ["", "s", "-5s", "0", "0s", "31d", "1e300h", "nan", "inf s", "5 weeks", "1h30m", "99ms"] {
+            assert!(parse_duration(text).unwrap_err().contains("30d"), "{text}");
+        }
     }
 
     #[test]

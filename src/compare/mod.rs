@@ -97,7 +97,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
     let mut comparison = compare(a, b, paired);
     comparison.notes.extend(note_on_jobs(a, b));
     let text = text::told(&sides, &comparison);
-    print_beside(options.json.as_ref(), &text);
+    print_beside(options.json.as_ref(), &text)?;
     if let Some(path) = &options.heat_map {
         replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
     }

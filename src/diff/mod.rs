@@ -12,10 +12,11 @@ pub use side::{Side, SideError};
 pub use words::Told;
 
 use crate::cli::{DiffOptions, JsonTarget, PathChoice};
+use crate::console::printable;
 use crate::failure::Failure;
 use crate::film::check_writable;
 use crate::record::PathRecord;
-use crate::terminal::{is_taken, print_beside, write_json};
+use crate::terminal::{is_taken, print_painted_beside, write_json};
 use serde::Serialize;
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -89,7 +90,7 @@ pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
     text.push('\n');
     text.push_str(&text::bounces(&told, &comparison, paint));
     text.push_str(&text::closing(&told, &comparison, paint));
-    print_beside(json, &text);
+    print_painted_beside(json, &text).map_err(Failure::Input)?;
 
     if let Some(target) = json {
         let [about_a, about_b] = [0, 1].map(|side: usize| sides[side].about.as_str());
@@ -147,7 +148,7 @@ fn opening(
     lines.push(("left", sides[0].about.clone()));
     lines.push(("right", sides[1].about.clone()));
     let line = |(label, content): &(&str, String)| {
-        format!("{}{content}\n", paint.paint(Tone::Strong, &format!("{label:<9}")))
+        format!("{}{}\n", paint.paint(Tone::Strong, &format!("{label:<9}")), printable(content))
     };
     lines.iter().map(line).collect()
 }

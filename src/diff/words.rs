@@ -1,9 +1,11 @@
 //! A difference in a sentence.
 
 use super::compare::{Comparison, Difference, Quantity, departure};
+use crate::console::printable;
 use crate::record::{PathRecord, RecordedRay};
 use crate::render::RenderJob;
 use glam::DVec3;
+use std::borrow::Cow;
 
 /// Rays that miss a sphere by less than this share of its radius graze it.
 const GRAZING_SHARE: f64 = 0.01;
@@ -88,11 +90,11 @@ impl Told<'_> {
         }
     }
 
-    /// A sphere's material: its name and kind.
-    pub fn material(&self, sphere: usize) -> Option<(&str, &'static str)> {
+    /// A sphere's material: its name, as it can be printed, and kind.
+    pub fn material(&self, sphere: usize) -> Option<(Cow<'_, str>, &'static str)> {
         let scene = self.job.scene();
         let named = scene.materials.get(scene.spheres.get(sphere)?.material)?;
-        Some((named.name.as_str(), named.material.kind()))
+        Some((printable(&named.name), named.material.kind()))
     }
 
     /// Says so where a side just misses what the other meets: then it was rounding that decided.

@@ -268,8 +268,16 @@ fn row_block(
 /// # Errors
 /// [`CheckpointError`], each with what to do.
 pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
+    read(open(path)?, 0, path)
+}
+
+/// The same from a reader; `path` stands in messages.
+///
+/// # Errors
+/// [`CheckpointError`], each with what to do.
+pub fn read(reader: impl Read + Seek, _length: u64, path: &Path) -> Result<FilmFile, CheckpointError> {
     let damaged = |what: String| CheckpointError::Damaged { path: path.to_owned(), what };
-    let reader = exr::block::read(open(path)?, true).map_err(|error| damaged(error.to_string()))?;
+    let reader = exr::block::read(reader, true).map_err(|error| damaged(error.to_string()))?;
 
     // Read what the file says of itself.
     let not_film = || CheckpointError::NotFilm { path: path.to_owned() };

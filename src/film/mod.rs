@@ -7,15 +7,20 @@
 
 pub mod checkpoint;
 mod description;
+mod identity;
+mod leftovers;
 mod merge;
 mod ranges;
 mod replace;
+mod shared_file;
 
 pub use checkpoint::{CheckpointError, FilmFile};
 pub use description::{Description, RECIPE_KEY, key};
+pub use identity::FileIdentity;
 pub use merge::{MergeError, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;
 pub use replace::{WriteError, check_writable, replace_file, write_text};
+pub use shared_file::{Saved, SharedFile};
 
 use crate::stages::Transfer;
 use std::ops::Range;

@@ -1,5 +1,7 @@
 //! Files that are written whole or not at all: beside their place, then renamed.
 
+use super::identity::follow_links;
+use super::leftovers;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -26,14 +28,18 @@ fn remedy(reason: &io::Error) -> &'static str {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
             "free some space or choose another place; the file that was there is as it was"
         }
+        ErrorKind::FileTooLarge => {
+            "allow larger files (ulimit -f), or choose another place; the file that was there is as it was"
+        }
         ErrorKind::InvalidFilename | ErrorKind::InvalidInput => "choose another name",
         _ => "choose another place",
     }
 }
 
 /// Writes `path` by `write`: to a new file in the same directory, which then takes the old one's place. If
-/// anything fails, the old file is as it was and the new one is gone. A link is followed; a device or a pipe is
-/// written to directly. The file has the usual permissions, or those of the file that it replaces.
+/// anything fails, the old file is as it was and the new one is gone. A link is followed, also if nothing is where it
+/// leads; a device or a pipe is written to directly. The file has the usual permissions, or those of the file that it
+/// replaces.
 ///
 /// # Errors
 /// [`WriteError`], be it from `write` or from the file system.
@@ -41,7 +47,7 @@ pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
 ) -> Result<(), WriteError> {
-    try_replace(path, write).map_err(|reason| WriteError { path: path.to_owned(), reason })
+    NewFile::write(path, write)?.put()
 }
 
 /// Writes a text in place of `path`, as [`replace_file`] does.
@@ -53,44 +59,90 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
 }
 
 /// Finds out whether [`replace_file`] could write `path`. It leaves nothing behind, and a file that is there as
-/// it is.
+/// it is; unfinished files that killed runs left in its directory are removed.
 ///
 /// # Errors
 /// [`WriteError`]: no such directory, a directory of that name, no permission, a file marked read-only, a name
 /// that the file system does not take.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let check = || match Target::find(path)? {
-        Target::Device(path) => OpenOptions::new().write(true).open(path).map(drop),
-        Target::File { directory, old, .. } => new_file_in(&directory, old.as_ref())?.close(),
+        // To open a pipe would wait for its reader, and end what it reads.
+        Target::Device { is_pipe: true, .. } => Ok(()),
+        Target::Device { path, .. } => OpenOptions::new().write(true).open(path).map(drop),
+        Target::File { directory, old, .. } => {
+            leftovers::remove_from(&directory);
+            new_file_in(&directory, old.as_ref())?.close()
+        }
     };
     check().map_err(|reason| WriteError { path: path.to_owned(), reason })
 }
 
+/// A file that is written but not yet in its place. Dropped, it is gone.
+pub(super) struct NewFile {
+    named: PathBuf,
+    /// The file and its place; `None` if it has been written in place, to a device.
+    pending: Option<(NamedTempFile, PathBuf)>,
+}
+
+impl NewFile {
+    /// Writes it beside its place.
+    pub fn write(
+        path: &Path,
+        write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+    ) -> Result<NewFile, WriteError> {
+        match try_write(path, write) {
+            Ok(pending) => Ok(NewFile { named: path.to_owned(), pending }),
+            Err(reason) => Err(WriteError { path: path.to_owned(), reason }),
+        }
+    }
+
+    /// Where it is until then. On Unix it stays the same file, with the same time of change.
+    pub fn pending_path(&self) -> Option<&Path> {
+        self.pending.as_ref().map(|(file, _)| file.path())
+    }
+
+    /// Puts it in its place.
+    pub fn put(self) -> Result<(), WriteError> {
+        let Some((file, place)) = self.pending else { return Ok(()) };
+        file.persist(place).map(drop).map_err(|error| WriteError { path: self.named, reason: error.error })
+    }
+
+    /// Puts it in its place if nothing is there; whether it could.
+    pub fn put_new(self) -> Result<bool, WriteError> {
+        let Some((file, place)) = self.pending else { return Ok(true) };
+        match file.persist_noclobber(place) {
+            Ok(_) => Ok(true),
+            Err(error) if error.error.kind() == ErrorKind::AlreadyExists => Ok(false),
+            Err(error) => Err(WriteError { path: self.named, reason: error.error }),
+        }
+    }
+}
+
 enum Target {
     File { path: PathBuf, directory: PathBuf, old: Option<Metadata> },
-    Device(PathBuf),
+    Device { path: PathBuf, is_pipe: bool },
 }
 
 impl Target {
-    fn find(path: &Path) -> io::Result<Target> {
-        let path = match fs::symlink_metadata(path) {
-            Ok(found) if found.is_symlink() => fs::canonicalize(path)?,
-            _ => path.to_owned(),
-        };
-        let old = match fs::metadata(&path) {
-            Ok(old) => Some(old),
+    fn find(named: &Path) -> io::Result<Target> {
+        let old = match fs::metadata(named) {
+            Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
+            Ok(found) if !found.is_file() => {
+                return Ok(Target::Device { path: named.to_owned(), is_pipe: is_pipe(&found) });
+            }
+            // A rename would replace it all the same, but whoever marked it did not want that.
+            Ok(found) if found.permissions().readonly() => {
+                return Err(io::Error::new(ErrorKind::PermissionDenied, "the file is marked read-only"));
+            }
+            Ok(found) => Some(found),
             Err(error) if error.kind() == ErrorKind::NotFound => None,
             Err(error) => return Err(error),
         };
-        match &old {
-            Some(old) if old.is_dir() => return Err(ErrorKind::IsADirectory.into()),
-            Some(old) if !old.is_file() => return Ok(Target::Device(path)),
-            // A rename would replace it all the same, but whoever marked it did not want that.
-            Some(old) if old.permissions().readonly() => {
-                return Err(io::Error::new(ErrorKind::PermissionDenied, "the file is marked read-only"));
-            }
-            _ => {}
+        if let Some(end) = directory_ending(named) {
+            let reason = format!("the {end} at its end stands for a directory");
+            return Err(io::Error::new(ErrorKind::InvalidFilename, reason));
         }
+        let path = if old.is_some() { fs::canonicalize(named)? } else { follow_links(named)? };
         let directory = match path.parent() {
             Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
             Some(parent) => parent.to_owned(),
@@ -99,42 +151,70 @@ impl Target {
         if path.file_name().is_none() {
             return Err(ErrorKind::InvalidFilename.into());
         }
-        if !fs::metadata(&directory)?.is_dir() {
-            return Err(ErrorKind::NotADirectory.into());
+        match fs::metadata(&directory) {
+            Ok(found) if found.is_dir() => Ok(Target::File { path, directory, old }),
+            Ok(_) => Err(ErrorKind::NotADirectory.into()),
+            Err(error) if error.kind() == ErrorKind::NotFound && path != named => {
+                let reason = format!("it is a link to {}, whose directory is not there", path.display());
+                Err(io::Error::new(ErrorKind::NotFound, reason))
+            }
+            Err(error) => Err(error),
         }
-        Ok(Target::File { path, directory, old })
     }
+}
+
+/// What at the end of a path, which is there or not, says that it is a directory.
+fn directory_ending(path: &Path) -> Option<&'static str> {
+    let bytes = path.as_os_str().as_encoded_bytes();
+    let ends = [&b"/"[..], b"/."].into_iter().zip(["/", "/."]);
+    let own = [&b"\\"[..], b"\\."].into_iter().zip(["\\", "\\."]);
+    ends.chain(own.filter(|_| cfg!(windows))).find(|(end, _)| bytes.ends_with(end)).map(|(_, end)| end)
+}
+
+#[cfg(unix)]
+fn is_pipe(found: &Metadata) -> bool {
+    std::os::unix::fs::FileTypeExt::is_fifo(&found.file_type())
+}
+
+#[cfg(not(unix))]
+fn is_pipe(_: &Metadata) -> bool {
+    false
 }
 
 fn new_file_in(directory: &Path, old: Option<&Metadata>) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".weekender-").suffix(".part");
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let file = builder.tempfile_in(directory)?;
+    let file = leftovers::create_in(directory, &mut builder)?;
     if let Some(old) = old {
         file.as_file().set_permissions(old.permissions())?;
     }
     Ok(file)
 }
 
-fn try_replace(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
+fn try_write(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
+) -> io::Result<Option<(NamedTempFile, PathBuf)>> {
     let fill = |file: &File| {
         let mut writer = BufWriter::with_capacity(1 << 16, file);
         write(&mut writer)?;
         writer.flush()
     };
     match Target::find(path)? {
-        Target::Device(path) => fill(&OpenOptions::new().write(true).open(path)?),
+        Target::Device { path, .. } => {
+            fill(&OpenOptions::new().write(true).open(path)?)?;
+            Ok(None)
+        }
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old.as_ref())?;
             fill(new.as_file())?;
             // Without it, a machine that stops after the rename may come back with an empty file.
             new.as_file().sync_data()?;
-            new.persist(path).map(drop).map_err(|error| error.error)
+            Ok(Some((new, path)))
         }
     }
 }

@@ -72,7 +72,10 @@ pub enum CpuError {
         available: Vec<usize>,
     },
     /// Threads could not be started.
-    #[error("cannot start {threads} threads: {reason}; choose fewer with --threads")]
+    #[error(
+        "cannot start {threads} thread{}: {reason}; choose fewer with --threads, or allow more (ulimit -u, ulimit -v)",
+        if *threads == 1 { "" } else { "s" }
+    )]
     Threads {
         /// Asked for; 0 is one a core.
         threads: usize,
@@ -177,7 +180,11 @@ impl CpuRenderer {
                 tiles_to_panic: None,
                 messages: Vec::new(),
             })
-            .map_err(|error| CpuError::Threads { threads, reason: error.to_string() })
+            .map_err(|error| {
+                let cores = std::thread::available_parallelism().map_or(1, usize::from);
+                let threads = if threads == 0 { cores } else { threads };
+                CpuError::Threads { threads, reason: error.to_string() }
+            })
     }
 }
 

@@ -209,17 +209,17 @@ pub fn anchored_root<L: Lanes>(
     }
 }
 
-/// The book's own arithmetic with 0 as the smallest distance and no memory of the surface left: what the
-/// *shadow acne* stage shows.
+/// The book's own quadratic, without memory of the surface left: the nearer root that is beyond `t_min`.
+/// (Sections 5.1, 6.2 and 9.3.)
 #[inline(always)]
-pub fn acne_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
+pub fn book_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>, t_min: L::F) -> L::Key {
     let f = sphere.center - rays.origin;
     let a = dot::<L>(rays.direction, rays.direction);
     let h = dot::<L>(rays.direction, f);
     let c = dot::<L>(f, f) - sphere.radius2;
     let s = L::sqrt(h * h - a * c);
-    let positive = |t: L::F| L::key(-L::select(L::lt(l.constant(0.0), t), t, l.constant(-1.0)));
-    L::min_key(positive((h - s) / a), positive((h + s) / a))
+    let beyond = |t: L::F| L::key(-L::select(L::lt(t_min, t), t, l.constant(-1.0)));
+    L::min_key(beyond((h - s) / a), beyond((h + s) / a))
 }
 
 /// A point on a surface.
@@ -245,6 +245,13 @@ pub fn surface_point<L: Lanes>(
     let w = mul_add3::<L>(rays.direction, t, rays.origin - center).scale(curvature);
     let outward = w.scale(L::neg_mul_add(l.constant(0.5), dot::<L>(w, w), l.constant(1.5)));
     SurfacePoint { position: mul_add3::<L>(outward, radius, center), outward }
+}
+
+/// The same by the book's own arithmetic: the point stays where rounding leaves it. (Section 6.2.)
+#[inline(always)]
+pub fn book_point<L: Lanes>(rays: &Rays<L>, t: L::F, center: V3<L::F>, curvature: L::F) -> SurfacePoint<L> {
+    let position = mul_add3::<L>(rays.direction, t, rays.origin);
+    SurfacePoint { position, outward: (position - center).scale(curvature) }
 }
 
 /// The same on a sphere so far away that `t` is rounded by a part of its radius: the way from the centre to the ray,

@@ -51,8 +51,8 @@ pub struct Overrides {
     pub antialiasing: bool,
     /// Rays are traced at all.
     pub rays: bool,
-    /// The book's lower bound of 0.
-    pub acne: bool,
+    /// How rays leave the surface that they start on.
+    pub surface: Surface,
     /// Lambertian surfaces send light evenly over the hemisphere.
     pub hemisphere: bool,
     /// The reflectance is that of the picture's strip.
@@ -64,12 +64,14 @@ pub struct Overrides {
 }
 
 /// The value of an override constant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Constant {
     /// A `bool`.
     Flag(bool),
     /// A `u32`.
     Number(u32),
+    /// An `f32`.
+    Real(f64),
 }
 
 impl Constant {
@@ -78,6 +80,7 @@ impl Constant {
         match self {
             Constant::Flag(flag) => f64::from(u8::from(flag)),
             Constant::Number(number) => f64::from(number),
+            Constant::Real(real) => real,
         }
     }
 }
@@ -107,7 +110,7 @@ impl Default for Overrides {
             sobol: true,
             antialiasing: true,
             rays: true,
-            acne: false,
+            surface: Surface::Exact,
             hemisphere: false,
             reflectance_strips: false,
             shading: Shading::Path,
@@ -146,7 +149,7 @@ impl Overrides {
             rays: features.rays,
             sobol: job.settings().sampler == SamplerKind::Sobol,
             antialiasing: rules.antialiasing,
-            acne: rules.surface == Surface::Acne,
+            surface: rules.surface,
             hemisphere: rules.diffuse == Diffuse::Hemisphere,
             reflectance_strips: rules.reflectance_strips,
             shading: rules.shading,
@@ -165,7 +168,7 @@ impl Overrides {
             rays: needed.rays,
             sobol: needed.sobol,
             antialiasing: needed.antialiasing,
-            acne: needed.acne,
+            surface: needed.surface,
             hemisphere: needed.hemisphere,
             reflectance_strips: needed.reflectance_strips,
             shading: needed.shading,
@@ -176,7 +179,7 @@ impl Overrides {
 
     /// Names in the shader and values.
     pub fn constants(&self) -> Vec<(&'static str, Constant)> {
-        use Constant::{Flag, Number};
+        use Constant::{Flag, Number, Real};
         vec![
             ("LAMBERTIAN", Flag(self.lambertian)),
             ("METAL", Flag(self.metal)),
@@ -199,7 +202,8 @@ impl Overrides {
             ("SOBOL", Flag(self.sobol)),
             ("ANTIALIASING", Flag(self.antialiasing)),
             ("RAYS", Flag(self.rays)),
-            ("ACNE", Flag(self.acne)),
+            ("BOOK_ARITHMETIC", Flag(self.surface != Surface::Exact)),
+            ("BOOK_T_MIN", Real(self.surface.smallest_distance().unwrap_or(0.0))),
             ("HEMISPHERE", Flag(self.hemisphere)),
             ("REFLECTANCE_STRIPS", Flag(self.reflectance_strips)),
             ("SHADING", Number(shading_tag(self.shading))),
@@ -223,7 +227,8 @@ impl Overrides {
             (self.steep_glass, "steep glass"),
             (self.hierarchy && !self.cwbvh, "hierarchy"),
             (self.hierarchy && self.cwbvh, "compressed hierarchy"),
-            (self.acne, "acne"),
+            (self.surface == Surface::Acne, "acne"),
+            (self.surface == Surface::Book, "the book's arithmetic"),
             (self.hemisphere, "hemisphere"),
             (self.reflectance_strips, "strips"),
         ]

@@ -86,7 +86,7 @@ pub enum Probe {
     Sobol,
     /// `unit_float` and `sin_cos_turns`.
     SinCos,
-    /// `near_root`, `nearest_root`, `acne_root` and `signed_root`.
+    /// `near_root`, `nearest_root`, `book_root` and `signed_root`.
     Roots,
     /// `anchored_root` and `anchored_surface_point`.
     Anchored,
@@ -192,6 +192,7 @@ pub fn prelude() -> String {
         let _ = match value {
             Constant::Flag(flag) => writeln!(text, "override {name}: bool = {flag};"),
             Constant::Number(number) => writeln!(text, "override {name}: u32 = {number}u;"),
+            Constant::Real(real) => writeln!(text, "override {name}: f32 = {real:?}f;"),
         };
     }
     text.push_str("override PROBE: u32 = 0u;\noverride RECORD: bool = false;\n");

@@ -13,12 +13,13 @@ mod table;
 use crate::backends;
 use crate::chart;
 use crate::cli::{JsonTarget, ReferenceChoice, ReportOptions};
+use crate::console;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::film::{Film, check_writable, write_text};
 use crate::interrupt::Interrupt;
 use crate::recipe::{Recipe, plain_name};
 use crate::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
-use crate::terminal::write_json;
+use crate::terminal::{print, write_json};
 use anyhow::{Context, Result};
 use calibration::Calibration;
 use contender::{Contender, Limits};
@@ -51,7 +52,7 @@ pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
     let written = if report.data.runs.is_empty() { Ok(()) } else { report.write() };
     outcome.and(written).map_err(Failure::Run)?;
     if report.interrupt.is_set() {
-        eprintln!("interrupted; the same command goes on from here");
+        console::note("interrupted; the same command goes on from here");
         return Ok(ExitCode::from(INTERRUPTED));
     }
     Ok(ExitCode::SUCCESS)
@@ -232,11 +233,10 @@ impl<'a> Report<'a> {
         for name in ["error-vs-time.png", "error-vs-time.svg"] {
             chart::save(&out.join(name), &figure)?;
         }
-        println!(
-            "wrote report.md, report.csv, report.json, error-vs-time.png and .svg into {}",
+        print(&format!(
+            "wrote report.md, report.csv, report.json, error-vs-time.png and .svg into {}\n",
             out.display()
-        );
-        Ok(())
+        ))
     }
 }
 

@@ -98,6 +98,23 @@ pub enum Surface {
     /// The book's quadratic with 0 as the smallest distance, which finds the surface again by rounding.
     /// (Section 9.3.)
     Acne,
+    /// The book's arithmetic as it ends: the quadratic with [`BOOK_T_MIN`] as the smallest distance. (Section 9.3.)
+    Book,
+}
+
+/// The distance within which the book finds no surface, scene units. (Section 9.3.)
+pub const BOOK_T_MIN: f64 = 0.001;
+
+impl Surface {
+    /// The distance within which the book's arithmetic finds no surface, scene units; `None` where ours is in force,
+    /// which needs none.
+    pub fn smallest_distance(self) -> Option<f64> {
+        match self {
+            Surface::Exact => None,
+            Surface::Acne => Some(0.0),
+            Surface::Book => Some(BOOK_T_MIN),
+        }
+    }
 }
 
 /// How linear values become the picture's bytes.

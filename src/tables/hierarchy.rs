@@ -72,10 +72,19 @@ impl<'scene, 'origin> Bounded<'scene, 'origin> {
     }
 }
 
+impl Bounded<'_, '_> {
+    pub(super) fn center(&self) -> DVec3 {
+        self.sphere.center - *self.origin
+    }
+
+    pub(super) fn radius(&self) -> f64 {
+        self.sphere.radius
+    }
+}
+
 impl Boundable for Bounded<'_, '_> {
     fn aabb(&self) -> Aabb {
-        let Sphere { center, radius, .. } = *self.sphere;
-        let center = center - *self.origin;
+        let (center, radius) = (self.center(), self.radius());
         let unit = f64::from(f32::EPSILON) / 2.0;
         let reach = radius + ROUNDING_UNITS * unit * (radius + center.abs().max_element());
         let below = |x: f64| (x as f32).next_down();

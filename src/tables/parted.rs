@@ -2,6 +2,8 @@
 //! crowds about one place, where obvhs takes a time that grows with the square of their number and gives a tree as
 //! deep as there are spheres.
 
+use super::hierarchy::Bounded;
+use glam::DVec3;
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -32,35 +34,31 @@ struct Open {
     depth: usize,
 }
 
-/// Whether so many of the boxes lie within each other that clustering them would take long.
-pub(super) fn is_crowded(spheres: &[impl Boundable + Sync]) -> bool {
+/// Whether so many of the spheres lie within each other that clustering them would take long.
+pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
     if spheres.len() < FEW_SPHERES {
         return false;
     }
-    let union = |a: Aabb, b: Aabb| a.union(&b);
-    let whole = spheres.par_iter().map(Boundable::aabb).reduce(Aabb::empty, union);
-    let size = whole.diagonal().as_dvec3().max_element().max(f64::MIN_POSITIVE);
+    let lowest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::INFINITY, DVec3::min);
+    let highest = spheres.par_iter().map(Bounded::center).reduce(|| DVec3::NEG_INFINITY, DVec3::max);
+    let size = (highest - lowest).max_element().max(f64::MIN_POSITIVE);
     let mut order: Vec<(u64, u32)> = spheres
         .par_iter()
         .enumerate()
-        .map(|(index, sphere)| {
-            let place = (sphere.aabb().center() - whole.min).as_dvec3() / size;
-            (morton_code(place.to_array()), index as u32)
-        })
+        .map(|(index, sphere)| (morton_code(((sphere.center() - lowest) / size).to_array()), index as u32))
         .collect();
     order.par_sort_unstable();
     let (mut nested, mut run) = (0, 0);
-    let mut last = Aabb::empty();
-    for (_, index) in order {
-        let next = spheres[index as usize].aabb();
-        let both = last.union(&next);
-        if both == last || both == next {
+    for pair in order.windows(2) {
+        let [a, b] = [0, 1].map(|i| &spheres[pair[i].1 as usize]);
+        // Within the box is enough.
+        let apart = (a.center() - b.center()).abs().max_element();
+        if apart <= (a.radius() - b.radius()).abs() {
             run += 1;
             nested += usize::from(run >= NESTED_RUN);
         } else {
             run = 0;
         }
-        last = next;
     }
     nested >= CROWD
 }

@@ -1,6 +1,7 @@
 //! Progress on standard error: a bar on a terminal, now and then a line elsewhere, or nothing.
 
 use crate::cli::ProgressChoice;
+use crate::console;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
 use std::time::{Duration, Instant};
@@ -32,7 +33,7 @@ impl Display {
                 if let Ok(style) = ProgressStyle::with_template(template) {
                     bar.set_style(style.progress_chars("=> "));
                 }
-                bar.set_prefix(prefix.to_owned());
+                bar.set_prefix(console::printable(prefix).into_owned());
                 Display::Bar(bar)
             }
         }
@@ -56,11 +57,11 @@ impl Display {
         match self {
             Display::Bar(bar) => {
                 bar.set_position(position);
-                bar.set_message(words());
+                bar.set_message(console::printable(&words()).into_owned());
             }
             Display::Lines { next, interval } => {
                 *next = Instant::now() + *interval;
-                eprintln!("{}", words());
+                console::note(&words());
             }
             Display::Off => {}
         }
@@ -69,8 +70,16 @@ impl Display {
     /// Says something that must be read, whatever the display.
     pub fn say(&self, message: &str) {
         match self {
-            Display::Bar(bar) => bar.suspend(|| eprintln!("{message}")),
-            Display::Lines { .. } | Display::Off => eprintln!("{message}"),
+            Display::Bar(bar) => bar.suspend(|| console::note(message)),
+            Display::Lines { .. } | Display::Off => console::note(message),
+        }
+    }
+
+    /// Lets `print` write to the terminal, above the bar.
+    pub fn above<T>(&self, print: impl FnOnce() -> T) -> T {
+        match self {
+            Display::Bar(bar) => bar.suspend(print),
+            Display::Lines { .. } | Display::Off => print(),
         }
     }
 

@@ -60,7 +60,7 @@ fn every_command_is_found_in_the_palette() {
 #[test]
 fn every_menu_lists_its_commands() {
     let mut harness = open(SMALL);
-    for menu in ["File", "Edit", "View", "Render", "Help"] {
+    for menu in ["File", "Edit", "View", "Render", "Extreme scenes", "Help"] {
         control(&harness, menu).click();
         harness.run_steps(3);
         for command in Command::all().into_iter().filter(|command| command.group().name() == menu) {
@@ -96,7 +96,8 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         }
         Command::AddBookmark => remembered.bookmarks.len() == 1,
         Command::Show(show) => window.show() == show,
-        Command::Wipe | Command::WipeDifference => window.is_comparing(),
+        Command::Wipe | Command::WipeDifference | Command::BookArithmetic => window.is_comparing(),
+        Command::Extreme(case) => document.case() == Some(case),
         Command::Panels => !remembered.has_panels,
         Command::Controls => !remembered.has_controls,
         Command::Info => !remembered.has_info,

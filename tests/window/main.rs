@@ -4,6 +4,7 @@
 mod commands;
 mod common;
 mod device;
+mod extreme;
 mod files;
 mod panels;
 mod plot;

@@ -26,7 +26,7 @@ pub(super) fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
         .tracer
         .as_mut()
         .and_then(|tracer| tracer.shown_mut())
-        .map(|shown| (shown.texture.id(context, options(shown.divisor, times)), shown.document.stage()));
+        .map(|shown| (shown.texture.id(context, options(shown.divisor, times)), shown.document.title()));
     let layer = window.viewport.show.layer().and_then(|layer| window.layers.shown_mut(layer));
     let shown = match layer {
         Some(layer) => Some((layer.texture.id(context, options(layer.divisor, times)), layer.divisor)),
@@ -44,9 +44,9 @@ pub(super) fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
     let divisor = shown.map_or(1, |(_, divisor)| divisor);
     let font = TextStyle::Body.resolve(ui.style());
     if window.compare.mode == Some(Mode::Wipe)
-        && let Some((texture, stage)) = other
+        && let Some((texture, title)) = other
     {
-        paint_wipe(window, ui, &painter, rect, texture, stage, &font);
+        paint_wipe(window, ui, &painter, rect, texture, &title, &font);
     }
     let is_difference = window.compare.mode == Some(Mode::Difference);
     let scale = if is_difference { Some(HeatScale::ERROR) } else { window.viewport.show.scale() };
@@ -102,7 +102,7 @@ fn paint_wipe(
     painter: &egui::Painter,
     rect: Rect,
     texture: egui::TextureId,
-    stage: Option<&'static crate::stages::Stage>,
+    theirs: &str,
     font: &FontId,
 ) {
     let share = window.compare.divider;
@@ -120,18 +120,12 @@ fn paint_wipe(
         let points = vec![tip, back + vec2(0.0, -3.5), back + vec2(0.0, 3.5)];
         painter.add(egui::Shape::convex_polygon(points, Color32::from_gray(60), Stroke::NONE));
     }
-    let name = |stage: &crate::stages::Stage| format!("{} {}", stage.section, stage.title);
     let y = rect.top().max(painter.clip_rect().top()) + 8.0;
     // Names that would reach beyond the picture stay within it.
     let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
-    if let Some(mine) = window.document.stage() {
-        badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, &name(mine), font);
-    }
-    if let Some(theirs) = stage {
-        let is_of_cameras = window.document.stage().is_some_and(|mine| window.compare.is_of_cameras(mine));
-        let whose = if is_of_cameras { ", with its own camera" } else { "" };
-        badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, &format!("{}{whose}", name(theirs)), font);
-    }
+    badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, &window.document.title(), font);
+    let whose = if window.compare.has_other_camera(&window.document) { ", with its own camera" } else { "" };
+    badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, &format!("{theirs}{whose}"), font);
 }
 
 /// The colours of a heat map with what they mean.

@@ -18,7 +18,7 @@ use super::bvh::{EMPTY_STACK, Stack, traverse};
 use super::camera::{lens_rays, pinhole_rays, screen};
 use super::lanes::{Lanes, V3, dot, mul_add3, select3};
 use super::material::{Incidence, Scatter, Surface, hemisphere, refracted, scatter};
-use super::sphere::{EYE, NONE, Nearest, Rays, Spheres, acne_root, anchored_root, near_root, nearest_root};
+use super::sphere::{EYE, NONE, Nearest, Rays, Spheres, anchored_root, book_root, near_root, nearest_root};
 use super::wide::WideTables;
 use super::work::{LaneBlocks, TileStats, Work};
 use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
@@ -149,10 +149,12 @@ fn intersect<L: Lanes, const NEEDS: u32>(
     stats.rays += u64::from(L::bits(active).count_ones());
     let (rays, tables) = (&packet.rays, &wide.tables);
     let mut nearest = Nearest::nothing(l);
-    if NEEDS & needs::RULES != 0 && tables.rules.surface == SurfaceRule::Acne {
+    let book_t_min = if NEEDS & needs::RULES != 0 { tables.rules.surface.smallest_distance() } else { None };
+    if let Some(t_min) = book_t_min {
+        let t_min = l.constant(t_min);
         for sphere in wide.opaque.iter().chain(&wide.two_root) {
             let sphere = Spheres::load(l, sphere);
-            nearest.take(acne_root(l, rays, &sphere), sphere.number);
+            nearest.take(book_root(l, rays, &sphere, t_min), sphere.number);
         }
     } else {
         for sphere in &wide.opaque {
@@ -254,13 +256,10 @@ fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet:
     let rows = Rows::of(l, tables, hit);
     let [red, green, blue, weight] = rows.columns(l, wide, 1);
     let [_, index, inverse_index, normal_share] = rows.columns(l, wide, 2);
-    let mut point = hit_points::<L, NEEDS>(l, wide, packet, &rows);
+    let point = hit_points::<L, NEEDS>(l, wide, packet, &rows);
     let outward_cosine = dot::<L>(direction, point.outward);
     let mut front = L::lt(outward_cosine, zero);
-    if with_rules && rules.surface == SurfaceRule::Acne {
-        let t = packet.nearest.distance();
-        point.position = mul_add3::<L>(direction, t, packet.rays.origin);
-    } else {
+    if !with_rules || rules.surface == SurfaceRule::Exact {
         front = front & !L::eq_u(packet.rays.inside, hit);
     }
     if NEEDS & needs::EXTREMES != 0 && wide.is_eye_in_cavity {

@@ -3,9 +3,10 @@
 use super::{Packet, needs};
 use crate::render_cpu::lanes::{Lanes, V3, WideU, select3};
 use crate::render_cpu::sphere::{
-    NONE, SurfacePoint, anchored_surface_point, speck_surface_point, surface_point,
+    NONE, SurfacePoint, anchored_surface_point, book_point, speck_surface_point, surface_point,
 };
 use crate::render_cpu::wide::WideTables;
+use crate::stages::Surface;
 use crate::tables::Tables;
 
 /// Which row of the table each lane looks up.
@@ -60,6 +61,9 @@ pub(super) fn hit_points<L: Lanes, const NEEDS: u32>(
     let [radius, ..] = rows.columns(l, wide, 2);
     let reference = V3 { x: cx, y: cy, z: cz };
     let t = packet.nearest.distance();
+    if NEEDS & needs::RULES != 0 && wide.tables.rules.surface != Surface::Exact {
+        return book_point(&packet.rays, t, reference, curvature);
+    }
     if NEEDS & needs::EXTREMES == 0 || !wide.is_extreme {
         return surface_point(l, &packet.rays, t, reference, curvature, radius);
     }

@@ -1,0 +1,241 @@
+//! The film, written now and then while the render goes on: what ends the program without warning costs no more than
+//! the time since.
+
+use super::files::SharedPlace;
+use super::resuming::same_job;
+use crate::cli::RenderOptions;
+use crate::describe::describe;
+use crate::film::Film;
+use crate::progressive::{Progressive, Status};
+use std::sync::Arc;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread::{Builder, JoinHandle};
+use std::time::{Duration, Instant};
+
+/// Has the film written at intervals. The tracer waits only while the film is copied, or, where there is no room for
+/// a copy, while it is written.
+pub(super) struct Keeper {
+    every: Duration,
+    last: Instant,
+    /// Samples of the last copy that was asked for, while it is under way and after.
+    asked: u64,
+    is_under_way: bool,
+    writer: Arc<Writer>,
+    snapshots: Option<Sender<Snapshot>>,
+    thread: Option<JoinHandle<()>>,
+    outcomes: Receiver<Outcome>,
+    /// Samples that the file holds.
+    kept: Option<u64>,
+}
+
+struct Snapshot {
+    film: Film,
+    status: Status,
+}
+
+/// What became of a writing.
+struct Outcome {
+    samples: Option<u64>,
+    words: Option<String>,
+}
+
+/// What a writing needs besides film and status.
+struct Writer {
+    place: SharedPlace,
+    render: RenderOptions,
+    /// Samples per pixel that the film began with.
+    held_before: u64,
+    seconds_before: Option<f64>,
+    outcomes: Sender<Outcome>,
+}
+
+impl Writer {
+    fn write(&self, film: &Film, status: &Status) {
+        let status = status_of(film, status, self.held_before);
+        let RenderOptions { recipe, stage, .. } = &self.render;
+        let description = describe(recipe, *stage, film, &status, self.seconds_before);
+        let outcome = match self.place.lock().save(film, &description, &same_job) {
+            Ok(saved) => Outcome { samples: Some(film.sample_count()), words: saved.note },
+            Err(error) => {
+                let words = format!("{error}; the render goes on, and it is tried again");
+                Outcome { samples: None, words: Some(words) }
+            }
+        };
+        // Nobody waits for it any more where the render is over.
+        let _ = self.outcomes.send(outcome);
+    }
+}
+
+impl Keeper {
+    /// Keeps the film of `render` in `place`. `held_before` are the samples per pixel that it begins with.
+    pub(super) fn new(
+        render: &RenderOptions,
+        place: SharedPlace,
+        held_before: u64,
+        seconds_before: Option<f64>,
+    ) -> Keeper {
+        let (sender, outcomes) = mpsc::channel();
+        let writer =
+            Arc::new(Writer { place, render: render.clone(), held_before, seconds_before, outcomes: sender });
+        let (snapshots, received) = mpsc::channel::<Snapshot>();
+        let own = Arc::clone(&writer);
+        let write = move || {
+            for Snapshot { film, status } in received {
+                own.write(&film, &status);
+            }
+        };
+        // Without a thread the tracer writes, and waits for it.
+        let thread = Builder::new().name("keep".to_owned()).spawn(write).ok();
+        Keeper {
+            every: render.every,
+            last: Instant::now(),
+            asked: held_before,
+            is_under_way: false,
+            writer,
+            snapshots: thread.is_some().then_some(snapshots),
+            thread,
+            outcomes,
+            kept: None,
+        }
+    }
+
+    /// Has the film written if it is time. Returns what a user should know of the last writing.
+    pub(super) fn look(&mut self, progressive: &Progressive, status: &Status) -> Option<String> {
+        let words = self.outcomes.try_recv().ok().and_then(|outcome| self.note(outcome));
+        let is_due = !self.is_under_way && self.last.elapsed() >= self.every;
+        if is_due && status.samples_per_pixel > self.asked {
+            (self.is_under_way, self.asked) = (true, status.samples_per_pixel);
+            let (writer, snapshots, status) =
+                (Arc::clone(&self.writer), self.snapshots.clone(), status.clone());
+            progressive.inspect(move |film| match (copy(film), snapshots) {
+                (Some(film), Some(snapshots)) => {
+                    // The writer lives as long as the render.
+                    let _ = snapshots.send(Snapshot { film, status });
+                }
+                _ => writer.write(film, &status),
+            });
+        }
+        words
+    }
+
+    /// Waits for the writing that is under way.
+    pub(super) fn finish(&mut self) {
+        self.snapshots = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic there has been told; the film is written once more in any case.
+            let _ = thread.join();
+        }
+        while let Ok(outcome) = self.outcomes.try_recv() {
+            self.note(outcome);
+        }
+    }
+
+    /// Samples per pixel that the file holds, if it has been written.
+    pub(super) fn kept(&self) -> Option<u64> {
+        self.kept
+    }
+
+    fn note(&mut self, outcome: Outcome) -> Option<String> {
+        (self.is_under_way, self.last) = (false, Instant::now());
+        match outcome.samples {
+            Some(samples) => self.kept = Some(samples),
+            // It was not written, so that it is worth trying even without new samples.
+            None => self.asked = 0,
+        }
+        outcome.words
+    }
+}
+
+/// A copy, if there is room for it.
+fn copy(film: &Film) -> Option<Film> {
+    let mut copy = Film::try_new(film.width(), film.height(), film.halves().len()).ok()?;
+    for (to, from) in copy.halves_mut().iter_mut().zip(film.halves()) {
+        to.copy_from_slice(from);
+    }
+    let mut rejected = film.rejected();
+    for range in film.samples().iter() {
+        copy.record(range, std::mem::take(&mut rejected)).ok()?;
+    }
+    Some(copy)
+}
+
+/// The status as it was when the film had its samples: it is read some passes before or after the copy.
+fn status_of(film: &Film, status: &Status, held_before: u64) -> Status {
+    let mut status = status.clone();
+    let added = film.sample_count().saturating_sub(held_before);
+    let told: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
+    if told > 0 && told != added {
+        status.trace = status.trace.mul_f64(added as f64 / told as f64);
+        let at_work =
+            status.contributions.iter().position(|part| Some(&part.backend) == status.backend.as_ref());
+        let at_work = at_work.unwrap_or(status.contributions.len() - 1);
+        let count = &mut status.contributions[at_work].samples_per_pixel;
+        *count = (*count + added).saturating_sub(told);
+    }
+    status
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::files::Places;
+    use crate::batch::tests::options;
+    use crate::film::{PixelSum, checkpoint};
+    use crate::progressive::{Contribution, Plan, Work};
+    use crate::render::BackendInfo;
+
+    #[test]
+    fn the_film_is_on_disk_while_the_render_goes_on() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("film.exr");
+        let render = options(&["--checkpoint", path.to_str().unwrap(), "--every", "0.1s"]);
+        let place = Places::of(&render).checkpoint.unwrap();
+        let mut keeper = Keeper::new(&render, place, 0, Some(0.0));
+        let mut progressive = Progressive::spawn().unwrap();
+        let backend = crate::backends::BackendChoice::Cpu(crate::render_cpu::CpuOptions::default());
+        progressive.start(Work::new(render.job.clone(), backend, Plan::endless()));
+        let mut seen = Vec::new();
+        let begin = Instant::now();
+        while seen.len() < 3 && begin.elapsed() < Duration::from_secs(60) {
+            let status = progressive.wait(Duration::from_millis(20));
+            assert_eq!(keeper.look(&progressive, &status), None);
+            if let Some(kept) = keeper.kept()
+                && seen.last() != Some(&kept)
+            {
+                seen.push(kept);
+                let film = checkpoint::load(&path).unwrap().film;
+                assert!(film.sample_count() >= kept && film.error().is_some());
+            }
+        }
+        assert_eq!(seen.len(), 3, "{seen:?}");
+        drop(progressive);
+        keeper.finish();
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_copy_is_the_film() {
+        let mut film = Film::new(3, 2, 2);
+        film.halves_mut()[1][4] = PixelSum([1, 2, 3]);
+        film.record(0..4, 1).unwrap();
+        film.record(8..10, 2).unwrap();
+        assert!(copy(&film).unwrap() == film);
+    }
+
+    #[test]
+    fn the_status_fits_the_film() {
+        let info = |lanes| BackendInfo { name: "cpu", device: String::new(), lanes, threads: 1 };
+        let part = |lanes, samples_per_pixel| Contribution { backend: info(lanes), samples_per_pixel };
+        let status = Status {
+            backend: Some(info(8)),
+            contributions: vec![part(8, 30), part(4, 10)],
+            trace: Duration::from_secs(40),
+            ..Status::default()
+        };
+        let mut film = Film::new(1, 1, 1);
+        film.record(0..70, 0).unwrap();
+        let fitted = status_of(&film, &status, 20);
+        assert_eq!(fitted.contributions, [part(8, 40), part(4, 10)]);
+        assert_eq!(fitted.trace, Duration::from_secs(50));
+    }
+}

@@ -1,0 +1,139 @@
+//! Samples whose files cannot be written, kept wherever there is room.
+
+use crate::cli::RenderOptions;
+use crate::film::{Description, Film, checkpoint, key};
+use crate::recipe::plain_name;
+use std::env;
+use std::path::{Path, PathBuf};
+
+/// Most characters of the picture's name in the file's.
+const NAME_LENGTH: usize = 60;
+
+/// The last number that a free name is looked for with.
+const NAME_LIMIT: u32 = 1000;
+
+/// Keeps the film at the first place that takes it, and says which.
+///
+/// # Errors
+/// What is lost, and why at each place.
+pub(super) fn rescue(
+    render: &RenderOptions,
+    film: &Film,
+    description: &Description,
+) -> Result<PathBuf, String> {
+    if let Some(state) = state_directory() {
+        // That it cannot be made shows when the file cannot be.
+        let _ = std::fs::create_dir_all(state);
+    }
+    keep_in(&places(render), render, film, description)
+}
+
+fn keep_in(
+    places: &[PathBuf],
+    render: &RenderOptions,
+    film: &Film,
+    description: &Description,
+) -> Result<PathBuf, String> {
+    let mut reasons = Vec::new();
+    for place in places {
+        let Some(path) = free_name(place, &render.recipe.name) else {
+            reasons.push(format!("{} (every name is taken)", place.display()));
+            continue;
+        };
+        match checkpoint::save(&path, film, description) {
+            Ok(()) => return Ok(path),
+            Err(error) => reasons.push(format!("{} ({})", place.display(), error.reason)),
+        }
+    }
+    let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse::<f64>().ok());
+    let seconds = seconds.map_or_else(String::new, |seconds| format!(", {seconds:.0} s of tracing"));
+    Err(format!(
+        "the samples are lost ({} per pixel{seconds}): they could not be kept in {} either",
+        film.sample_count(),
+        reasons.join(", ")
+    ))
+}
+
+/// Directories to be tried in turn: beside what could not be written, for temporary files, for what programs keep,
+/// the user's own.
+fn places(render: &RenderOptions) -> Vec<PathBuf> {
+    let beside = |path: &Path| match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    let all = [
+        Some(beside(&render.out)),
+        render.checkpoint.as_deref().map(beside),
+        Some(env::temp_dir()),
+        state_directory(),
+        home(),
+    ];
+    let mut places: Vec<PathBuf> = Vec::new();
+    for place in all.into_iter().flatten() {
+        if !places.contains(&place) {
+            places.push(place);
+        }
+    }
+    places
+}
+
+/// Where programs keep what should outlast them.
+fn state_directory() -> Option<PathBuf> {
+    let state = env::var_os("XDG_STATE_HOME").map(PathBuf::from).filter(|state| state.is_absolute());
+    Some(state.or_else(|| Some(home()?.join(".local/state")))?.join("weekender"))
+}
+
+fn home() -> Option<PathBuf> {
+    env::home_dir().filter(|home| home.is_absolute())
+}
+
+fn free_name(directory: &Path, picture: &str) -> Option<PathBuf> {
+    let picture: String = plain_name(picture).chars().take(NAME_LENGTH).collect();
+    let process = std::process::id();
+    let names = (1..NAME_LIMIT).map(|number| match number {
+        1 => format!("weekender-{picture}-{process}.exr"),
+        number => format!("weekender-{picture}-{process}-{number}.exr"),
+    });
+    names.map(|name| directory.join(name)).find(|path| path.symlink_metadata().is_err())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::tests::options;
+
+    #[test]
+    fn the_first_place_that_takes_it_has_it_and_else_it_is_said_what_is_lost() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        std::fs::write(at("file"), "").unwrap();
+        std::fs::create_dir_all(at("made/deep")).unwrap();
+        let render = options(&[]);
+        let mut film = render.job.new_film();
+        film.record(0..6, 0).unwrap();
+        let mut description = Description::new("r");
+        description.set(key::SECONDS, 7.2);
+        let keep = |places: &[PathBuf]| keep_in(places, &render, &film, &description);
+
+        let path = keep(&[at("file"), at("made/deep"), at("unused")]).unwrap();
+        assert_eq!(path.parent(), Some(at("made/deep").as_path()));
+        assert!(checkpoint::load(&path).unwrap().film == film);
+        assert!(!at("unused").exists());
+        let second = keep(&[at("made/deep")]).unwrap();
+        assert!(second != path && second.exists() && path.exists());
+
+        let lost = keep(&[at("file"), at("file/x")]).unwrap_err();
+        for part in ["lost", "6 per pixel", "7 s", "file/x"] {
+            assert!(lost.contains(part), "{lost} should say {part}");
+        }
+    }
+
+    #[test]
+    fn there_are_places_beside_the_output_and_elsewhere() {
+        let directory = tempfile::tempdir().unwrap();
+        let out = directory.path().join("x.png");
+        let places = places(&options(&["--out", out.to_str().unwrap(), "--checkpoint", "x.exr"]));
+        assert_eq!(places[..2], [directory.path().to_owned(), PathBuf::from(".")]);
+        assert!(places.contains(&env::temp_dir()), "{places:?}");
+    }
+}

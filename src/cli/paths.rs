@@ -1,0 +1,111 @@
+//! Whether the files of a command get in each other's way, found out before any is written.
+
+use super::sources::CliError;
+use super::values::JsonTarget;
+use crate::film::FileIdentity;
+use std::path::{Path, PathBuf};
+
+/// The files that a command reads and writes, each with the flag that names it.
+#[derive(Debug, Default)]
+pub(super) struct Paths {
+    inputs: Vec<Named>,
+    outputs: Vec<Named>,
+}
+
+#[derive(Debug)]
+struct Named {
+    flag: &'static str,
+    path: PathBuf,
+    identity: Option<FileIdentity>,
+}
+
+impl Named {
+    fn new(flag: &'static str, path: &Path) -> Named {
+        Named { flag, path: path.to_owned(), identity: FileIdentity::of(path) }
+    }
+
+    fn is_same_as(&self, other: &Named) -> bool {
+        self.identity
+            .as_ref()
+            .zip(other.identity.as_ref())
+            .is_some_and(|(mine, theirs)| mine.is_same_as(theirs))
+    }
+}
+
+impl Paths {
+    /// Adds a file that is read, if there is one.
+    pub fn read(mut self, flag: &'static str, path: Option<&Path>) -> Self {
+        self.inputs.extend(path.map(|path| Named::new(flag, path)));
+        self
+    }
+
+    /// Adds a file that is written, if there is one.
+    pub fn write(mut self, flag: &'static str, path: Option<&Path>) -> Self {
+        self.outputs.extend(path.map(|path| Named::new(flag, path)));
+        self
+    }
+
+    /// Adds a file for JSON that is written, if it is a file.
+    pub fn write_json(self, target: Option<&JsonTarget>) -> Self {
+        let path = match target {
+            Some(JsonTarget::File(path)) => Some(path.as_path()),
+            _ => None,
+        };
+        self.write("--json", path)
+    }
+
+    /// Refuses two outputs in one file, and an output in the place of an input. `may_replace` lists outputs and the
+    /// inputs whose content they take over.
+    pub fn check(&self, may_replace: &[(&str, &str)]) -> Result<(), CliError> {
+        for (index, second) in self.outputs.iter().enumerate() {
+            if let Some(first) = self.outputs[..index].iter().find(|first| first.is_same_as(second)) {
+                return Err(CliError::SameFile {
+                    first: first.flag,
+                    second: second.flag,
+                    path: first.path.clone(),
+                    other: second.path.clone(),
+                });
+            }
+        }
+        for output in &self.outputs {
+            let lost = self
+                .inputs
+                .iter()
+                .find(|input| input.is_same_as(output) && !may_replace.contains(&(output.flag, input.flag)));
+            if let Some(input) = lost {
+                return Err(CliError::Overwrites {
+                    output: output.flag,
+                    path: output.path.clone(),
+                    input: input.flag,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_an_input_that_lives_on_in_the_output_may_be_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let file = directory.path().join("g.exr");
+        std::fs::write(&file, "").unwrap();
+        let (file, again) = (file.as_path(), directory.path().join("./g.exr"));
+        let resumed = || Paths::default().read("--resume", Some(file));
+        let allowed = [("--checkpoint", "--resume")];
+        assert!(resumed().write("--checkpoint", Some(&again)).check(&allowed).is_ok());
+        let error = resumed().write("--json", Some(&again)).check(&allowed).unwrap_err().to_string();
+        assert!(error.contains("--json") && error.contains("--resume") && error.contains("g.exr"), "{error}");
+        let both = Paths::default().write("--out", Some(file)).write("--checkpoint", Some(&again));
+        assert!(matches!(both.check(&allowed), Err(CliError::SameFile { .. })));
+        let null = Path::new("/dev/null");
+        if null.exists() {
+            assert!(
+                Paths::default().write("--out", Some(null)).write("--json", Some(null)).check(&[]).is_ok()
+            );
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The flags of `weekender stress`, and what they mean together.
+
+use super::raw::ProgressChoice;
+use super::sources::CliError;
+use super::values::{JsonTarget, Levels, parse_levels, parse_seconds};
+use crate::backends::BackendError;
+use crate::render_cpu::{CpuError, Isa};
+use clap::Args;
+use std::path::PathBuf;
+use std::time::Duration;
+
+#[derive(Debug, Args)]
+pub(super) struct RawStress {
+    /// Only cases whose id has this in it, such as copies or moved/1e5
+    #[arg(long, value_name = "TEXT", help_heading = "What is run")]
+    pub filter: Option<String>,
+    /// Go on with random scenes for so many seconds; what fails is made as small as can be and saved as a scene file
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "What is run")]
+    pub search: Option<f64>,
+    /// Chooses the random scenes, 0 to 4294967295
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..), default_value = "0",
+          allow_hyphen_values = true, requires = "search", help_heading = "What is run")]
+    pub seed: u32,
+
+    /// Instruction levels with commas between them; auto: the best that fuses multiply and add and the best that
+    /// does not, all: all that this processor has
+    #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto",
+          help_heading = "Who is tested")]
+    pub isa: Levels,
+    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter [default: the
+    /// best there is, or none]
+    #[arg(long, value_name = "SUBSTRING", help_heading = "Who is tested")]
+    pub adapter: Option<String>,
+
+    /// Write all figures as JSON; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Files")]
+    pub json: Option<PathBuf>,
+    /// Write pictures, the table as Markdown and a page that shows them side by side into this directory; scenes that
+    /// a search finds go there, too [default for those: stress]
+    #[arg(long, value_name = "DIRECTORY", help_heading = "Files")]
+    pub out: Option<PathBuf>,
+    /// Progress on standard error; auto: when it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
+}
+
+/// What `weekender stress` is asked for.
+#[derive(Clone, Debug)]
+pub struct StressOptions {
+    /// What a case's id must contain.
+    pub filter: String,
+    /// How long to search among random scenes.
+    pub search: Option<Duration>,
+    /// Which random scenes.
+    pub seed: u32,
+    /// Instruction levels of the CPU.
+    pub levels: Vec<Isa>,
+    /// The GPU that was named.
+    pub adapter: Option<String>,
+    /// Where the figures go as JSON.
+    pub json: Option<JsonTarget>,
+    /// Where pictures and tables go.
+    pub out: Option<PathBuf>,
+    /// Whether progress is shown.
+    pub progress: ProgressChoice,
+}
+
+/// What `weekender stress` is asked for.
+pub(super) fn stress(raw: RawStress) -> Result<StressOptions, CliError> {
+    let available = Isa::available();
+    let best = |is_fused: bool| available.iter().copied().rfind(|isa| isa.is_fused() == is_fused);
+    let levels = match raw.isa {
+        Levels::Auto => best(true).into_iter().chain(best(false)).collect(),
+        Levels::All => available.iter().rev().copied().collect(),
+        Levels::Named(levels) => levels,
+    };
+    if let Some(isa) = levels.iter().copied().find(|isa| !available.contains(isa)) {
+        return Err(BackendError::Cpu(CpuError::Isa { isa, available }).into());
+    }
+    Ok(StressOptions {
+        filter: raw.filter.unwrap_or_default(),
+        search: raw.search.map(Duration::from_secs_f64),
+        seed: raw.seed,
+        levels,
+        adapter: raw.adapter,
+        json: raw.json.map(JsonTarget::from),
+        out: raw.out,
+        progress: raw.progress,
+    })
+}

@@ -1,0 +1,183 @@
+//! Which file a path leads to, and whether that file is still the one that was seen.
+
+use std::ffi::OsString;
+use std::fs::{self, Metadata};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+/// Most links that lead from one to the next.
+const LINK_LIMIT: usize = 40;
+
+/// The file that a path leads to, whether it is there or would be made. Two paths lead to one file if these are
+/// equal, whatever links, `./` or capitals they go by.
+#[derive(Clone, Debug)]
+pub struct FileIdentity {
+    /// The file, or the deepest directory on its path that is there.
+    base: Node,
+    /// Where that is.
+    place: PathBuf,
+    /// What does not exist yet on the path below it.
+    rest: Vec<OsString>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Node {
+    /// Device and number on it.
+    #[cfg(unix)]
+    Number(u64, u64),
+    /// The one path without links.
+    Path(PathBuf),
+}
+
+impl Node {
+    #[cfg(unix)]
+    fn of(_: &Path, found: &Metadata) -> Node {
+        use std::os::unix::fs::MetadataExt;
+        Node::Number(found.dev(), found.ino())
+    }
+
+    #[cfg(not(unix))]
+    fn of(path: &Path, _: &Metadata) -> Node {
+        Node::Path(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()))
+    }
+}
+
+impl FileIdentity {
+    /// Where `path` leads. `None` for devices and pipes, which any number of writers may share.
+    pub fn of(path: &Path) -> Option<FileIdentity> {
+        if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
+            return None;
+        }
+        let followed = follow_links(path).unwrap_or_else(|_| path.to_owned());
+        let mut at = std::path::absolute(&followed).unwrap_or(followed);
+        let mut rest = Vec::new();
+        loop {
+            if let Ok(found) = fs::metadata(&at) {
+                rest.reverse();
+                return Some(FileIdentity { base: Node::of(&at, &found), place: at, rest });
+            }
+            match (at.file_name().map(ToOwned::to_owned), at.parent()) {
+                (Some(name), Some(parent)) => {
+                    rest.push(name);
+                    at = parent.to_owned();
+                }
+                _ => {
+                    rest.reverse();
+                    return Some(FileIdentity { base: Node::Path(at.clone()), place: at, rest });
+                }
+            }
+        }
+    }
+
+    /// Whether both lead to one file. Two files that do not exist yet and differ in capitals alone are tried out.
+    pub fn is_same_as(&self, other: &FileIdentity) -> bool {
+        if self.base != other.base || self.rest.len() != other.rest.len() {
+            return false;
+        }
+        let folded = |names: &[OsString]| -> Vec<String> {
+            names.iter().map(|name| name.to_string_lossy().to_lowercase()).collect()
+        };
+        self.rest == other.rest || (folded(&self.rest) == folded(&other.rest) && ignores_case(&self.place))
+    }
+}
+
+/// Whether names in `directory` that differ in capitals alone are one name.
+fn ignores_case(directory: &Path) -> bool {
+    let Ok(probe) = super::leftovers::create_in(directory, &mut tempfile::Builder::new()) else {
+        return false;
+    };
+    let Some(name) = probe.path().file_name() else { return false };
+    directory.join(name.to_string_lossy().to_uppercase()).exists()
+}
+
+/// Where links at the end of `path` lead, also if nothing is there.
+///
+/// # Errors
+/// Links that cannot be read or lead round in a circle.
+pub(super) fn follow_links(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..LINK_LIMIT {
+        if !fs::symlink_metadata(&path).is_ok_and(|found| found.is_symlink()) {
+            return Ok(path);
+        }
+        let target = fs::read_link(&path)?;
+        path = path.parent().unwrap_or(Path::new("")).join(target);
+    }
+    Err(io::Error::new(ErrorKind::InvalidInput, "it is a link that leads back to itself"))
+}
+
+/// What tells a file from one that has taken its place, and from itself with other content: identity, length and
+/// time of change.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Stamp {
+    node: Node,
+    length: u64,
+    changed: Option<SystemTime>,
+}
+
+impl Stamp {
+    /// That of the regular file at `path`; `None` if there is none.
+    ///
+    /// # Errors
+    /// Files that cannot be looked at.
+    pub fn of(path: &Path) -> io::Result<Option<Stamp>> {
+        match fs::metadata(path) {
+            Ok(found) if found.is_file() => Ok(Some(Stamp::of_metadata(path, &found))),
+            Ok(_) => Ok(None),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn of_metadata(path: &Path, found: &Metadata) -> Stamp {
+        Stamp { node: Node::of(path, found), length: found.len(), changed: found.modified().ok() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn same(a: &Path, b: &Path) -> bool {
+        FileIdentity::of(a).unwrap().is_same_as(&FileIdentity::of(b).unwrap())
+    }
+
+    #[test]
+    fn one_file_by_many_names() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        fs::create_dir(at("d")).unwrap();
+        // Neither is there.
+        assert!(same(&at("new"), &at("./d/../new")) && same(&at("d/x"), &at("./d/./x")));
+        assert!(same(&at("gone/deeper/x"), &at("./gone/deeper/x")));
+        assert!(!same(&at("new"), &at("other")) && !same(&at("d/x"), &at("x")));
+        fs::write(at("new"), "").unwrap();
+        assert!(same(&at("new"), &at("./d/../new")) && !same(&at("new"), &at("d")));
+        // Capitals are what the file system makes of them.
+        let is_blind = at("NEW").exists();
+        assert_eq!(same(&at("new"), &at("NEW")), is_blind);
+        assert_eq!(same(&at("unborn"), &at("UNBORN")), is_blind);
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2, "trying out leaves nothing behind");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_even_to_nothing() {
+        use std::os::unix::fs::symlink;
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        fs::create_dir(at("d")).unwrap();
+        symlink("d/target", at("link")).unwrap();
+        symlink(at("link"), at("second")).unwrap();
+        symlink("d", at("e")).unwrap();
+        assert!(same(&at("link"), &at("d/target")) && same(&at("second"), &at("e/target")));
+        fs::write(at("d/target"), "").unwrap();
+        assert!(same(&at("link"), &at("d/target")) && same(&at("second"), &at("e/target")));
+        fs::hard_link(at("d/target"), at("hard")).unwrap();
+        assert!(same(&at("hard"), &at("link")));
+        assert!(FileIdentity::of(Path::new("/dev/null")).is_none());
+        symlink("circle", at("circle")).unwrap();
+        assert!(follow_links(&at("circle")).is_err());
+    }
+}

@@ -1,0 +1,117 @@
+//! Files that are not finished: how they are told from those that a killed program left behind.
+//!
+//! Whoever writes one holds a lock on it, which ends with the program, however that ends. So a file of that name
+//! whose lock is free belongs to nobody, and the next run in its directory removes it. Where the file system has no
+//! locks, age decides.
+
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::Path;
+use std::time::Duration;
+use tempfile::{Builder, NamedTempFile};
+
+const PREFIX: &str = ".weekender-";
+const SUFFIX: &str = ".part";
+
+/// Without locks, a file that nobody has changed for so long is nobody's.
+const OLD: Duration = Duration::from_secs(24 * 3600);
+
+/// How often a new file is made again, if a run that cleans up has taken it for old before it was locked.
+const ATTEMPTS: usize = 8;
+
+/// A new unfinished file in `directory`, locked. It goes away when it is dropped.
+///
+/// # Errors
+/// Those of the file system.
+pub(super) fn create_in(directory: &Path, builder: &mut Builder<'_, '_>) -> io::Result<NamedTempFile> {
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    for _ in 0..ATTEMPTS {
+        let file = builder.tempfile_in(directory)?;
+        match file.as_file().try_lock() {
+            // A run that cleans up has it, and removes it.
+            Err(TryLockError::WouldBlock) => {}
+            // A file system without locks is none the worse for it: see above.
+            Ok(()) | Err(TryLockError::Error(_)) if fs::symlink_metadata(file.path()).is_ok() => {
+                return Ok(file);
+            }
+            _ => {}
+        }
+    }
+    Err(io::Error::other("new files disappear at once"))
+}
+
+/// Removes the unfinished files that killed programs left in `directory`. What cannot be removed stays.
+pub(super) fn remove_from(directory: &Path) {
+    let Ok(entries) = fs::read_dir(directory) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let is_ours = name.starts_with(PREFIX) && name.ends_with(SUFFIX);
+        if is_ours && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            remove_ownerless(&entry.path());
+        }
+    }
+}
+
+/// Removes a file that nobody writes.
+fn remove_ownerless(path: &Path) {
+    // The lock is held until the file is gone: who waits for it then sees that.
+    let Ok(file) = File::open(path) else { return };
+    let is_ownerless = match file.try_lock() {
+        Ok(()) => true,
+        Err(TryLockError::WouldBlock) => false,
+        Err(TryLockError::Error(_)) => {
+            let changed = file.metadata().and_then(|found| found.modified()).ok();
+            changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age > OLD)
+        }
+    };
+    if is_ownerless {
+        // Another run may have removed it.
+        let _ = fs::remove_file(path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_nobody_writes_is_removed() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        for name in [".weekender-a1b2c3.part", ".weekender-x", "other.part", "film.exr"] {
+            fs::write(at(name), "x").unwrap();
+        }
+        fs::create_dir(at(".weekender-d.part")).unwrap();
+        let living = create_in(directory.path(), &mut Builder::new()).unwrap();
+        remove_from(directory.path());
+        assert!(!at(".weekender-a1b2c3.part").exists(), "left behind by a killed run");
+        assert!(living.path().exists());
+        for name in [".weekender-x", "other.part", "film.exr", ".weekender-d.part"] {
+            assert!(at(name).exists(), "{name}");
+        }
+        let path = living.path().to_owned();
+        drop(living);
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn many_writers_and_cleaners_do_not_disturb_each_other() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path();
+        std::thread::scope(|scope| {
+            for _ in 0..2 {
+                scope.spawn(|| (0..200).for_each(|_| remove_from(path)));
+            }
+            for writer in 0..2 {
+                scope.spawn(move || {
+                    for turn in 0..200 {
+                        let file = create_in(path, &mut Builder::new()).unwrap();
+                        file.persist(path.join(format!("{writer}-{turn}"))).unwrap();
+                    }
+                });
+            }
+        });
+        assert_eq!(fs::read_dir(path).unwrap().count(), 400);
+    }
+}

@@ -1,0 +1,492 @@
+//! A film file that several runs may write: none of them takes another's samples away.
+//!
+//! A run remembers what stood at the file's place when it last looked. Before it puts a newer film there it looks
+//! again, under a lock on the directory where the system has one; between machines that share a directory without
+//! locks, only the moment between that look and the renaming is left. If another run has written meanwhile, the two
+//! films' samples are put together where they can be, and otherwise both are kept, under two names.
+
+use super::checkpoint::{self, FilmFile};
+use super::identity::Stamp;
+use super::replace::NewFile;
+use super::{Description, Film, PixelSum, SampleRanges, WriteError, key};
+use std::fs::{File, TryLockError};
+use std::io::{BufReader, Seek};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How long one run waits for another's look and renaming, which take a moment.
+const LOCK_PATIENCE: Duration = Duration::from_secs(10);
+
+/// How often a film is put together with another before both are kept.
+const ATTEMPTS: usize = 5;
+
+/// The last number that a name of its own is looked for with.
+const NAME_LIMIT: u32 = 10_000;
+
+/// A place that film files are written to again and again.
+#[derive(Debug)]
+pub struct SharedFile {
+    path: PathBuf,
+    seen: Option<Stamp>,
+    /// Whether what was seen may be replaced: it is old, or all of it is in the own film.
+    may_replace: bool,
+    /// What was seen, held open so that it can be read after it has been replaced.
+    base: Option<File>,
+    /// The own samples that are there.
+    held: SampleRanges,
+    /// Samples that other runs have added.
+    others: Option<Film>,
+}
+
+/// What became of a film.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Saved {
+    /// The file that holds it.
+    pub path: PathBuf,
+    /// What a user should know: that another run has written the file, too.
+    pub note: Option<String>,
+    /// Whether the film had to go to a name of its own.
+    pub is_elsewhere: bool,
+}
+
+impl SharedFile {
+    /// The place as it is now. What is there may be replaced.
+    pub fn new(path: &Path) -> SharedFile {
+        let mut place = SharedFile {
+            path: path.to_owned(),
+            seen: None,
+            may_replace: true,
+            base: None,
+            held: SampleRanges::default(),
+            others: None,
+        };
+        place.note(Self::look_at(path));
+        place
+    }
+
+    /// Notes that what is there are the own film's first samples, which must not get fewer.
+    pub fn holds(&mut self, samples: &SampleRanges) {
+        self.held = samples.clone();
+    }
+
+    /// Remembers what was there.
+    fn note(&mut self, found: Option<(Stamp, Option<File>)>) {
+        (self.seen, self.base) = found.map_or((None, None), |(stamp, file)| (Some(stamp), file));
+    }
+
+    /// What is at `path`, held open where an open file can be replaced.
+    fn look_at(path: &Path) -> Option<(Stamp, Option<File>)> {
+        // Opened first: should it be replaced in between, the stamp is newer, and a look at the content decides.
+        let file = if cfg!(unix) { File::open(path).ok() } else { None };
+        Some((Stamp::of(path).ok().flatten()?, file))
+    }
+
+    fn is_as_seen(&self) -> bool {
+        Stamp::of(&self.path).is_ok_and(|now| now == self.seen)
+    }
+
+    /// Puts `film` there, together with what others have added. `same_job` says of two recipes what differs if their
+    /// jobs do.
+    ///
+    /// # Errors
+    /// [`WriteError`]; the file that was there is then as it was.
+    pub fn save(
+        &mut self,
+        film: &Film,
+        description: &Description,
+        same_job: &dyn Fn(&str, &str) -> Result<(), String>,
+    ) -> Result<Saved, WriteError> {
+        let (mut note, mut lock) = (None, None);
+        for attempt in 0..ATTEMPTS {
+            // Reading and writing take long, so at first they go unlocked: there is seldom another run.
+            if attempt > 0 && lock.is_none() {
+                lock = lock_directory(&self.path);
+            }
+            let joined = match self.joined(film) {
+                Ok(joined) => joined,
+                Err(reason) => return self.save_elsewhere(film, description, &reason),
+            };
+            let mine = joined.as_ref().unwrap_or(film);
+            // A film that was lost on the way and began anew has less than what is there.
+            let has_shrunk = !minus(&self.held, mine.samples()).is_empty();
+            if has_shrunk || !self.may_replace || !self.is_as_seen() {
+                match self.consider(mine, description, same_job) {
+                    Ok(Verdict::Replace) => {}
+                    Ok(Verdict::Added(words)) => {
+                        note = Some(words);
+                        continue;
+                    }
+                    Ok(Verdict::Leave(note)) => {
+                        return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
+                    }
+                    Err(reason) => return self.save_elsewhere(film, description, &reason),
+                }
+            }
+            let mut description = description.clone();
+            if joined.is_some() {
+                description.set(key::SAMPLES, mine.sample_count());
+            }
+            let new = NewFile::write(&self.path, |writer| checkpoint::write(mine, &description, writer))?;
+            let _lock = if lock.is_none() { lock_directory(&self.path) } else { None };
+            if self.is_as_seen() {
+                let ahead = new.pending_path().and_then(Self::look_at);
+                new.put()?;
+                self.note(ahead.filter(|_| cfg!(unix)).or_else(|| Self::look_at(&self.path)));
+                (self.may_replace, self.held) = (true, mine.samples().clone());
+                return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
+            }
+        }
+        self.save_elsewhere(film, description, "others write it again and again")
+    }
+
+    /// The film with what others have added; `None` if that is nothing.
+    fn joined(&self, film: &Film) -> Result<Option<Film>, String> {
+        let Some(others) = &self.others else { return Ok(None) };
+        if minus(others.samples(), film.samples()).is_empty() {
+            return Ok(None);
+        }
+        let mut joined = others.clone();
+        joined.merge(film).map_err(|error| error.to_string())?;
+        Ok(Some(joined))
+    }
+
+    /// What to do about a file that is not as it was seen.
+    fn consider(
+        &mut self,
+        mine: &Film,
+        description: &Description,
+        same_job: &dyn Fn(&str, &str) -> Result<(), String>,
+    ) -> Result<Verdict, String> {
+        let seen = Stamp::of(&self.path).map_err(|error| error.to_string())?;
+        if seen.is_none() {
+            // It has been taken away, or is a device.
+            self.seen = None;
+            return Ok(Verdict::Replace);
+        }
+        let FilmFile { film: theirs, description: told } =
+            checkpoint::load(&self.path).map_err(|error| error.to_string())?;
+        same_job(description.recipe(), told.recipe())
+            .map_err(|difference| format!("it is a film of another picture now: {difference}"))?;
+        let shape = |film: &Film| (film.width(), film.height(), film.halves().len());
+        if shape(mine) != shape(&theirs) {
+            return Err("it is a film of another shape now".to_owned());
+        }
+        let only_theirs = minus(theirs.samples(), mine.samples());
+        if only_theirs.is_empty() {
+            (self.seen, self.may_replace) = (seen, true);
+            return Ok(Verdict::Replace);
+        }
+        let told = |ranges: &[Range<u64>]| ranges_of(ranges).to_string();
+        if minus(mine.samples(), theirs.samples()).is_empty() {
+            let is_new = self.may_replace || self.seen != seen;
+            (self.seen, self.may_replace) = (seen, false);
+            return Ok(Verdict::Leave(is_new.then(|| {
+                format!(
+                    "{} holds all samples of this run and {} besides, so it is left as it is",
+                    self.path.display(),
+                    told(&only_theirs)
+                )
+            })));
+        }
+        let common = minus(theirs.samples(), &ranges_of(&only_theirs));
+        let added = if common.is_empty() { Some(theirs) } else { self.without_base(theirs, &common) };
+        let added = added.ok_or_else(|| {
+            format!(
+                "another run has put samples there that cannot be told apart from these: {}",
+                told(&common)
+            )
+        })?;
+        match &mut self.others {
+            Some(others) => others.merge(&added).map_err(|error| error.to_string())?,
+            None => self.others = Some(added),
+        }
+        (self.seen, self.may_replace) = (seen, true);
+        Ok(Verdict::Added(format!(
+            "{} was written by another run meanwhile; its samples {} are kept beside these",
+            self.path.display(),
+            told(&only_theirs)
+        )))
+    }
+
+    /// What `theirs` has beyond the film that both runs began with, if `common` is just that.
+    fn without_base(&self, theirs: Film, common: &[Range<u64>]) -> Option<Film> {
+        let mut file = self.base.as_ref()?;
+        let length = file.metadata().ok()?.len();
+        file.rewind().ok()?;
+        let base = checkpoint::read(BufReader::new(file), length, &self.path).ok()?.film;
+        (base.samples().iter().eq(common.iter().cloned())).then(|| difference(theirs, &base)).flatten()
+    }
+
+    /// Keeps the film under a free name beside the file, and from now on only there.
+    fn save_elsewhere(
+        &mut self,
+        film: &Film,
+        description: &Description,
+        reason: &str,
+    ) -> Result<Saved, WriteError> {
+        let taken = self.path.clone();
+        for number in 2..NAME_LIMIT {
+            let path = numbered(&taken, number);
+            if path.symlink_metadata().is_ok() {
+                continue;
+            }
+            let new = NewFile::write(&path, |writer| checkpoint::write(film, description, writer))?;
+            if new.put_new()? {
+                let note = format!(
+                    "{} was written by another program meanwhile: {reason}; it is left as it is, and these samples \
+                     are in {}",
+                    taken.display(),
+                    path.display()
+                );
+                *self = SharedFile::new(&path);
+                return Ok(Saved { path, note: Some(note), is_elsewhere: true });
+            }
+        }
+        let reason = std::io::Error::other("every name beside it is taken");
+        Err(WriteError { path: taken, reason })
+    }
+}
+
+/// What is to be done about a file that another run has written.
+enum Verdict {
+    /// All of it is in the own film.
+    Replace,
+    /// Its samples have been added to the others'.
+    Added(String),
+    /// The own film is all in it.
+    Leave(Option<String>),
+}
+
+/// `film.exr` as `film-2.exr`.
+fn numbered(path: &Path, number: u32) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
+    path.with_file_name(format!("{stem}-{number}{ending}"))
+}
+
+/// The ranges of `all` without those of `taken`: sorted and disjoint, as both are.
+fn minus(all: &SampleRanges, taken: &SampleRanges) -> Vec<Range<u64>> {
+    let mut left = Vec::new();
+    let mut taken = taken.iter().peekable();
+    for range in all.iter() {
+        let mut start = range.start;
+        while let Some(other) = taken.peek() {
+            if other.start >= range.end {
+                break;
+            }
+            if other.start > start {
+                left.push(start..other.start);
+            }
+            start = start.max(other.end);
+            if other.end > range.end {
+                break;
+            }
+            taken.next();
+        }
+        if start < range.end {
+            left.push(start..range.end);
+        }
+    }
+    left
+}
+
+fn ranges_of(ranges: &[Range<u64>]) -> SampleRanges {
+    let mut set = SampleRanges::default();
+    for range in ranges {
+        // Disjoint as they are, nothing overlaps.
+        let _ = set.insert(range.clone());
+    }
+    set
+}
+
+/// What `film` holds beyond `base`, all of whose samples it has; `None` if its sums are not those of `base` and more.
+fn difference(film: Film, base: &Film) -> Option<Film> {
+    let samples = ranges_of(&minus(film.samples(), base.samples()));
+    let rejected = film.rejected().checked_sub(base.rejected())?;
+    let (width, height) = (film.width(), film.height());
+    let mut halves = film.halves().to_vec();
+    for (half, base_half) in halves.iter_mut().zip(base.halves()) {
+        for (sum, base_sum) in half.iter_mut().zip(base_half) {
+            let mut left = [0; 3];
+            for (left, (sum, base)) in left.iter_mut().zip(sum.0.iter().zip(base_sum.0)) {
+                *left = sum.checked_sub(base)?;
+            }
+            *sum = PixelSum(left);
+        }
+    }
+    Film::from_parts(width, height, halves, samples, rejected).ok()
+}
+
+/// A lock, held as long as the result lives, that keeps other runs on this machine (and on others, where the file
+/// system carries locks over) from looking and renaming at the same time. `None` where there is no such lock: the look
+/// before the renaming remains.
+fn lock_directory(path: &Path) -> Option<File> {
+    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
+    let file = File::open(directory.unwrap_or(Path::new("."))).ok()?;
+    let begin = Instant::now();
+    loop {
+        match file.try_lock() {
+            Ok(()) => return Some(file),
+            Err(TryLockError::WouldBlock) if begin.elapsed() < LOCK_PATIENCE => {
+                std::thread::sleep(Duration::from_millis(5));
+            }
+            Err(_) => return None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::fixed_point;
+
+    fn ranges(ranges: &[Range<u64>]) -> SampleRanges {
+        ranges_of(ranges)
+    }
+
+    /// A film whose sample `i` has the radiance `(i + pixel) / 100` in each pixel.
+    fn film(samples: &[Range<u64>]) -> Film {
+        let mut film = Film::new(3, 2, 2);
+        for range in samples {
+            for i in range.clone() {
+                for (pixel, sum) in film.halves_mut()[(i % 2) as usize].iter_mut().enumerate() {
+                    sum.add(fixed_point([(i as f64 + pixel as f64) / 100.0; 3]).unwrap());
+                }
+            }
+            film.record(range.clone(), 0).unwrap();
+        }
+        film
+    }
+
+    fn same(_: &str, _: &str) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn put(path: &Path, samples: &[Range<u64>]) {
+        checkpoint::save(path, &film(samples), &Description::new("r")).unwrap();
+    }
+
+    fn at(path: &Path) -> Film {
+        checkpoint::load(path).unwrap().film
+    }
+
+    #[test]
+    fn ranges_are_taken_from_ranges() {
+        let cases = [
+            (vec![0..10], vec![], vec![0..10]),
+            (vec![0..10], vec![0..10], vec![]),
+            (vec![0..10], vec![3..5], vec![0..3, 5..10]),
+            (vec![0..10, 20..30], vec![5..25], vec![0..5, 25..30]),
+            (vec![0..10, 20..30, 40..50], vec![8..12, 22..24, 28..45], vec![0..8, 20..22, 24..28, 45..50]),
+            (vec![5..6], vec![0..100], vec![]),
+        ];
+        for (all, taken, left) in cases {
+            assert_eq!(minus(&ranges(&all), &ranges(&taken)), left, "{all:?} - {taken:?}");
+        }
+    }
+
+    #[test]
+    fn two_runs_that_go_on_with_one_film_lose_nothing() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        let description = Description::new("r");
+        let holds = |samples: &[Range<u64>]| assert!(at(&path) == film(samples), "{}", at(&path).samples());
+
+        // One after the other, the second with less: its samples are all in the first's.
+        put(&path, &[0..4]);
+        let (mut a, mut b) = (SharedFile::new(&path), SharedFile::new(&path));
+        assert_eq!(a.save(&film(&[0..20]), &description, &same).unwrap().note, None);
+        let left = b.save(&film(&[0..10]), &description, &same).unwrap();
+        assert!(left.note.unwrap().contains("10..20"));
+        holds(&[0..20]);
+        // It goes on, still with less, then with more.
+        b.save(&film(&[0..16]), &description, &same).unwrap();
+        holds(&[0..20]);
+        b.save(&film(&[0..24]), &description, &same).unwrap();
+        holds(&[0..24]);
+        // The first comes back with other samples than the second has.
+        let put_together = a.save(&film(&[0..20, 40..44]), &description, &same).unwrap();
+        assert!(put_together.note.unwrap().contains("20..24"));
+        holds(&[0..24, 40..44]);
+        // What was put together stays so.
+        a.save(&film(&[0..20, 40..48]), &description, &same).unwrap();
+        holds(&[0..24, 40..48]);
+        // Samples that both have in part cannot be told apart: they are kept under another name.
+        let saved = a.save(&film(&[0..22, 40..48]), &description, &same).unwrap();
+        assert!(saved.is_elsewhere && saved.path != path);
+        assert!(at(&saved.path) == film(&[0..22, 40..48]));
+        holds(&[0..24, 40..48]);
+    }
+
+    #[test]
+    fn a_film_that_began_anew_does_not_replace_what_it_had() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        put(&path, &[0..4]);
+        let mut resumed = SharedFile::new(&path);
+        resumed.holds(&ranges(&[0..4]));
+        resumed.save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
+        assert!(at(&path) == film(&[0..4]));
+        resumed.save(&film(&[0..10]), &Description::new("r"), &same).unwrap();
+        resumed.save(&film(&[0..6]), &Description::new("r"), &same).unwrap();
+        assert!(at(&path) == film(&[0..10]));
+        // What was not resumed may be replaced by less.
+        SharedFile::new(&path).save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
+        assert!(at(&path) == film(&[0..2]));
+    }
+
+    #[test]
+    fn disjoint_samples_of_two_new_runs_are_added() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        let (mut a, mut b) = (SharedFile::new(&path), SharedFile::new(&path));
+        a.save(&film(&[0..8]), &Description::new("r"), &same).unwrap();
+        b.save(&film(&[8..12]), &Description::new("r"), &same).unwrap();
+        assert!(at(&path) == film(&[0..12]));
+    }
+
+    #[test]
+    fn what_does_not_go_together_is_kept_twice() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        let mut run = SharedFile::new(&path);
+        put(&path, &[0..4]);
+        let other = |_: &str, _: &str| Err("seed is 0 here, 1 there".to_owned());
+        let saved = run.save(&film(&[0..2]), &Description::new("r"), &other).unwrap();
+        assert!(saved.is_elsewhere && saved.note.unwrap().contains("seed is 0"));
+        assert_eq!(saved.path, directory.path().join("g-2.exr"));
+        assert!(at(&path) == film(&[0..4]) && at(&saved.path) == film(&[0..2]));
+        // From now on it goes there.
+        let saved = run.save(&film(&[0..6]), &Description::new("r"), &other).unwrap();
+        assert_eq!((saved.note, saved.path.file_name().unwrap().to_str()), (None, Some("g-2.exr")));
+
+        std::fs::write(&path, "no film any more").unwrap();
+        let mut run = SharedFile::new(&path);
+        std::fs::write(&path, "nor this").unwrap();
+        let saved = run.save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
+        assert!(saved.is_elsewhere, "{saved:?}");
+        assert_eq!(std::fs::read(&path).unwrap(), b"nor this");
+    }
+
+    #[test]
+    fn writers_at_once_lose_nothing() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        put(&path, &[0..2]);
+        std::thread::scope(|scope| {
+            for writer in 0..3_u64 {
+                let path = &path;
+                scope.spawn(move || {
+                    let mut place = SharedFile::new(path);
+                    for turn in 1..8 {
+                        let own = 100 * (writer + 1)..100 * (writer + 1) + 2 * turn;
+                        let saved = place.save(&film(&[0..2, own]), &Description::new("r"), &same).unwrap();
+                        assert!(!saved.is_elsewhere, "{saved:?}");
+                    }
+                });
+            }
+        });
+        assert!(at(&path) == film(&[0..2, 100..114, 200..214, 300..314]), "{}", at(&path).samples());
+    }
+}

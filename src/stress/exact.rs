@@ -1,0 +1,191 @@
+//! A third arithmetic: the nearest hit of a ray in numbers of 106 bits, twice those of `f64`.
+//!
+//! A number is the sum of two `f64`s that do not overlap. Sums and products of such pairs are exact to `2^-104`,
+//! which leaves 50 bits even after the squares of an ordinary `f64` scene have cancelled; and unlike intervals or
+//! fractions, they are fast enough to check thousands of rays.
+//!
+//! Source: Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971; the fused product makes
+//! its splitting unnecessary.
+
+use crate::scene::{Scene, Sphere};
+use glam::DVec3;
+use std::ops::{Add, Mul, Neg, Sub};
+
+/// A number of 106 bits: `high + low`, with `low` below half a unit in the last place of `high`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Double {
+    high: f64,
+    low: f64,
+}
+
+impl Double {
+    /// The nearest `f64`.
+    pub fn to_f64(self) -> f64 {
+        self.high + self.low
+    }
+
+    /// Two numbers that may overlap by little: `|high| >= |low|`.
+    fn normalised(high: f64, low: f64) -> Self {
+        let sum = high + low;
+        Double { high: sum, low: low - (sum - high) }
+    }
+
+    /// The square root of a number that is not negative.
+    pub fn sqrt(self) -> Self {
+        if self.high <= 0.0 {
+            return Double::from(0.0);
+        }
+        let root = Double::from(self.high.sqrt());
+        let rest = self - root * root;
+        root + Double::from(rest.to_f64() / (2.0 * root.high))
+    }
+
+    /// Division; `other` must not be 0.
+    pub fn over(self, other: Double) -> Self {
+        let first = Double::from(self.high / other.high);
+        let rest = self - first * other;
+        first + Double::from(rest.high / other.high)
+    }
+
+    fn is_positive(self) -> bool {
+        self.high > 0.0 || (self.high == 0.0 && self.low > 0.0)
+    }
+}
+
+impl From<f64> for Double {
+    fn from(value: f64) -> Self {
+        Double { high: value, low: 0.0 }
+    }
+}
+
+impl Add for Double {
+    type Output = Double;
+
+    fn add(self, other: Double) -> Double {
+        let (high, rest) = exact_sum(self.high, other.high);
+        let (low, last) = exact_sum(self.low, other.low);
+        let first = Double::normalised(high, rest + low);
+        Double::normalised(first.high, first.low + last)
+    }
+}
+
+impl Neg for Double {
+    type Output = Double;
+
+    fn neg(self) -> Double {
+        Double { high: -self.high, low: -self.low }
+    }
+}
+
+impl Sub for Double {
+    type Output = Double;
+
+    fn sub(self, other: Double) -> Double {
+        self + -other
+    }
+}
+
+impl Mul for Double {
+    type Output = Double;
+
+    fn mul(self, other: Double) -> Double {
+        let high = self.high * other.high;
+        let rest = self.high.mul_add(other.high, -high);
+        Double::normalised(high, rest + (self.high * other.low + self.low * other.high))
+    }
+}
+
+/// A sum and what rounding left out of it.
+fn exact_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}
+
+/// What a ray meets first: the sphere's index and the distance in units of the direction's length. Surfaces at a
+/// distance of exactly 0 are those that the ray leaves; of several at one distance, the scene's first.
+pub fn first_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
+    let mut nearest: Option<(usize, Double)> = None;
+    for (index, sphere) in scene.spheres.iter().enumerate() {
+        let Some(distance) = distance(sphere, origin, direction) else { continue };
+        if nearest.is_none_or(|(_, best)| (best - distance).is_positive()) {
+            nearest = Some((index, distance));
+        }
+    }
+    nearest.map(|(index, distance)| (index, distance.to_f64()))
+}
+
+/// The nearer root that is more than 0.
+fn distance(sphere: &Sphere, origin: DVec3, direction: DVec3) -> Option<Double> {
+    let exact = |v: DVec3| v.to_array().map(Double::from);
+    let (center, origin, direction) = (exact(sphere.center), exact(origin), exact(direction));
+    let to_center = [0, 1, 2].map(|axis| center[axis] - origin[axis]);
+    let dot = |a: [Double; 3], b: [Double; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let radius = Double::from(sphere.radius);
+    let a = dot(direction, direction);
+    let h = dot(direction, to_center);
+    let c = dot(to_center, to_center) - radius * radius;
+    let discriminant = h * h - a * c;
+    if discriminant.high < 0.0 {
+        return None;
+    }
+    // Of the two roots the larger one has no cancellation; the other follows from their product, c / a.
+    let sum = if h.high >= 0.0 { h + discriminant.sqrt() } else { h - discriminant.sqrt() };
+    let mut roots = [sum.over(a), if sum.high == 0.0 { Double::from(0.0) } else { c.over(sum) }];
+    if (roots[0] - roots[1]).is_positive() {
+        roots.swap(0, 1);
+    }
+    roots.into_iter().find(|root| root.is_positive())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Material;
+
+    #[test]
+    fn numbers_keep_what_f64_drops() {
+        let small = 1e-25;
+        let sum = Double::from(1.0) + Double::from(small);
+        assert_eq!((sum - Double::from(1.0)).to_f64(), small);
+        let third = Double::from(1.0).over(Double::from(3.0));
+        assert!((third * Double::from(3.0) - Double::from(1.0)).to_f64().abs() < 1e-31);
+        let root = Double::from(2.0).sqrt();
+        assert!((root * root - Double::from(2.0)).to_f64().abs() < 1e-31);
+        assert_eq!(Double::from(0.0).sqrt().to_f64(), 0.0);
+    }
+
+    fn scene(balls: &[(DVec3, f64)]) -> Scene {
+        let mut scene = Scene::default();
+        let material = scene.add_material("matte", Material::Lambertian { albedo: DVec3::ONE });
+        for (center, radius) in balls {
+            scene.add_sphere(*center, *radius, material);
+        }
+        scene
+    }
+
+    #[test]
+    fn hits_are_exact_where_f64_has_no_digits_left() {
+        // A gap of 1e-9 before a ball at 1e9: its square is lost in f64.
+        let far = scene(&[(DVec3::new(1e9, 0.0, 0.0), 1e9 - 1e-3)]);
+        let (_, distance) = first_hit(&far, DVec3::ZERO, DVec3::X).unwrap();
+        let expected = 1e9 - (1e9 - 1e-3);
+        assert!((distance - expected).abs() < 1e-12 * expected, "{distance} {expected}");
+    }
+
+    #[test]
+    fn a_ray_leaves_the_surface_that_it_starts_on() {
+        let ball = scene(&[(DVec3::ZERO, 1.0)]);
+        assert_eq!(first_hit(&ball, DVec3::Y, DVec3::new(1.0, 1.0, 0.0)), None);
+        assert_eq!(first_hit(&ball, DVec3::Y, -DVec3::Y), Some((0, 2.0)));
+        assert_eq!(first_hit(&ball, DVec3::ZERO, DVec3::Z), Some((0, 1.0)));
+        assert_eq!(first_hit(&ball, 3.0 * DVec3::Y, DVec3::Y), None);
+    }
+
+    #[test]
+    fn the_first_of_the_scene_wins_a_tie() {
+        let copies = scene(&[(DVec3::ZERO, 1.0), (DVec3::ZERO, 1.0), (DVec3::new(0.0, 0.0, 1e-12), 1.0)]);
+        assert_eq!(first_hit(&copies, -3.0 * DVec3::Z, DVec3::Z).unwrap().0, 0);
+        assert_eq!(first_hit(&copies, 3.0 * DVec3::Z, -DVec3::Z).unwrap().0, 2);
+    }
+}

@@ -1,0 +1,79 @@
+//! Closed rooms, from which no light may come.
+
+use super::build::{Ball, deep, eye, matte, metal, moved, picture, sized};
+use crate::recipe::Recipe;
+use crate::scene::Material;
+use crate::stress::case::{Case, Family};
+use glam::DVec3;
+
+/// Closed rooms.
+pub const CAVITIES: Family = Family {
+    id: "cavity",
+    title: "The eye in a closed ball",
+    lesson: "No light gets in, so a single path that leaks shows as a bright speck. A contact with the ground is \
+             where surfaces come nearer to each other than rounding.",
+};
+
+const WHY: &str = "the room is closed: every path ends in it, at the latest with its last ray";
+
+/// Alone, on the ground, cut by the ground; near and far.
+pub fn cavities() -> Vec<Case> {
+    let materials = [
+        ("white", matte(1.0)),
+        ("matte", matte(0.5)),
+        ("metal", metal(0.9, 0.0)),
+        ("fuzzy", metal(0.9, 0.3)),
+    ];
+    let mut cases = Vec::new();
+    for (material_name, material) in materials {
+        for (place, ground) in [("alone", None), ("touching", Some(-1001.0)), ("cut", Some(-1000.4))] {
+            let stiff = match place {
+                "alone" => format!("the eye in a closed {material_name} ball"),
+                "touching" => format!("the eye in a {material_name} ball that touches the ground from above"),
+                _ => format!("the eye in a {material_name} ball that the ground cuts"),
+            };
+            let case =
+                Case::new(&CAVITIES, format!("{material_name}-{place}"), stiff, room(material, ground))
+                    .every(0.0, WHY);
+            let is_seen = material_name == "white" && place == "touching";
+            let case = if is_seen {
+                case.watched(
+                    "A white ball on the ground, from within",
+                    "Nothing: the room is closed and black. With the book's arithmetic, light comes in where ball \
+                     and ground touch, and through the wall.",
+                )
+            } else {
+                case
+            };
+            cases.push(if place == "alone" { case.quick() } else { case });
+        }
+    }
+    let touching = room(matte(1.0), Some(-1001.0));
+    let stiff =
+        "a white ball that touches the ground, 2,000 rays a path: each bounce is a chance to slip out";
+    let recipe = sized(deep(touching.clone(), 2000), [8, 8], 8);
+    cases.push(Case::new(&CAVITIES, "white-touching-deep", stiff, recipe).every(0.0, WHY));
+    let recipe = moved(&touching, 1.0, DVec3::new(800.0, 0.0, 600.0));
+    let stiff = "a white ball that touches the ground, 1,000 units from the origin";
+    cases.push(Case::new(&CAVITIES, "white-touching-at-1000", stiff, recipe).every(0.0, WHY));
+    let recipe = sized(deep(moved(&touching, 1.0, DVec3::new(800.0, 0.0, 600.0)), 2000), [8, 8], 8);
+    let stiff = "the same, 2,000 rays a path";
+    cases.push(Case::new(&CAVITIES, "white-touching-at-1000-deep", stiff, recipe).every(0.0, WHY));
+    let recipe = moved(&room(matte(1.0), None), 1.0, DVec3::new(800.0, 0.0, 600.0));
+    let stiff = "a white ball alone, 1,000 units from the origin";
+    cases.push(Case::new(&CAVITIES, "white-at-1000", stiff, recipe).every(0.0, WHY));
+    for factor in [1e-6, 1e-3, 1e6] {
+        let recipe = moved(&touching, factor, DVec3::ZERO);
+        let stiff = format!("a white ball of radius {factor:e} that touches the ground");
+        let case = Case::new(&CAVITIES, format!("white-touching-of-{factor:e}"), stiff, recipe);
+        cases.push(case.of_unit(factor).every(0.0, WHY));
+    }
+    cases
+}
+
+/// A ball of radius 1 about the origin with the eye in it, and a ground of radius 1000 that lies so far below.
+fn room(material: Material, ground: Option<f64>) -> Recipe {
+    let ground = ground.map(|y| (DVec3::new(0.0, y, 0.0), 1000.0, matte(1.0)));
+    let balls: Vec<Ball> = [(DVec3::ZERO, 1.0, material)].into_iter().chain(ground).collect();
+    picture(balls, eye(DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.3, -1.0, -0.2), 90.0))
+}

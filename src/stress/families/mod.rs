@@ -1,0 +1,119 @@
+//! The registry: all cases, by family.
+
+pub mod build;
+mod cavities;
+mod copies;
+mod eye;
+mod far;
+mod files;
+mod glass;
+mod lengths;
+mod many;
+mod shells;
+
+use super::case::{Case, Family};
+use std::sync::OnceLock;
+
+/// A family and the function that lists its cases.
+type Entry = (&'static Family, fn() -> Vec<Case>);
+
+/// All families, in the order of the table.
+const ENTRIES: [Entry; 15] = [
+    (&copies::COPIES, copies::copies),
+    (&copies::SHIFTS, copies::shifts),
+    (&shells::SHELLS, shells::shells),
+    (&shells::COATS, shells::coats),
+    (&eye::EYE, eye::eye_near_a_surface),
+    (&cavities::CAVITIES, cavities::cavities),
+    (&far::FAR, far::far),
+    (&lengths::MOVED, lengths::moved_scenes),
+    (&lengths::SCALED, lengths::scaled_scenes),
+    (&glass::INDICES, glass::indices),
+    (&glass::TRAPPED, glass::trapped),
+    (&glass::DEPTHS, glass::depths),
+    (&lengths::LENSES, lengths::lenses),
+    (&many::ODD, many::odd_ones),
+    (&files::FILES, files::files),
+];
+
+/// All families.
+pub fn families() -> impl Iterator<Item = &'static Family> {
+    ENTRIES.iter().map(|(family, _)| *family)
+}
+
+/// The cases that the window shows. They are listed apart, so that it need not build the largest scenes.
+pub fn shown_cases() -> &'static [Case] {
+    static SHOWN: OnceLock<Vec<Case>> = OnceLock::new();
+    SHOWN.get_or_init(|| {
+        let lists: [fn() -> Vec<Case>; 6] = [
+            files::files,
+            lengths::scaled_scenes,
+            lengths::moved_scenes,
+            lengths::lenses,
+            cavities::cavities,
+            glass::indices,
+        ];
+        lists.into_iter().flat_map(|list| list()).filter(|case| case.watch.is_some()).collect()
+    })
+}
+
+/// All cases, family by family. Built once: the largest scenes have a hundred thousand spheres.
+pub fn cases() -> &'static [Case] {
+    static CASES: OnceLock<Vec<Case>> = OnceLock::new();
+    CASES.get_or_init(|| ENTRIES.iter().flat_map(|(_, list)| list()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::case::Expected;
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_case_is_a_valid_picture_in_each_form() {
+        for case in cases() {
+            for form in case.forms() {
+                let recipe = case.recipe_in(*form);
+                if let Err(error) = recipe.job() {
+                    panic!("{} {}: {error}", case.id, form.name());
+                }
+                recipe.check_samples().unwrap();
+            }
+            for other in case.tame.iter().chain(match &case.expected {
+                Expected::Same { other, .. } => Some(&**other),
+                _ => None,
+            }) {
+                other.job().unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn ids_are_unique_and_say_the_family() {
+        let ids: HashSet<&str> = cases().iter().map(|case| case.id.as_str()).collect();
+        assert_eq!(ids.len(), cases().len());
+        for case in cases() {
+            assert_eq!(case.id.split('/').next(), Some(case.family.id), "{}", case.id);
+            assert!(case.stiff.len() > 10 && case.expected.why().len() > 10, "{}", case.id);
+        }
+    }
+
+    #[test]
+    fn every_family_has_cases_and_some_are_shown() {
+        for family in families() {
+            assert!(cases().iter().any(|case| case.family == family), "{}", family.id);
+        }
+        let all = cases().iter().filter(|case| case.watch.is_some()).count();
+        assert!(all >= 10 && all == shown_cases().len(), "{all}");
+    }
+
+    #[test]
+    fn the_same_picture_has_the_same_size_and_samples() {
+        for case in cases() {
+            if let Expected::Same { other, .. } = &case.expected {
+                assert_eq!(case.recipe.settings, other.settings, "{}", case.id);
+                assert_eq!(case.recipe.samples_per_pixel, other.samples_per_pixel, "{}", case.id);
+            }
+        }
+    }
+}

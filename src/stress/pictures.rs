@@ -1,0 +1,163 @@
+//! Pictures of the cases, ours and the book's, and a page that shows them side by side.
+
+use super::backend::Backend;
+use super::case::Case;
+use super::families::build::sized;
+use super::report::{CaseReport, Report};
+use super::suite::by_the_book;
+use super::table;
+use crate::film::{Description, write_text};
+use crate::output::write_image;
+use crate::recipe::{Recipe, file, plain_name};
+use crate::stages::Transfer;
+use anyhow::{Context, Result};
+use std::fmt::Write;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+/// Size of a picture on the page, pixels.
+const SIZE: [u32; 2] = [120, 80];
+
+/// Samples per pixel of a picture on the page.
+const SAMPLES: u64 = 32;
+
+/// Scenes of more spheres are not shown by the book's arithmetic, which has no hierarchy.
+const BOOK_SPHERES: usize = 5000;
+
+/// What a picture shows.
+const KINDS: [&str; 2] = ["ours", "book"];
+
+/// Renders what a case shows and writes it into `directory`.
+///
+/// # Errors
+/// If a file cannot be written. What cannot be rendered is left out.
+pub fn write_pictures(
+    directory: &Path,
+    case: &Case,
+    backend: &mut Backend,
+    interrupt: &AtomicBool,
+) -> Result<()> {
+    let [width, height] = SIZE;
+    let shape = &case.recipe.settings;
+    let is_square = shape.width == shape.height;
+    let ours = sized(case.recipe.clone(), [if is_square { height } else { width }, height], SAMPLES);
+    let many = ours.scene.spheres.len() > BOOK_SPHERES;
+    let recipes = [Some(ours.clone()), (!many).then(|| by_the_book(&ours))];
+    for (kind, recipe) in KINDS.into_iter().zip(recipes) {
+        let Some(recipe) = recipe else { continue };
+        if let Ok(traced) = backend.trace(&recipe, interrupt) {
+            let path = directory.join(file_name(&case.id, kind));
+            write_image(&path, &traced.film, Transfer::Gamma2, &description(&recipe))?;
+        }
+    }
+    Ok(())
+}
+
+fn description(recipe: &Recipe) -> Description {
+    Description::new(&file::to_picture_toml(recipe))
+}
+
+fn file_name(id: &str, kind: &str) -> String {
+    format!("{} {kind}.png", plain_name(id)).replace(' ', "-")
+}
+
+/// Writes the table and the page.
+///
+/// # Errors
+/// If one cannot be written.
+pub fn write_pages(directory: &Path, report: &Report) -> Result<()> {
+    write_text(&directory.join("table.md"), &table::markdown(report))
+        .context("the table cannot be written")?;
+    write_text(&directory.join("index.html"), &page(directory, report)).context("the page cannot be written")
+}
+
+const PAGE_HEAD: &str = "<!doctype html>\n<meta charset=\"utf-8\">\n<title>weekender stress</title>\n<style>\n\
+body { font: 15px sans-serif; margin: 2em; max-width: 72em }\n\
+td { vertical-align: top; padding: .4em .8em .4em 0 }\n\
+img { width: 240px; image-rendering: pixelated; background: #ddd }\n\
+.wrong { color: #b00020; font-weight: bold }\n</style>\n<h1>weekender stress</h1>\n";
+
+fn page(directory: &Path, report: &Report) -> String {
+    let mut text = PAGE_HEAD.to_owned();
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "<p>{}</p>", escaped(table::summary(report).trim()));
+    let _ = writeln!(text, "<table>\n<tr><th>case</th><th>Weekender</th><th>the book's arithmetic</th></tr>");
+    for case in &report.cases {
+        let _ = writeln!(text, "<tr><td>{}</td>", about(case));
+        for kind in KINDS {
+            let name = file_name(&case.id, kind);
+            if directory.join(&name).exists() {
+                let _ = writeln!(text, "<td><img src=\"{name}\" alt=\"{} {kind}\"></td>", escaped(&case.id));
+            } else {
+                let _ = writeln!(text, "<td>no picture</td>");
+            }
+        }
+        text.push_str("</tr>\n");
+    }
+    text.push_str("</table>\n");
+    text
+}
+
+fn about(case: &CaseReport) -> String {
+    let mut text = format!("<b>{}</b><br>{}<br>", escaped(&case.id), escaped(&case.stiff));
+    let _ = write!(text, "expected: {}, since {}<br>", escaped(&case.expected), escaped(case.why));
+    for measured in &case.measured {
+        let verdict = &measured.verdict;
+        let class = if verdict.is_right() { "right" } else { "wrong" };
+        let name = verdict.name().to_lowercase();
+        let reason =
+            if verdict.is_right() { String::new() } else { format!(": {}", escaped(verdict.reason())) };
+        let who = format!("{}, {}", escaped(&measured.backend), measured.form);
+        let _ = write!(text, "{who}: <span class=\"{class}\">{name}</span>{reason}<br>");
+    }
+    text
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backends::BackendChoice;
+    use crate::stress::families::cases;
+
+    #[test]
+    fn the_page_shows_what_was_rendered() {
+        let directory = tempfile::tempdir().unwrap();
+        let case = cases().iter().find(|case| case.id == "scaled/1e-3").unwrap();
+        let mut backend = Backend::new("cpu", BackendChoice::fallback());
+        write_pictures(directory.path(), case, &mut backend, &AtomicBool::new(false)).unwrap();
+        let report = Report {
+            schema: 1,
+            version: "",
+            backends: vec!["cpu".into()],
+            seconds: 1.0,
+            interrupted: false,
+            cases: vec![CaseReport {
+                id: case.id.clone(),
+                family: case.family.title,
+                stiff: "a < b".into(),
+                expected: "1".into(),
+                why: "so",
+                tolerance: 0.0,
+                spheres: 1,
+                first_hits: None,
+                measured: Vec::new(),
+                book: Vec::new(),
+            }],
+        };
+        write_pages(directory.path(), &report).unwrap();
+        let page = std::fs::read_to_string(directory.path().join("index.html")).unwrap();
+        assert!(page.contains("a &lt; b") && !page.contains("no picture"), "{page}");
+        for kind in KINDS {
+            let path = directory.path().join(file_name("scaled/1e-3", kind));
+            assert!(page.contains(path.file_name().unwrap().to_str().unwrap()));
+            let read =
+                crate::output::read_picture(&path, crate::output::Encoding::Book(Transfer::Gamma2)).unwrap();
+            assert_eq!([read.width, read.height], SIZE);
+        }
+        assert!(directory.path().join("table.md").exists());
+    }
+}

@@ -1,0 +1,200 @@
+//! What must hold of every scene.
+
+use crate::film::Film;
+use crate::recipe::Recipe;
+use crate::scene::{Material, Scene};
+use crate::stress::backend::Backend;
+use crate::stress::families::build::moved;
+use crate::stress::far::with_far_spheres;
+use crate::stress::figures::{Level, Paired};
+use crate::stress::verdict::{Against, judge};
+use glam::DVec3;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What a mean may be off by besides noise, linear radiance.
+const TOLERANCE: f64 = 1e-5;
+
+/// Something that must hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Check {
+    /// `f32` gives the picture of `f64`.
+    Rounding,
+    /// Forty distant spheres, and with them a hierarchy, change nothing.
+    Hierarchy,
+    /// All lengths times four: the same bits, but for the last.
+    Scaling,
+    /// All places moved by some lengths of the scene.
+    Translation,
+    /// Copies of matte and metal spheres change nothing.
+    Copies,
+    /// No path brings more light than the sky has.
+    Energy,
+}
+
+impl Check {
+    const ALL: [Check; 6] =
+        [Check::Rounding, Check::Hierarchy, Check::Scaling, Check::Translation, Check::Copies, Check::Energy];
+
+    /// As a saved scene calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Check::Rounding => "f32 against f64",
+            Check::Hierarchy => "list against hierarchy",
+            Check::Scaling => "the scene times 4",
+            Check::Translation => "the scene moved",
+            Check::Copies => "copies removed",
+            Check::Energy => "more light than the sky has",
+        }
+    }
+}
+
+/// Backends that are checked, and the reference.
+pub struct Checker {
+    backends: Vec<Backend>,
+    reference: Backend,
+}
+
+impl Checker {
+    /// Of these.
+    pub fn new(backends: Vec<Backend>, reference: Backend) -> Self {
+        Checker { backends, reference }
+    }
+
+    /// The first check that fails, and how.
+    pub fn first_failure(&mut self, recipe: &Recipe, interrupt: &AtomicBool) -> Option<(Check, String)> {
+        Check::ALL.into_iter().find_map(|check| Some((check, self.fails(check, recipe, interrupt)?)))
+    }
+
+    /// How a check fails; `None` if it holds. A scene that is refused holds everything: it has been said.
+    pub fn fails(&mut self, check: Check, recipe: &Recipe, interrupt: &AtomicBool) -> Option<String> {
+        recipe.job().ok()?;
+        let changed = changed(check, recipe);
+        if check != Check::Rounding && check != Check::Energy {
+            changed.as_ref()?.job().ok()?;
+        }
+        for index in 0..self.backends.len() {
+            let name = self.backends[index].name.clone();
+            let reason = match self.on(index, check, recipe, changed.as_ref(), interrupt) {
+                Ok(()) => continue,
+                Err(_) if interrupt.load(Ordering::Relaxed) => return None,
+                Err(reason) => reason,
+            };
+            return Some(format!("{name}: {reason}"));
+        }
+        None
+    }
+
+    fn on(
+        &mut self,
+        index: usize,
+        check: Check,
+        recipe: &Recipe,
+        changed: Option<&Recipe>,
+        interrupt: &AtomicBool,
+    ) -> Result<(), String> {
+        let backend = &mut self.backends[index];
+        let film = backend.trace(recipe, interrupt)?.film;
+        let other = match (check, changed) {
+            (Check::Rounding, _) => self.reference.trace(recipe, interrupt)?.film,
+            (_, Some(changed)) => backend.trace(changed, interrupt)?.film,
+            (_, None) => return has_no_more_light(recipe, &film),
+        };
+        let against = Against::Picture(Paired::of(&other, &film));
+        let verdict = judge(&Level::of(&film), against, TOLERANCE, film.rejected() + other.rejected());
+        if verdict.is_right() { Ok(()) } else { Err(verdict.reason().to_owned()) }
+    }
+}
+
+/// The scene that must give the same picture; `None` where there is none.
+fn changed(check: Check, recipe: &Recipe) -> Option<Recipe> {
+    match check {
+        Check::Rounding | Check::Energy => None,
+        Check::Hierarchy => Some(with_far_spheres(recipe, extent(recipe))),
+        Check::Scaling => Some(moved(recipe, 4.0, DVec3::ZERO)),
+        Check::Translation => {
+            // A power of two, so that places keep their digits.
+            let length = extent(recipe).log2().round().exp2();
+            Some(moved(recipe, 1.0, length * DVec3::new(4.0, -8.0, 2.0)))
+        }
+        Check::Copies => without_copies(recipe),
+    }
+}
+
+/// The length within which the scene lies about the eye, but for what is much larger.
+fn extent(recipe: &Recipe) -> f64 {
+    recipe.camera.look_from.distance(recipe.camera.look_at)
+}
+
+fn without_copies(recipe: &Recipe) -> Option<Recipe> {
+    let mut scene = Scene::clone(&recipe.scene);
+    let is_glass = |material: &Material| matches!(material, Material::Dielectric { .. });
+    let all = recipe.scene.spheres.clone();
+    let mut kept = Vec::new();
+    for sphere in &all {
+        if is_glass(scene.material_of(sphere)) || !kept.contains(sphere) {
+            kept.push(*sphere);
+        }
+    }
+    let is_less = kept.len() < all.len();
+    scene.spheres = kept;
+    is_less.then(|| Recipe { scene: Arc::new(scene), ..recipe.clone() })
+}
+
+fn has_no_more_light(recipe: &Recipe, film: &Film) -> Result<(), String> {
+    let sky = recipe.scene.sky;
+    let most = sky.bottom.max(sky.top).to_array();
+    for pixel in 0..film.width() as usize * film.height() as usize {
+        let mean = film.mean(pixel);
+        if let Some(channel) = (0..3).find(|channel| mean[*channel] > most[*channel] * (1.0 + 1e-5)) {
+            return Err(format!("pixel {pixel} is {}, where the sky is {}", mean[channel], most[channel]));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backends::BackendChoice;
+    use crate::render_cpu::CpuOptions;
+    use crate::stress::families::build::{one_ball, sized, tame};
+    use crate::stress::suite::by_the_book;
+
+    fn checker() -> Checker {
+        let options = CpuOptions { threads: Some(1), ..CpuOptions::default() };
+        let cpu = Backend::new("cpu", BackendChoice::Cpu(options));
+        Checker::new(vec![cpu], Backend::new("f64", BackendChoice::Reference { threads: Some(1) }))
+    }
+
+    #[test]
+    fn a_tame_scene_holds_and_the_books_arithmetic_on_a_small_one_does_not() {
+        let go_on = AtomicBool::new(false);
+        let mut checker = checker();
+        let small = sized(tame(), [12, 8], 8);
+        assert_eq!(checker.first_failure(&small, &go_on), None);
+        // Its threshold is a length: what is larger looks other.
+        let book = by_the_book(&moved(&small, 0.003, DVec3::ZERO));
+        let reason = checker.fails(Check::Scaling, &book, &go_on);
+        assert!(reason.is_some_and(|reason| reason.starts_with("cpu: ")), "scaling");
+    }
+
+    #[test]
+    fn copies_are_removed_where_they_change_nothing() {
+        assert_eq!(without_copies(&one_ball()), None);
+        let mut recipe = one_ball();
+        let scene = Arc::make_mut(&mut recipe.scene);
+        scene.spheres.push(scene.spheres[0]);
+        assert_eq!(without_copies(&recipe), Some(one_ball()));
+    }
+
+    #[test]
+    fn light_from_nowhere_is_seen() {
+        let recipe = one_ball();
+        let mut film = Film::new(1, 1, 1);
+        film.halves_mut()[0][0] = crate::film::fixed_point([1.0, 1.0, 1.1]).unwrap();
+        film.record(0..1, 0).unwrap();
+        let reason = has_no_more_light(&recipe, &film).unwrap_err();
+        assert!(reason.starts_with("pixel 0 is 1.1"), "{reason}");
+    }
+}

@@ -1,0 +1,113 @@
+//! Random scenes without end: each is held against `f64` and against what no change of it may change.
+
+mod check;
+mod random;
+mod shrink;
+
+use super::backend::Backend;
+use crate::backends::BackendChoice;
+use crate::cli::{ProgressChoice, StressOptions};
+use crate::film::write_text;
+use crate::recipe::{Recipe, file};
+use crate::render_cpu::CpuOptions;
+use crate::terminal::{self, Display};
+use anyhow::Result;
+use check::{Check, Checker};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Where what is found goes, unless that is said.
+const DIRECTORY: &str = "stress";
+
+/// Time between lines of progress where there is no terminal.
+const LINE_INTERVAL: Duration = Duration::from_secs(10);
+
+/// What making one scene smaller may take.
+const SHRINK_TIME: Duration = Duration::from_secs(20);
+
+/// Searches for `time` and saves what fails. Returns whether nothing did.
+///
+/// # Errors
+/// If a file cannot be written.
+pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> Result<bool> {
+    let directory = options.out.clone().unwrap_or_else(|| PathBuf::from(DIRECTORY));
+    let mut checker =
+        Checker::new(backends(options), Backend::new("f64", BackendChoice::Reference { threads: None }));
+    let mut display = display(options.progress, time);
+    let begin = Instant::now();
+    let (mut scenes, mut found) = (0_u32, Vec::new());
+    let is_over = || begin.elapsed() >= time || interrupt.load(Ordering::Relaxed);
+    while !is_over() {
+        let recipe = random::scene(options.seed, scenes);
+        scenes += 1;
+        display.update(begin.elapsed().as_secs(), || format!("{scenes} scenes, {} failures", found.len()));
+        let Some((check, reason)) = checker.first_failure(&recipe, interrupt) else { continue };
+        if interrupt.load(Ordering::Relaxed) {
+            break;
+        }
+        let until = Instant::now() + SHRINK_TIME;
+        let small = shrink::shrink(recipe, |smaller| {
+            Instant::now() < until
+                && !interrupt.load(Ordering::Relaxed)
+                && checker.fails(check, smaller, interrupt).is_some()
+        });
+        let reason = checker.fails(check, &small, interrupt).unwrap_or(reason);
+        let path = directory.join(format!("found-{}-{}.toml", options.seed, scenes - 1));
+        save(&path, &small, check, &reason, [options.seed, scenes - 1])?;
+        display.above(|| {
+            let spheres = small.scene.spheres.len();
+            let text = format!("{} ({spheres} spheres): {}: {reason}\n", path.display(), check.name());
+            terminal::print_beside(options.json.as_ref(), &text)
+        })?;
+        found.push(path);
+    }
+    display.clear();
+    let text = format!(
+        "search: {} of {scenes} random scenes failed in {:.0} s\n",
+        found.len(),
+        begin.elapsed().as_secs_f64()
+    );
+    terminal::print_beside(options.json.as_ref(), &text)?;
+    Ok(found.is_empty())
+}
+
+fn display(choice: ProgressChoice, time: Duration) -> Display {
+    Display::new(choice, time.as_secs().max(1), "[{bar:24}] {wide_msg}", "", LINE_INTERVAL)
+}
+
+fn backends(options: &StressOptions) -> Vec<Backend> {
+    let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa: Some(isa), ..CpuOptions::default() });
+    options.levels.iter().map(|isa| Backend::new(isa.name(), cpu(*isa))).collect()
+}
+
+fn save(path: &Path, recipe: &Recipe, check: Check, reason: &str, [seed, number]: [u32; 2]) -> Result<()> {
+    if let Some(directory) = path.parent() {
+        std::fs::create_dir_all(directory)?;
+    }
+    Ok(write_text(path, &saved_text(recipe, check, reason, [seed, number]))?)
+}
+
+fn saved_text(recipe: &Recipe, check: Check, reason: &str, [seed, number]: [u32; 2]) -> String {
+    format!(
+        "# Found by weekender stress --search, seed {seed}, scene {number}, and made as small as it goes.\n\
+         # What failed: {}: {}\n\n{}",
+        check.name(),
+        reason.replace('\n', " "),
+        file::to_toml(recipe)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::families::build::one_ball;
+
+    #[test]
+    fn what_is_saved_is_a_scene_file_that_says_what_failed() {
+        let text = saved_text(&one_ball(), Check::Rounding, "avx2: off by\n+1e-3", [3, 7]);
+        assert!(text.contains("seed 3, scene 7") && text.contains("off by +1e-3"), "{text}");
+        let read = file::parse(&text, "one-ball").unwrap();
+        assert_eq!(read, one_ball());
+    }
+}

@@ -1,0 +1,275 @@
+//! Runs cases on backends and judges what they give.
+
+use super::backend::{Backend, Traced};
+use super::case::{Case, Expected, Form};
+use super::exact::first_hit;
+use super::figures::{Level, Paired};
+use super::report::{BookMeasured, CaseReport, FirstHits, Measured};
+use super::verdict::{Against, Verdict, judge, judge_time, offset};
+use crate::film::Film;
+use crate::recipe::Recipe;
+use crate::render_cpu::{Isa, PathRecorder};
+use crate::stages::{Rules, Surface};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::AtomicBool;
+
+/// The recipe under the book's own arithmetic.
+pub fn by_the_book(recipe: &Recipe) -> Recipe {
+    Recipe { rules: Rules { surface: Surface::Book, ..recipe.rules }, ..recipe.clone() }
+}
+
+/// Scenes of more spheres are not checked ray by ray: each ray is tested against all of them.
+const CHECKED_SPHERES: usize = 5000;
+
+/// Pixels whose first ray is checked, each way.
+const CHECKED_PIXELS: u32 = 8;
+
+/// What the distance of a hit may be off by, as a share of it and of the distance to what is looked at.
+const DISTANCE_TOLERANCE: f64 = 1e-5;
+
+/// Checks rays from the eye in numbers of 106 bits.
+fn first_hits(recipe: &Recipe) -> Option<FirstHits> {
+    let job = recipe.job().ok()?;
+    let has_lens = recipe.camera.defocus_angle_degrees > 0.0;
+    if has_lens || recipe.scene.spheres.len() > CHECKED_SPHERES {
+        return None;
+    }
+    let isa = *Isa::available().last()?;
+    let [width, height] = [job.settings().width, job.settings().height];
+    let eye = recipe.camera.look_from;
+    let margin = DISTANCE_TOLERANCE * recipe.camera.effective_focus_distance();
+    let mut found = FirstHits { rays: 0, agree: 0 };
+    // A tracer that breaks off has been noted by its pictures.
+    let recorder = catch_unwind(|| PathRecorder::new(&job, isa, None)).ok()?;
+    for step in 0..CHECKED_PIXELS * CHECKED_PIXELS {
+        let share = |step: u32, pixels: u32| (step * pixels / CHECKED_PIXELS).min(pixels - 1);
+        let pixel = [share(step % CHECKED_PIXELS, width), share(step / CHECKED_PIXELS, height)];
+        let record = catch_unwind(AssertUnwindSafe(|| recorder.record(pixel, 0))).ok()?;
+        let Some(ray) = record.rays.first() else { continue };
+        let exact = first_hit(&recipe.scene, eye, DVec3::from_array(ray.direction));
+        found.rays += 1;
+        found.agree += usize::from(match (ray.hit, exact) {
+            (None, None) => true,
+            (Some(hit), Some((_, distance))) => {
+                (hit.distance - distance).abs() <= DISTANCE_TOLERANCE * distance + margin
+            }
+            _ => false,
+        });
+    }
+    Some(found)
+}
+
+/// Backends that are tested, and the reference that they are tested against.
+pub struct Suite {
+    backends: Vec<Backend>,
+    reference: Backend,
+    /// Films and times of scenes that several cases share, by the backend's index (`None`: the reference) and name.
+    shared: HashMap<(Option<usize>, String), Result<(Film, f64), String>>,
+}
+
+impl Suite {
+    /// The reference is tested with the others. The first of them shows the book's arithmetic in `f32`.
+    pub fn new(backends: Vec<Backend>, reference: Backend) -> Self {
+        Suite { backends, reference, shared: HashMap::new() }
+    }
+
+    /// Names of all that are tested.
+    pub fn names(&self) -> Vec<String> {
+        self.backends.iter().chain([&self.reference]).map(|backend| backend.name.clone()).collect()
+    }
+
+    /// Runs a case in all forms on all backends, and by the book.
+    pub fn run(&mut self, case: &Case, interrupt: &AtomicBool) -> CaseReport {
+        let mut measured = Vec::new();
+        let mut oracle: Result<Film, String> = Err("there is no picture in f64".to_owned());
+        for form in case.forms() {
+            let recipe = case.recipe_in(*form);
+            let exact = self.reference.trace(&recipe, interrupt);
+            if let (Form::Plain, Ok(exact)) = (form, &exact) {
+                oracle = Ok(exact.film.clone());
+            }
+            for index in 0..self.backends.len() {
+                let traced = self.backends[index].trace(&recipe, interrupt);
+                let found =
+                    self.measure(case, Some(index), *form, &traced, &oracle, exact.as_ref().ok(), interrupt);
+                measured.push(found);
+            }
+            measured.push(self.measure(case, None, *form, &exact, &oracle, None, interrupt));
+        }
+        CaseReport {
+            id: case.id.clone(),
+            family: case.family.title,
+            stiff: case.stiff.clone(),
+            expected: case.expected.to_string(),
+            why: case.expected.why(),
+            tolerance: case.tolerance,
+            spheres: case.recipe.scene.spheres.len(),
+            first_hits: first_hits(&case.recipe),
+            book: self.book(case, &oracle, interrupt),
+            measured,
+        }
+    }
+
+    /// `backend`: `None` is the reference.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "all of it is needed once, and a struct would only be unpacked"
+    )]
+    fn measure(
+        &mut self,
+        case: &Case,
+        backend: Option<usize>,
+        form: Form,
+        traced: &Result<Traced, String>,
+        oracle: &Result<Film, String>,
+        exact: Option<&Traced>,
+        interrupt: &AtomicBool,
+    ) -> Measured {
+        let name = match backend {
+            Some(index) => self.backends[index].name.clone(),
+            None => self.reference.name.clone(),
+        };
+        let mut measured = Measured {
+            backend: name,
+            form: form.name(),
+            mean: None,
+            offset: None,
+            deviation: None,
+            rounding: None,
+            seconds: None,
+            tame_seconds: None,
+            verdict: Verdict::Right,
+        };
+        let traced = match traced {
+            Ok(traced) => traced,
+            Err(reason) => {
+                measured.verdict = Verdict::None(reason.clone());
+                return measured;
+            }
+        };
+        let level = Level::of(&traced.film);
+        measured.mean = Some(level.grey());
+        measured.deviation = Some(level.deviation);
+        measured.seconds = Some(traced.seconds);
+        measured.rounding = exact.map(|exact| Paired::of(&traced.film, &exact.film));
+        if let Some(tame) = &case.tame {
+            measured.tame_seconds = self.shared(backend, tame, interrupt).ok().map(|(_, seconds)| seconds);
+        }
+        match self.against(case, backend, &traced.film, oracle, interrupt) {
+            Ok(against) => {
+                measured.offset = Some(offset(&level, against));
+                let verdict = judge(&level, against, case.tolerance, traced.film.rejected());
+                measured.verdict = judge_time(verdict, traced.seconds, measured.tame_seconds);
+            }
+            Err(reason) => measured.verdict = Verdict::None(reason),
+        }
+        measured
+    }
+
+    /// What the film of a backend is held against.
+    fn against(
+        &mut self,
+        case: &Case,
+        backend: Option<usize>,
+        film: &Film,
+        oracle: &Result<Film, String>,
+        interrupt: &AtomicBool,
+    ) -> Result<Against, String> {
+        Ok(match &case.expected {
+            Expected::Every { value, .. } => Against::Every(*value),
+            Expected::Mean { value, .. } => Against::Mean(*value),
+            Expected::Same { other, .. } => {
+                let (other, _) = self.shared(backend, other, interrupt)?;
+                Against::Picture(Paired::of(film, &other))
+            }
+            Expected::Reference { .. } => {
+                Against::Picture(Paired::of(film, oracle.as_ref().map_err(Clone::clone)?))
+            }
+        })
+    }
+
+    /// The picture of a scene that several cases share, traced once.
+    fn shared(
+        &mut self,
+        backend: Option<usize>,
+        recipe: &Recipe,
+        interrupt: &AtomicBool,
+    ) -> Result<(Film, f64), String> {
+        let key = (backend, recipe.name.clone());
+        if let Some(known) = self.shared.get(&key) {
+            return known.clone();
+        }
+        let tracer = match backend {
+            Some(index) => &mut self.backends[index],
+            None => &mut self.reference,
+        };
+        let found = tracer.trace(recipe, interrupt).map(|traced| (traced.film, traced.seconds));
+        self.shared.insert(key, found.clone());
+        found
+    }
+
+    /// The book's own arithmetic, in `f32` on the first backend and in `f64`.
+    fn book(
+        &mut self,
+        case: &Case,
+        oracle: &Result<Film, String>,
+        interrupt: &AtomicBool,
+    ) -> Vec<BookMeasured> {
+        let recipe = by_the_book(&case.recipe);
+        let mut traced = Vec::new();
+        if let Some(first) = self.backends.first_mut() {
+            traced.push(("f32", first.trace(&recipe, interrupt)));
+        }
+        traced.push(("f64", self.reference.trace(&recipe, interrupt)));
+        let measure = |(precision, traced): (&'static str, Result<Traced, String>)| {
+            let (mean, offset, verdict) = match traced {
+                Ok(traced) => {
+                    let level = Level::of(&traced.film);
+                    // What it is off by is its own fault, not that of its picture elsewhere: ours are right there.
+                    match self.against(case, None, &traced.film, oracle, interrupt) {
+                        Ok(against) => {
+                            let rejected = traced.film.rejected();
+                            let verdict = judge(&level, against, case.tolerance, rejected);
+                            (Some(level.grey()), Some(offset(&level, against)), verdict)
+                        }
+                        Err(reason) => (Some(level.grey()), None, Verdict::None(reason)),
+                    }
+                }
+                Err(reason) => (None, None, Verdict::None(reason)),
+            };
+            BookMeasured { precision, mean, offset, verdict }
+        };
+        traced.into_iter().map(measure).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backends::BackendChoice;
+    use crate::render_cpu::CpuOptions;
+    use crate::stress::families::cases;
+
+    #[test]
+    fn a_case_is_measured_on_every_backend_in_every_form() {
+        let options = CpuOptions { threads: Some(1), ..CpuOptions::default() };
+        let reference = Backend::new("f64", BackendChoice::Reference { threads: Some(1) });
+        let mut suite = Suite::new(vec![Backend::new("cpu", BackendChoice::Cpu(options))], reference);
+        assert_eq!(suite.names(), ["cpu", "f64"]);
+        let find = |id: &str| cases().iter().find(|case| case.id == id).unwrap();
+        let report = suite.run(find("shells/1"), &AtomicBool::new(false));
+        let who: Vec<_> = report.measured.iter().map(|m| (m.backend.as_str(), m.form)).collect();
+        assert_eq!(who, [("cpu", "plain"), ("f64", "plain"), ("cpu", "+40"), ("f64", "+40")]);
+        assert!(report.is_right(), "{report:#?}");
+        assert_eq!(report.measured[0].mean, Some(0.5));
+        assert!(report.measured[0].rounding.is_some() && report.measured[1].rounding.is_none());
+        assert_eq!(report.book.iter().map(|book| book.precision).collect::<Vec<_>>(), ["f32", "f64"]);
+
+        // Balls of half a millimetre: to the book's threshold there is nothing beside them.
+        let small = suite.run(find("scaled/1e-3"), &AtomicBool::new(false));
+        assert!(small.is_right(), "{small:#?}");
+        assert!(small.book.iter().all(|book| !book.verdict.is_right()), "{:#?}", small.book);
+    }
+}

@@ -1,0 +1,190 @@
+//! The table, for the terminal and as Markdown.
+
+use super::report::{CaseReport, Report};
+use std::fmt::Write;
+
+/// Columns of the terminal's table.
+const WIDTHS: [usize; 8] = [30, 12, 12, 9, 18, 7, 7, 18];
+
+/// The head of the terminal's table.
+pub fn head() -> String {
+    line(["case", "expected", "measured", "off by", "rounding (RMS)", "time", "verdict", "book f32, f64"])
+}
+
+/// A case as a line, and below it what is wrong on which backend.
+pub fn row(case: &CaseReport) -> String {
+    let [expected, measured, off, rounding, time, verdict, book] = cells(case);
+    let mut text = line([&case.id, &expected, &measured, &off, &rounding, &time, &verdict, &book]);
+    for wrong in case.measured.iter().filter(|measured| !measured.verdict.is_right()) {
+        let (backend, form, reason) = (&wrong.backend, wrong.form, wrong.verdict.reason());
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "    {backend}, {form}: {reason}");
+    }
+    if let Some(hits) = case.first_hits.filter(|hits| !hits.is_right()) {
+        let (agree, rays) = (hits.agree, hits.rays);
+        let _ = writeln!(
+            text,
+            "    {agree} of {rays} rays from the eye meet what they do in numbers of 106 bits"
+        );
+    }
+    text
+}
+
+fn cells(case: &CaseReport) -> [String; 7] {
+    let worst = case.worst();
+    let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
+    let verdicts = || case.measured.iter().map(|measured| &measured.verdict);
+    let verdict = match verdicts().find(|verdict| !verdict.is_right()) {
+        Some(verdict) => verdict.name(),
+        None if case.is_right() => "right",
+        None => "WRONG",
+    };
+    let book = case.book.iter().map(|book| or_dash(book.offset.map(brief))).collect::<Vec<_>>().join(", ");
+    [
+        case.expected.clone(),
+        or_dash(worst.and_then(|worst| worst.mean).map(|mean| format!("{mean:.6}"))),
+        or_dash(worst.and_then(|worst| worst.offset).map(brief)),
+        or_dash(case.rounding().map(|paired| format!("{} ({:.0e})", brief(paired.bias), paired.rms))),
+        or_dash(case.time_ratio().map(|ratio| format!("{ratio:.1}x"))),
+        verdict.to_owned(),
+        book,
+    ]
+}
+
+/// A small number with its sign, or a plain 0.
+fn brief(value: f64) -> String {
+    if value == 0.0 { "0".to_owned() } else { format!("{value:+.1e}") }
+}
+
+fn line<S: AsRef<str>>(cells: [S; 8]) -> String {
+    let mut text = String::new();
+    for (cell, width) in cells.iter().zip(WIDTHS) {
+        let _ = write!(text, "{:width$} ", cell.as_ref());
+    }
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    text
+}
+
+/// What the run comes to.
+pub fn summary(report: &Report) -> String {
+    let count = report.cases.len();
+    let wrong: Vec<&CaseReport> = report.cases.iter().filter(|case| !case.is_right()).collect();
+    let failures = |precision: &str| {
+        let has_failed = |case: &&CaseReport| {
+            case.book.iter().any(|book| book.precision == precision && !book.verdict.is_right())
+        };
+        report.cases.iter().filter(has_failed).count()
+    };
+    let mut text = format!(
+        "\n{} of {count} cases right on {} in {:.0} s; by the book's own arithmetic, {} in f32 and {} in f64\n",
+        count - wrong.len(),
+        report.backends.join(", "),
+        report.seconds,
+        count - failures("f32"),
+        count - failures("f64"),
+    );
+    if report.interrupted {
+        text.push_str("interrupted: the other cases were not run\n");
+    }
+    text
+}
+
+/// The table for a document, family by family.
+pub fn markdown(report: &Report) -> String {
+    let mut text = String::new();
+    let mut family = "";
+    for case in &report.cases {
+        if case.family != family {
+            family = case.family;
+            let lesson = super::families::families().find(|f| f.title == family).map_or("", |f| f.lesson);
+            let _ = write!(text, "\n### {family}\n\n{lesson}\n\n{MARKDOWN_HEAD}");
+        }
+        let [expected, _, off, rounding, time, _, book] = cells(case);
+        let (id, stiff) = (&case.id, &case.stiff);
+        let verdict = verdicts(case);
+        let _ = writeln!(
+            text,
+            "| `{id}` | {stiff} | {expected} | {off} | {rounding} | {time} | {verdict} | {book} |"
+        );
+    }
+    text
+}
+
+const MARKDOWN_HEAD: &str = "| case | what is stiff about it | expected | off by | rounding (RMS) | time | verdict | \
+                             book's f32, f64 |\n|---|---|---|---|---|---|---|---|\n";
+
+/// "right", or who is not.
+fn verdicts(case: &CaseReport) -> String {
+    let wrong: Vec<String> = case
+        .measured
+        .iter()
+        .filter(|measured| !measured.verdict.is_right())
+        .map(|m| format!("{} {}: **{}**", m.backend, m.form, m.verdict.name().to_lowercase()))
+        .collect();
+    if wrong.is_empty() { "right".to_owned() } else { wrong.join(", ") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::figures::Paired;
+    use super::super::report::{BookMeasured, FirstHits, Measured};
+    use super::super::verdict::Verdict;
+    use super::*;
+
+    fn case(verdict: Verdict) -> CaseReport {
+        let measured = |backend: &str, offset, verdict| Measured {
+            backend: backend.to_owned(),
+            form: "plain",
+            mean: Some(0.5 + offset),
+            offset: Some(offset),
+            deviation: Some(0.0),
+            rounding: Some(Paired { bias: offset, bias_deviation: 0.0, rms: 1e-5 }),
+            seconds: Some(0.2),
+            tame_seconds: Some(0.1),
+            verdict,
+        };
+        CaseReport {
+            id: "copies/2".into(),
+            family: "Many spheres at one place",
+            stiff: "two".into(),
+            expected: "0.5".into(),
+            why: "",
+            tolerance: 1e-6,
+            spheres: 2,
+            first_hits: Some(FirstHits { rays: 64, agree: 64 }),
+            measured: vec![measured("avx2", 0.0, Verdict::Right), measured("sse4.2", -0.25, verdict)],
+            book: vec![BookMeasured { precision: "f32", mean: None, offset: None, verdict: Verdict::Right }],
+        }
+    }
+
+    #[test]
+    fn a_line_shows_the_worst_and_names_who_is_wrong() {
+        let text = row(&case(Verdict::Wrong("off".into())));
+        let mut lines = text.lines();
+        let words: Vec<&str> = lines.next().unwrap().split_whitespace().collect();
+        assert_eq!(
+            words,
+            ["copies/2", "0.5", "0.250000", "-2.5e-1", "-2.5e-1", "(1e-5)", "2.0x", "WRONG", "-"]
+        );
+        assert_eq!(lines.next(), Some("    sse4.2, plain: off"));
+        assert_eq!(row(&case(Verdict::Right)).lines().count(), 1);
+    }
+
+    #[test]
+    fn documents_have_a_table_for_each_family() {
+        let report = Report {
+            schema: 1,
+            version: "",
+            backends: vec!["avx2".into()],
+            seconds: 1.0,
+            interrupted: false,
+            cases: vec![case(Verdict::Right), case(Verdict::None("gone".into()))],
+        };
+        let text = markdown(&report);
+        assert_eq!(text.matches("### Many spheres at one place").count(), 1);
+        assert!(text.contains("| right |") && text.contains("| sse4.2 plain: **none** |"), "{text}");
+        assert!(text.contains("Two surfaces at one place tie"), "{text}");
+        assert!(summary(&report).contains("1 of 2 cases right on avx2"), "{}", summary(&report));
+    }
+}

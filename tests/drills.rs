@@ -1,0 +1,418 @@
+//! Drills: the program under kills, full disks, limits, closed pipes and other runs on the same film. What it had
+//! rendered must be there afterwards, to the bit.
+//!
+//! Each runs a few rounds. For long series by hand, WEEKENDER_DRILLS is the number of rounds:
+//! `WEEKENDER_DRILLS=150 cargo test --release --test drills -- --nocapture`.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::fs::symlink;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+use weekender::film::{Film, checkpoint};
+
+const PATIENCE: Duration = Duration::from_secs(120);
+const PROGRAM: &str = env!("CARGO_BIN_EXE_weekender");
+
+/// A small picture; enough samples to be interrupted in.
+const PICTURE: [&str; 8] = ["--batch", "--size", "48x27", "--threads", "2", "--device", "cpu", "--progress"];
+
+fn rounds(usual: u32) -> u32 {
+    std::env::var("WEEKENDER_DRILLS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(usual)
+}
+
+fn weekender(at: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command
+        .current_dir(at)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+fn batch(at: &Path, progress: &str, arguments: &[&str]) -> Command {
+    weekender(at, &[&PICTURE[..], &[progress], arguments].concat())
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn succeeds(command: &mut Command) {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{command:?}: {}", text(&output.stderr));
+}
+
+fn signal(child: &Child, name: &str) {
+    let killed = Command::new("kill").args(["-s", name, &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+}
+
+fn wait(child: &mut Child) -> ExitStatus {
+    let begin = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        if begin.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("it does not end");
+        }
+        sleep(Duration::from_millis(5));
+    }
+}
+
+/// Waits until `is_so`.
+fn until(what: &str, is_so: impl Fn() -> bool) {
+    let begin = Instant::now();
+    while !is_so() {
+        assert!(begin.elapsed() < PATIENCE, "{what}");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+fn film(path: &Path) -> Film {
+    checkpoint::load(path).unwrap().film
+}
+
+/// Files in a directory, without the unfinished ones that a kill leaves.
+fn names(at: &Path) -> Vec<String> {
+    let entries = fs::read_dir(at).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+/// Numbers that look random; a drill says which it began with.
+struct Dice(u64);
+
+impl Dice {
+    fn new() -> Dice {
+        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+        Dice(now.as_nanos() as u64 | 1)
+    }
+
+    /// Below `limit`.
+    fn roll(&mut self, limit: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 % limit
+    }
+}
+
+/// Whether `part`, which a killed run left, goes on to what was never interrupted.
+fn goes_on_to_the_same_bits(at: &Path, part: &str) {
+    let whole = film(&at.join(part));
+    let samples = whole.samples().end() + 3;
+    let range = format!("0..{samples}");
+    let common = ["--sample-range", &range, "--out"];
+    succeeds(&mut batch(at, "off", &[&["--resume", part], &common[..], &["resumed.exr"]].concat()));
+    succeeds(&mut batch(at, "off", &[&common[..], &["whole.exr"]].concat()));
+    assert!(film(&at.join("resumed.exr")) == film(&at.join("whole.exr")), "{part}: {}", whole.samples());
+}
+
+#[test]
+fn signals_at_any_moment_leave_a_film_that_goes_on() {
+    let mut dice = Dice::new();
+    println!("dice {}", dice.0);
+    let (mut films, mut unfinished) = (0, 0);
+    for round in 0..rounds(6) {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let name = ["KILL", "INT", "TERM"][round as usize % 3];
+        let flags = ["--samples", "4294967296", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png"];
+        let mut child = batch(at, "on", &flags).spawn().unwrap();
+        // Its first words come when it has begun to listen.
+        let mut stderr = BufReader::new(child.stderr.take().unwrap());
+        stderr.read_line(&mut String::new()).unwrap();
+        sleep(Duration::from_millis(dice.roll(400)));
+        signal(&child, name);
+        drop(stderr);
+        let status = wait(&mut child);
+        if name == "KILL" {
+            assert_eq!(status.signal(), Some(9));
+        } else {
+            assert_eq!(status.code(), Some(130), "{name}: {status}");
+            assert_eq!(names(at), ["g.exr", "g.png"], "{name}");
+        }
+        unfinished += names(at).iter().filter(|name| name.ends_with(".part")).count();
+        if at.join("g.exr").exists() {
+            films += 1;
+            goes_on_to_the_same_bits(at, "g.exr");
+            let left: Vec<String> = names(at).into_iter().filter(|name| name.ends_with(".part")).collect();
+            assert!(left.is_empty(), "the next run clears up: {left:?}");
+        }
+    }
+    println!("{} rounds: {films} films, {unfinished} unfinished files cleared up", rounds(6));
+}
+
+#[test]
+fn a_kill_costs_no_more_than_the_time_since_the_last_writing() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let flags = ["--samples", "4294967296", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png"];
+    let mut child = batch(at, "off", &flags).spawn().unwrap();
+    let path = at.join("g.exr");
+    until("the film is not written", || path.exists());
+    let first = film(&path).sample_count();
+    until("the film does not grow", || film(&path).sample_count() > first);
+    signal(&child, "KILL");
+    wait(&mut child);
+    assert!(!at.join("g.png").exists());
+    goes_on_to_the_same_bits(at, "g.exr");
+}
+
+#[test]
+fn what_is_only_said_never_ends_a_run() {
+    for (round, both) in [(0, false), (1, false), (2, true)] {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let flags = ["--samples", "4294967296", "--checkpoint", "g.exr", "--out", "g.png"];
+        let mut command = batch(at, "on", &flags);
+        let gone = || {
+            // A reader that has gone away.
+            let (reader, writer) = std::io::pipe().unwrap();
+            drop(reader);
+            writer
+        };
+        let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        if round == 1 {
+            command.stderr(full())
+        } else {
+            command.stderr(gone())
+        };
+        if both {
+            command.stdout(gone());
+        }
+        let mut child = command.spawn().unwrap();
+        sleep(Duration::from_millis(700));
+        signal(&child, "INT");
+        let status = wait(&mut child);
+        assert_eq!(status.code(), Some(130), "round {round}: {status}");
+        assert_eq!(names(at), ["g.exr", "g.png"]);
+        assert!(film(&at.join("g.exr")).sample_count() > 0);
+    }
+    // Others that speak: warnings of a lost device, a report, a comparison, bad input.
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let quiet = |arguments: &[&str]| {
+        let full = || fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let status = weekender(at, arguments).stderr(full()).status().unwrap();
+        status.code()
+    };
+    assert_eq!(quiet(&["--batch", "--scene", "nowhere"]), Some(2));
+    assert_eq!(quiet(&["--no-such-flag"]), Some(2));
+    let small = ["--batch", "--size", "8x8", "--samples", "2", "--device", "cpu", "--progress", "on"];
+    assert_eq!(quiet(&[&small[..], &["--json", "-"]].concat()), Some(0));
+    let report = [
+        "report",
+        "--out",
+        "r",
+        "--scenes",
+        "three-spheres",
+        "--backends",
+        "cpu",
+        "--samplers",
+        "sobol",
+        "--size",
+        "16x9",
+        "--seeds",
+        "1",
+        "--max-samples",
+        "4",
+        "--time-limit",
+        "1",
+        "--progress",
+        "on",
+    ];
+    assert_eq!(quiet(&report), Some(0));
+}
+
+#[test]
+fn results_that_nobody_can_read_are_a_failure_with_a_word() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    succeeds(&mut batch(at, "off", &["--samples", "2", "--out", "a.exr"]));
+    let commands: [(&[&str], i32); 7] = [
+        (&["--list"], 1),
+        (&["--help"], 1),
+        (&["merge", "a.exr", "--out", "b.png"], 1),
+        (&["compare", "a.exr", "a.exr"], 2),
+        (&["diff", "--pixel", "1,1", "--sides", "cpu,reference"], 2),
+        (&["--scene", "book", "--save-scene", "s.toml"], 1),
+        (&["--batch", "--size", "8x8", "--samples", "2", "--device", "cpu", "--out", "c.png"], 1),
+    ];
+    for (arguments, code) in commands {
+        for is_full in [true, false] {
+            let mut command = weekender(at, arguments);
+            if is_full {
+                command.stdout(fs::OpenOptions::new().write(true).open("/dev/full").unwrap());
+            } else {
+                let (reader, writer) = std::io::pipe().unwrap();
+                drop(reader);
+                command.stdout(writer);
+            }
+            let output = command.output().unwrap();
+            assert_eq!(output.status.code(), Some(code), "{arguments:?}: {output:?}");
+            assert!(text(&output.stderr).contains("cannot write to standard output"), "{arguments:?}");
+        }
+    }
+    for name in ["b.png", "s.toml", "c.png"] {
+        assert!(at.join(name).exists(), "{name} is written all the same");
+    }
+}
+
+#[test]
+fn signals_while_files_are_written_wait_for_them_and_are_answered() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    // A pipe takes a picture as slowly as its reader likes.
+    succeeds(Command::new("mkfifo").arg(at.join("slow.png")));
+    let flags = ["--samples", "1", "--checkpoint", "g.exr", "--out", "slow.png"];
+    let mut child = batch(at, "on", &flags).spawn().unwrap();
+    let stderr = BufReader::new(child.stderr.take().unwrap());
+    let (said, lines) = std::sync::mpsc::channel();
+    let listener = std::thread::spawn(move || {
+        for line in stderr.lines().map_while(Result::ok) {
+            said.send(line).unwrap();
+        }
+    });
+    let hear = |part: &str| {
+        let begin = Instant::now();
+        while begin.elapsed() < PATIENCE {
+            if lines.recv_timeout(PATIENCE).unwrap().contains(part) {
+                return;
+            }
+        }
+        panic!("{part:?} is not said");
+    };
+    hear("write slow.png");
+    for _ in 0..3 {
+        signal(&child, "INT");
+        hear("still writing");
+        // Beyond what counts as one signal that arrives twice.
+        sleep(Duration::from_millis(600));
+    }
+    assert_eq!(child.try_wait().unwrap(), None);
+    let mut picture = Vec::new();
+    File::open(at.join("slow.png")).unwrap().read_to_end(&mut picture).unwrap();
+    assert_eq!(wait(&mut child).code(), Some(130));
+    listener.join().unwrap();
+    assert!(picture.starts_with(b"\x89PNG") && picture.ends_with(b"IEND\xae\x42\x60\x82"));
+    assert_eq!(film(&at.join("g.exr")).sample_count(), 1);
+}
+
+#[test]
+fn a_signal_that_arrives_twice_is_one() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let flags = ["--samples", "4294967296", "--checkpoint", "g.exr", "--out", "g.png"];
+    let mut child = batch(at, "on", &flags).spawn().unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    stderr.read_line(&mut String::new()).unwrap();
+    signal(&child, "INT");
+    signal(&child, "TERM");
+    drop(stderr);
+    assert_eq!(wait(&mut child).code(), Some(130));
+    assert_eq!(names(at), ["g.exr", "g.png"]);
+}
+
+/// Runs the program under limits of the shell.
+fn limited(at: &Path, limits: &str, arguments: &[&str]) -> Output {
+    let mut command = Command::new("sh");
+    command.arg("-c").arg(format!("{limits}; exec \"$0\" \"$@\"")).arg(PROGRAM).args(arguments);
+    for name in ["TMPDIR", "XDG_STATE_HOME", "HOME"] {
+        command.env(name, at.join("elsewhere"));
+    }
+    command.current_dir(at).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    wait(&mut child);
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_limit_on_the_size_of_files_is_an_error_and_the_loss_is_told() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    fs::create_dir(at.join("elsewhere")).unwrap();
+    let flags =
+        [&PICTURE[..], &["off", "--samples", "2", "--checkpoint", "g.exr", "--out", "g.png"]].concat();
+    let output = limited(at, "ulimit -f 1", &flags);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    for part in ["g.exr", "g.png", "ulimit -f", "the samples are lost (2 per pixel", "elsewhere"] {
+        assert!(told.contains(part), "{told} should say {part}");
+    }
+    assert_eq!(names(at), ["elsewhere"]);
+}
+
+#[test]
+fn a_full_disk_keeps_the_samples_elsewhere() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    fs::create_dir(at.join("elsewhere")).unwrap();
+    fs::create_dir(at.join("here")).unwrap();
+    for name in ["g.exr", "g.png"] {
+        symlink("/dev/full", at.join("here").join(name)).unwrap();
+    }
+    let flags =
+        [&PICTURE[..], &["off", "--samples", "2", "--checkpoint", "here/g.exr", "--out", "here/g.png"]]
+            .concat();
+    let output = limited(at, "true", &flags);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    let kept: Vec<String> =
+        names(&at.join("here")).into_iter().filter(|name| name.starts_with("weekender-")).collect();
+    let [kept] = kept.as_slice() else { panic!("{told}") };
+    assert!(told.contains(kept) && told.contains("g.exr") && told.contains("g.png"), "{told}");
+    assert_eq!(film(&at.join("here").join(kept)).sample_count(), 2);
+}
+
+#[test]
+fn little_memory_is_an_error() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let flags = ["--batch", "--size", "4000x3000", "--samples", "2", "--device", "cpu", "--out", "g.png"];
+    for kilobytes in [200_000, 400_000, 800_000] {
+        let output = limited(at, &format!("ulimit -v {kilobytes}"), &flags);
+        let code = output.status.code();
+        assert!(matches!(code, Some(0..=3)), "{kilobytes} kB: {}: {}", output.status, text(&output.stderr));
+    }
+}
+
+#[test]
+fn two_runs_on_one_film_lose_nothing() {
+    for _ in 0..rounds(2) {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        succeeds(&mut batch(at, "off", &["--samples", "8", "--checkpoint", "g.exr", "--out", "g.png"]));
+        let go_on = |range: &str, out: &str| {
+            let flags =
+                ["--resume", "g.exr", "--checkpoint", "g.exr", "--every", "0.1s", "--sample-range", range];
+            batch(at, "off", &[&flags[..], &["--out", out]].concat()).spawn().unwrap()
+        };
+        let mut runs = [go_on("8..200", "a.png"), go_on("200..424", "b.png")];
+        for run in &mut runs {
+            let mut told = String::new();
+            run.stderr.take().unwrap().read_to_string(&mut told).unwrap();
+            assert!(wait(run).success(), "{told}");
+        }
+        succeeds(&mut batch(at, "off", &["--samples", "424", "--out", "whole.exr"]));
+        assert!(
+            film(&at.join("g.exr")) == film(&at.join("whole.exr")),
+            "{}",
+            film(&at.join("g.exr")).samples()
+        );
+        assert_eq!(names(at), ["a.png", "b.png", "g.exr", "g.png", "whole.exr"]);
+    }
+}
