@@ -130,7 +130,7 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
 // Turns of one ray's loops over lists: see `intersect`. Those over a hierarchy count themselves.
 fn turns_over_lists() -> u32 {
     let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
-    if HIERARCHY && !ACNE {
+    if HIERARCHY && !BOOK_ARITHMETIC {
         return anchored_count;
     }
     let opaque_count = select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);

@@ -9,6 +9,7 @@ use super::scene::SceneData;
 use super::shader_source::EntryPoint;
 use super::{GpuRenderer, HierarchyKind, Overrides, failed};
 use crate::render::{RenderError, RenderJob};
+use crate::stages::Surface;
 use crate::tables::Tables;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -124,7 +125,8 @@ impl GpuRenderer {
     /// Refuses lists that are longer than a driver's loops.
     fn check_lists(&self, overrides: &Overrides, tables: &Tables<f32>) -> Result<(), String> {
         let listed = tables.opaque.len() + tables.two_root.len();
-        let turns = tables.anchored.len() + if overrides.hierarchy && !overrides.acne { 0 } else { listed };
+        let turns = tables.anchored.len()
+            + if overrides.hierarchy && overrides.surface == Surface::Exact { 0 } else { listed };
         if self.gpu.adapter.threads_in_step() > 1 && turns as u64 >= u64::from(TURN_LIMIT) {
             return Err(format!(
                 "each ray is tested against {turns} spheres, but loops of {} end after {TURN_LIMIT} turns; render this scene on the CPU",
