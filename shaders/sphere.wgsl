@@ -102,7 +102,7 @@ fn anchored_root(ray: Ray, sphere: AnchoredSphere, number: u32) -> u32 {
     let q = b + copysign(sqrt(max(discriminant, 0.0)), b);
     let starts = EYE_ON_SURFACE && ray.left == EYE && (sphere.flags & UNDER_EYE) != 0u;
     let leaves = ray.left == number || (starts && m_along < 0.0);
-    let enters = ray.inside == number || (starts && m_along >= 0.0);
+    let enters = ray.inside == number;
     // From its own surface inwards a ray runs the chord 2b.
     let second = select(q, b + abs(b), enters) / k;
     let roots = sphere.flags & ROOTS_MASK;

@@ -10,6 +10,7 @@ use crate::memory::{self, MemoryError};
 use crate::scene::{Camera, Material, Scene, SceneError};
 use crate::stages::{Rules, Shading};
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -319,9 +320,31 @@ pub enum RenderError {
         /// What it said.
         reason: String,
     },
+    /// The backend failed in the middle of adding, and what it had added could not be taken away again: the film is of
+    /// no use.
+    #[error("{backend} failed: {reason}; the samples that it was adding spoiled the film")]
+    FilmLost {
+        /// Its name.
+        backend: &'static str,
+        /// What it said.
+        reason: String,
+    },
     /// The same samples were asked for twice.
     #[error(transparent)]
     Film(#[from] crate::film::FilmError),
+}
+
+impl RenderError {
+    /// What a panic of a backend's is to others.
+    pub fn of_panic(backend: &'static str, payload: &(dyn Any + Send)) -> Self {
+        RenderError::Backend { backend, reason: format!("it panicked: {}", panic_text(payload)) }
+    }
+}
+
+/// What a panic said.
+pub fn panic_text(payload: &(dyn Any + Send)) -> &str {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("for no stated reason")
 }
 
 /// What a backend is, for reports.
@@ -387,8 +410,9 @@ pub trait Renderer: Send {
     /// `cancel` is looked at between small units of work.
     ///
     /// # Errors
-    /// [`RenderError::Cancelled`] leaves the film's sums incomplete: throw it away. After any other error it is
-    /// as it was.
+    /// [`RenderError::Cancelled`] and [`RenderError::FilmLost`] leave the film's sums incomplete: throw it away. After
+    /// any other error it is as it was, and so it is after a panic: whoever adds to it in pieces catches panics and
+    /// takes the pieces away again.
     fn accumulate(
         &mut self,
         job: &RenderJob,

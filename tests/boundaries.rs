@@ -173,7 +173,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("egui_plot", &["app"]),
     ("rfd", &["app"]),
     ("wgpu", &["render_gpu"]),
-    ("rayon", &["render_cpu", "render_gpu", "layers"]),
+    ("rayon", &["tables", "render_cpu", "render_gpu", "layers"]),
     ("fearless_simd", &["render_cpu"]),
     ("obvhs", &["tables"]),
     ("libm", &["statistics"]),

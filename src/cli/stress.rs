@@ -1,5 +1,6 @@
 //! The flags of `weekender stress`, and what they mean together.
 
+use super::paths::Paths;
 use super::raw::ProgressChoice;
 use super::sources::CliError;
 use super::values::{JsonTarget, Levels, parse_levels, parse_seconds};
@@ -77,13 +78,19 @@ pub(super) fn stress(raw: RawStress) -> Result<StressOptions, CliError> {
     if let Some(isa) = levels.iter().copied().find(|isa| !available.contains(isa)) {
         return Err(BackendError::Cpu(CpuError::Isa { isa, available }).into());
     }
+    let json = raw.json.map(JsonTarget::from);
+    let pages = raw.out.iter().flat_map(|out| ["table.md", "index.html"].map(|name| out.join(name)));
+    pages
+        .fold(Paths::default(), |paths, page| paths.write("a file of --out,", Some(&page)))
+        .write_json(json.as_ref())
+        .check(&[])?;
     Ok(StressOptions {
         filter: raw.filter.unwrap_or_default(),
         search: raw.search.map(Duration::from_secs_f64),
         seed: raw.seed,
         levels,
         adapter: raw.adapter,
-        json: raw.json.map(JsonTarget::from),
+        json,
         out: raw.out,
         progress: raw.progress,
     })

@@ -21,7 +21,7 @@ pub use description::{Description, RECIPE_KEY, key};
 pub use identity::FileIdentity;
 pub use merge::{MergeError, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;
-pub use replace::{WriteError, check_writable, replace_file, write_text};
+pub use replace::{WriteError, check_film_writable, check_writable, replace_file, write_text};
 pub use shared_file::{Saved, SharedFile};
 
 use crate::memory::{self, MemoryError};
@@ -88,7 +88,21 @@ pub struct ErrorEstimate {
     pub rel_mse: f64,
 }
 
+/// With fewer pixels in effect the error estimate is in doubt.
+const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
+
+/// It is so only if they are less than this share of all: small pictures have few pixels.
+const DOMINANT_SHARE: f64 = 0.2;
+
 impl ErrorEstimate {
+    /// As how many pixels of like errors those are from which it comes, `(sum e^2)^2 / sum e^4` with `e` the errors: few,
+    /// where a few pixels dominate it; infinite without any error.
+    pub fn pixels_in_effect(&self) -> f64 {
+        // Of n pixels, the variance of the mean square is (mean e^4 - (mean e^2)^2) / n.
+        let share = 2.0 * self.rmse_deviation / self.rmse;
+        if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
+    }
+
     /// How far off it may be by chance, as "± 0.2 %": one deviation.
     pub fn uncertainty(&self) -> String {
         let share = if self.rmse > 0.0 { self.rmse_deviation / self.rmse } else { 0.0 };
@@ -364,6 +378,25 @@ impl Film {
             rmse,
             rmse_deviation: if rmse > 0.0 { 0.5 * deviation_of_square / rmse } else { 0.0 },
             rel_mse: relative_sum / (3.0 * pixels),
+        })
+    }
+
+    /// What to say where an estimate of this film's error is in doubt: few pixels dominate it, or no path has found any
+    /// light. It is then most likely too low, and its deviation with it.
+    pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
+        if estimate.rmse == 0.0 && self.halves.iter().flatten().all(|sum| sum.0 == [0; 3]) {
+            let count = self.sample_count();
+            return Some(format!(
+                "no path has found any light in {count} samples per pixel, so that the error cannot be estimated; only \
+                 more samples tell whether there is some"
+            ));
+        }
+        let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
+        (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64).then(|| {
+            format!(
+                "few pixels dominate the error estimate: it is worth that of {pixels:.0} of {all} pixels, where \
+                 {PIXELS_IN_EFFECT_MIN:.0} would do; it may be off by a factor, and only more samples tell"
+            )
         })
     }
 

@@ -181,12 +181,9 @@ pub fn anchored_root<L: Lanes>(
     let zero = l.constant(0.0);
     let discriminant = L::neg_mul_add(k, bend, m_along * m_along);
     let mut leaves = L::eq_u(rays.left, number);
-    let mut enters = L::eq_u(rays.inside, number);
+    let enters = L::eq_u(rays.inside, number);
     if sphere.under_eye {
-        let starts = L::eq_u(rays.left, l.splat_u(EYE));
-        let outwards = L::lt(m_along, zero);
-        leaves = leaves | (starts & outwards);
-        enters = enters | (starts & !outwards);
+        leaves = leaves | (L::eq_u(rays.left, l.splat_u(EYE)) & L::lt(m_along, zero));
     }
     // From its own surface inwards a ray runs the chord 2b.
     let own_chord = (b + L::abs(b)) / k;

@@ -30,6 +30,8 @@ pub struct Traced {
     pub film: Film,
     /// Wall time of preparing and tracing, seconds.
     pub seconds: f64,
+    /// What the backend said that it cannot hold of the scene.
+    pub warnings: Vec<String>,
 }
 
 impl Backend {
@@ -44,7 +46,10 @@ impl Backend {
     /// If it cannot be had.
     pub fn start(&mut self) -> Result<(), BackendError> {
         if self.renderer.is_none() {
-            self.renderer = Some(backends::create(&self.choice)?);
+            let mut renderer = backends::create(&self.choice)?;
+            // That an adapter is software is known to whoever named it; what is said later is about scenes.
+            drop(renderer.take_messages());
+            self.renderer = Some(renderer);
         }
         Ok(())
     }
@@ -76,12 +81,13 @@ impl Backend {
             Ok(Err(error)) => return Err(error.to_string()),
             Err(_) => return Err("broke off: a panic in the tracer".to_owned()),
         };
+        let warnings = renderer.take_messages();
         self.renderer = Some(renderer);
         let (held, wanted) = (film.sample_count(), recipe.samples_per_pixel);
         if held != wanted {
             return Err(format!("the film holds {held} samples a pixel where {wanted} were asked for"));
         }
-        Ok(Traced { film, seconds })
+        Ok(Traced { film, seconds, warnings })
     }
 }
 

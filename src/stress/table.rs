@@ -1,6 +1,7 @@
 //! The table, for the terminal and as Markdown.
 
 use super::report::{CaseReport, Report};
+use super::verdict::Verdict;
 use std::fmt::Write;
 
 /// Columns of the terminal's table.
@@ -15,7 +16,7 @@ pub fn head() -> String {
 pub fn row(case: &CaseReport) -> String {
     let [expected, measured, off, rounding, time, verdict, book] = cells(case);
     let mut text = line([&case.id, &expected, &measured, &off, &rounding, &time, &verdict, &book]);
-    for wrong in case.measured.iter().filter(|measured| !measured.verdict.is_right()) {
+    for wrong in case.measured.iter().filter(|measured| measured.verdict != Verdict::Right) {
         let (backend, form, reason) = (&wrong.backend, wrong.form, wrong.verdict.reason());
         // Writing to a string cannot fail.
         let _ = writeln!(text, "    {backend}, {form}: {reason}");
@@ -34,10 +35,12 @@ fn cells(case: &CaseReport) -> [String; 7] {
     let worst = case.worst();
     let or_dash = |value: Option<String>| value.unwrap_or_else(|| "-".to_owned());
     let verdicts = || case.measured.iter().map(|measured| &measured.verdict);
-    let verdict = match verdicts().find(|verdict| !verdict.is_right()) {
+    let is_warned = |verdict: &&Verdict| matches!(verdict, Verdict::Warned(_));
+    let verdict = match verdicts().find(|verdict| !verdict.is_right()).or_else(|| verdicts().find(is_warned))
+    {
+        _ if case.first_hits.is_some_and(|hits| !hits.is_right()) => "WRONG",
         Some(verdict) => verdict.name(),
-        None if case.is_right() => "right",
-        None => "WRONG",
+        None => "right",
     };
     let book = case.book.iter().map(|book| or_dash(book.offset.map(brief))).collect::<Vec<_>>().join(", ");
     [
@@ -119,7 +122,7 @@ fn verdicts(case: &CaseReport) -> String {
     let wrong: Vec<String> = case
         .measured
         .iter()
-        .filter(|measured| !measured.verdict.is_right())
+        .filter(|measured| measured.verdict != Verdict::Right)
         .map(|m| format!("{} {}: **{}**", m.backend, m.form, m.verdict.name().to_lowercase()))
         .collect();
     if wrong.is_empty() { "right".to_owned() } else { wrong.join(", ") }
@@ -129,7 +132,6 @@ fn verdicts(case: &CaseReport) -> String {
 mod tests {
     use super::super::figures::Paired;
     use super::super::report::{BookMeasured, FirstHits, Measured};
-    use super::super::verdict::Verdict;
     use super::*;
 
     fn case(verdict: Verdict) -> CaseReport {

@@ -25,6 +25,8 @@ const SLOW_SECONDS: f64 = 1.0;
 pub enum Verdict {
     /// As expected.
     Right,
+    /// Another picture than expected, but the backend said so, with the limit and what to do.
+    Warned(String),
     /// Another picture than expected.
     Wrong(String),
     /// As expected, but far slower than the tame twin.
@@ -38,6 +40,7 @@ impl Verdict {
     pub fn name(&self) -> &'static str {
         match self {
             Verdict::Right => "right",
+            Verdict::Warned(_) => "warned",
             Verdict::Wrong(_) => "WRONG",
             Verdict::Slow(_) => "SLOW",
             Verdict::None(_) => "NONE",
@@ -48,13 +51,25 @@ impl Verdict {
     pub fn reason(&self) -> &str {
         match self {
             Verdict::Right => "",
-            Verdict::Wrong(reason) | Verdict::Slow(reason) | Verdict::None(reason) => reason,
+            Verdict::Warned(reason)
+            | Verdict::Wrong(reason)
+            | Verdict::Slow(reason)
+            | Verdict::None(reason) => reason,
         }
     }
 
-    /// Whether it is as expected.
+    /// Whether it is as expected, or was said not to be.
     pub fn is_right(&self) -> bool {
-        *self == Verdict::Right
+        matches!(self, Verdict::Right | Verdict::Warned(_))
+    }
+
+    /// Takes into account what the backend said of the scene.
+    #[must_use]
+    pub fn given(self, warnings: &[String]) -> Self {
+        match (self, warnings) {
+            (Verdict::Wrong(reason), [first, ..]) => Verdict::Warned(format!("{reason}; it said: {first}")),
+            (verdict, _) => verdict,
+        }
     }
 }
 
@@ -154,6 +169,19 @@ mod tests {
         // Another picture of the same mean.
         let verdict = judge(&noisy, paired(0.0, 0.06), 2e-6, 0);
         assert!(verdict.reason().starts_with("pixels are off by 6.0e-2"), "{verdict:?}");
+    }
+
+    #[test]
+    fn what_was_said_is_no_fault() {
+        let warnings = ["too thin".to_owned()];
+        let warned = Verdict::Wrong("off".into()).given(&warnings);
+        assert_eq!(
+            (warned.name(), warned.reason(), warned.is_right()),
+            ("warned", "off; it said: too thin", true)
+        );
+        assert!(!Verdict::Wrong("off".into()).given(&[]).is_right());
+        assert_eq!(Verdict::Right.given(&warnings), Verdict::Right);
+        assert!(!Verdict::None("gone".into()).given(&warnings).is_right());
     }
 
     #[test]

@@ -51,7 +51,7 @@ pub(super) struct Anchored {
     pub index: u32,
     /// Those that count.
     pub roots: Roots,
-    /// Whether the eye is a point of the surface, so that rays from the camera start on it.
+    /// Whether the eye is a point of the surface, so that rays from the camera start on it, on the outer side.
     pub under_eye: bool,
     /// Near which point the anchor lies.
     pub near: DVec3,
@@ -211,12 +211,13 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
             if !is_special(sphere) && !needs_anchor(sphere.radius, detail.min(height)) {
                 return None;
             }
-            let roots = match (is_opaque(sphere), eye.is_inside(sphere), eye.may_be_inside(sphere)) {
+            let under_eye = eye.height(sphere) == 0.0 && eye.lens_radius == 0.0;
+            let may_be_inside = eye.may_be_inside(sphere) && !under_eye;
+            let roots = match (is_opaque(sphere), eye.is_inside(sphere), may_be_inside) {
                 (true, true, _) => Roots::Farther,
                 (true, false, false) => Roots::Nearer,
                 _ => Roots::Both,
             };
-            let under_eye = eye.height(sphere) == 0.0 && eye.lens_radius == 0.0;
             let is_at_eye = under_eye || height < detail;
             let near = if is_at_eye { eye.position } else { DVec3::NAN };
             Some((gain(sphere, detail), Anchored { index: index as u32, roots, under_eye, near }))

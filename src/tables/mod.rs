@@ -101,7 +101,8 @@ pub struct AnchoredSphere<R> {
     pub curvature: R,
     /// Which of the distances to it count.
     pub roots: Roots,
-    /// Whether the eye is a point of the surface: rays that start at [`EYE`] leave it or enter it.
+    /// Whether the eye is a point of the surface, and on its outer side: rays that start at [`EYE`] and go outwards
+    /// leave it, the others meet it where they start.
     pub under_eye: bool,
 }
 

@@ -162,14 +162,20 @@ fn an_eye_on_a_surface_sees_the_sky_before_it() {
     }
 }
 
+/// An eye on a surface is outside: what it looks at is the surface.
 #[test]
-fn an_eye_on_a_matte_surface_is_dark_inside() {
-    let ball = (DVec3::ZERO, 0.5, lambertian(1.0));
-    let eye = DVec3::new(0.0, 0.5, 0.0);
-    let camera = Camera { look_from: eye, look_at: DVec3::ZERO, vup: DVec3::X, ..AT_BALL };
-    for renderer in [&mut widest(), &mut reference()] {
-        let film = render(renderer, &job(&under_white_sky(&[ball]), camera, size(8, 8)), 0..4);
-        assert_eq!(mean(&film), 0.0);
+fn an_eye_on_a_surface_sees_it_from_outside() {
+    for (radius, height) in [(0.5, 0.0), (1000.0, 0.0), (1000.0, 1e-12), (0.5, 1e-10)] {
+        let center = DVec3::new(0.0, -radius, 0.0);
+        let eye = DVec3::new(0.0, height, 0.0);
+        let camera = Camera { look_from: eye, look_at: center, vup: DVec3::X, ..AT_BALL };
+        for (material, expected) in [(lambertian(0.5), 0.5), (mirror(0.5), 0.5), (glass(1.5), 1.0)] {
+            for renderer in [&mut widest(), &mut reference()] {
+                let ball = (center, radius, material);
+                let film = render(renderer, &job(&under_white_sky(&[ball]), camera, size(8, 8)), 0..4);
+                assert_eq!(mean(&film), expected, "{radius} {height:e} {material:?}");
+            }
+        }
     }
 }
 

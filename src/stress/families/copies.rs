@@ -30,11 +30,15 @@ pub fn copies() -> Vec<Case> {
         let balls = vec![(DVec3::ZERO, 1.0, matte(0.5)); count];
         let stiff = format!("{count} identical balls: no plane divides them, and every hit is a tie of all");
         // What is stiff about many is building the hierarchy and its depth, which few samples show.
-        let samples = if count > 1000 { 4 } else { 32 };
-        let recipe = sized(picture(balls, in_front()), [24, 16], samples);
+        let (size, samples) = match count {
+            0..=1000 => ([24, 16], 32),
+            1001..=20_000 => ([24, 16], 4),
+            _ => ([12, 8], 4),
+        };
+        let recipe = sized(picture(balls, in_front()), size, samples);
         let case = Case::new(&COPIES, count, stiff, recipe).every(0.5, WHY);
         let case = if count <= 110 { case.quick() } else { case };
-        if count > 1000 { case.beside(sized(spread(count), [24, 16], samples)) } else { case }
+        if count > 1000 { case.beside(sized(spread(count), size, samples)) } else { case }
     });
     let mut cases: Vec<Case> = identical.collect();
 

@@ -45,13 +45,12 @@ pub fn families() -> impl Iterator<Item = &'static Family> {
 pub fn shown_cases() -> &'static [Case] {
     static SHOWN: OnceLock<Vec<Case>> = OnceLock::new();
     SHOWN.get_or_init(|| {
-        let lists: [fn() -> Vec<Case>; 6] = [
+        let lists: [fn() -> Vec<Case>; 5] = [
             files::files,
             lengths::scaled_scenes,
             lengths::moved_scenes,
             lengths::lenses,
             cavities::cavities,
-            glass::indices,
         ];
         lists.into_iter().flat_map(|list| list()).filter(|case| case.watch.is_some()).collect()
     })

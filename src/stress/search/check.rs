@@ -94,7 +94,12 @@ impl Checker {
         interrupt: &AtomicBool,
     ) -> Result<(), String> {
         let backend = &mut self.backends[index];
-        let film = backend.trace(recipe, interrupt)?.film;
+        let traced = backend.trace(recipe, interrupt)?;
+        if !traced.warnings.is_empty() {
+            // What f32 cannot hold was said.
+            return Ok(());
+        }
+        let film = traced.film;
         let other = match (check, changed) {
             (Check::Rounding, _) => self.reference.trace(recipe, interrupt)?.film,
             (_, Some(changed)) => backend.trace(changed, interrupt)?.film,

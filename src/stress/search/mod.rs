@@ -37,6 +37,7 @@ pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> R
     let mut display = display(options.progress, time);
     let begin = Instant::now();
     let (mut scenes, mut found) = (0_u32, Vec::new());
+    let mut printed = Ok(());
     let is_over = || begin.elapsed() >= time || interrupt.load(Ordering::Relaxed);
     while !is_over() {
         let recipe = random::scene(options.seed, scenes);
@@ -55,11 +56,11 @@ pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> R
         let reason = checker.fails(check, &small, interrupt).unwrap_or(reason);
         let path = directory.join(format!("found-{}-{}.toml", options.seed, scenes - 1));
         save(&path, &small, check, &reason, [options.seed, scenes - 1])?;
-        display.above(|| {
+        printed = printed.and(display.above(|| {
             let spheres = small.scene.spheres.len();
             let text = format!("{} ({spheres} spheres): {}: {reason}\n", path.display(), check.name());
             terminal::print_beside(options.json.as_ref(), &text)
-        })?;
+        }));
         found.push(path);
     }
     display.clear();
@@ -68,7 +69,7 @@ pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> R
         found.len(),
         begin.elapsed().as_secs_f64()
     );
-    terminal::print_beside(options.json.as_ref(), &text)?;
+    printed.and(terminal::print_beside(options.json.as_ref(), &text))?;
     Ok(found.is_empty())
 }
 
