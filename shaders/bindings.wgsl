@@ -32,14 +32,18 @@ struct Dispatch {
     first_tile: u32,
     tile_count: u32,
     block_count: u32,
-    // Most rays of one pixel.
-    ray_limit: u32,
+    // Turns of its loops after which a thread puts its path aside.
+    turn_limit: u32,
     // Rows of the picture that the film buffer holds.
     first_row: u32,
     row_count: u32,
     // For resolve: samples in the film.
     sample_count: u32,
     transfer: u32,
+    // 1 where threads go on with what they put aside, 0 where they begin.
+    resumes: u32,
+    // The first of the words in which paths are put aside.
+    first_aside: u32,
 }
 
 // `count` samples of a half of the film.
@@ -74,12 +78,19 @@ struct PixelSum {
     blue: vec2u,
 }
 
-// Low and high words of what the dispatches counted.
+// What was counted: low and high words since the film was last sent for,
 struct Counters {
     rays: atomic<u32>,
     rays_high: atomic<u32>,
     rejected: atomic<u32>,
     rejected_high: atomic<u32>,
+    // and in this dispatch alone: samples whose sums are in the film,
+    finished: atomic<u32>,
+    finished_high: atomic<u32>,
+    // threads that have put a path aside,
+    unfinished: atomic<u32>,
+    // and those of them that could not trace one ray to its end.
+    stuck: atomic<u32>,
 }
 
 @group(0) @binding(0) var<uniform> job: Job;

@@ -66,14 +66,22 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
     if box_key(slabs, node.low, node.high, bitcast<f32>(nearest.key)) == MISS_KEY {
         return nearest;
     }
+    ray_is_cut = true;
+    var is_leaf_cut = false;
+    // Ends by its `break`: no node is visited twice.
     for (var visits = 0u; visits < job.node_count; visits++) {
+        turns += 1u;
         let count = node.count & COUNT_MASK;
         var next = NONE;
         if count > 0u {
-            for (var i = 0u; i < count; i++) {
+            var i = 0u;
+            // Ends: a leaf has at most COUNT_MASK spheres.
+            for (; i < count; i++) {
                 let number = node.first + i;
                 nearest = take_in_any_order(nearest, signed_root(ray, sphere_at(number), number), number);
             }
+            turns += count;
+            is_leaf_cut = i < count;
         } else {
             let left = node_at(node.first);
             let right = node_at(node.first + 1u);
@@ -91,6 +99,7 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
         }
         if next == NONE {
             if depth == 0u {
+                ray_is_cut = is_leaf_cut;
                 break;
             }
             depth--;

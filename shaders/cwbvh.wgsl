@@ -72,7 +72,10 @@ fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
     var group = vec2u(0u, 1u << 31u);
     var stack: array<vec2u, CWBVH_STACK_SIZE>;
     var depth = 0u;
+    ray_is_cut = true;
+    // Ends by its `break`: no node is visited twice.
     for (var visits = 0u; visits < job.node_count; visits++) {
+        turns += 1u;
         let bit = firstLeadingBit(group.y);
         let slot = (bit - 24u) ^ octant;
         let node = cwbvh_node_at(group.x + countOneBits(group.y & ((1u << slot) - 1u)));
@@ -97,7 +100,10 @@ fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
             | four_hits(grid, x.yw, y.yw, z.yw, node.marks.y, octant, limit);
 
         // Its spheres.
-        for (var left = hits & ~NODE_HITS; left != 0u; left &= left - 1u) {
+        var left = hits & ~NODE_HITS;
+        // Ends: each turn clears one of 24 bits.
+        for (; left != 0u; left &= left - 1u) {
+            turns += 1u;
             let number = node.first_sphere + firstTrailingBit(left);
             nearest = take_in_any_order(nearest, signed_root(ray, sphere_at(number), number), number);
         }
@@ -105,6 +111,7 @@ fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
         group = vec2u(node.first_child, (hits & NODE_HITS) | (node.units >> 24u));
         if group.y < 1u << 24u {
             if depth == 0u {
+                ray_is_cut = left != 0u;
                 break;
             }
             depth--;

@@ -3,6 +3,7 @@
 //
 // Twin: src/render_cpu/path
 
+// What lives on from one ray to the next is put aside, too: see aside.wgsl.
 struct Path {
     ray: Ray,
     throughput: vec3f,
@@ -29,27 +30,54 @@ struct Path {
 struct Traced {
     rays: u32,
     rejected: u32,
+    // Samples whose sums are in the film.
+    finished: u32,
+    // 1 if a path was put aside.
+    unfinished: u32,
+    // 1 if not even one ray could be traced to its end.
+    stuck: u32,
 }
 
-// Traces all blocks of the dispatch at a pixel, which is number `slot` of the film buffer.
-fn trace(position: vec2u, slot: u32) -> Traced {
+// Turns of all loops of this thread so far.
+var<private> turns: u32;
+
+// Whether the ray at hand left its traversal before the end: some drivers end loops that have many turns.
+var<private> ray_is_cut: bool;
+
+// Traces the blocks of the dispatch at a pixel, which is number `slot` of the film buffer, or goes on with them. After
+// so many turns of loops as the dispatch allows, the path is put aside in the words from `aside` on.
+fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
     var path: Path;
     path.pixel = position.x | (position.y << 16u);
     path.corner = screen(job.camera, vec2f(position));
     path.absorbed = true;
     path.remaining = 1u;
-    var rays = 0u;
+    var traced: Traced;
     var next_block = 0u;
-    for (var i = 0u; i < order.ray_limit; i++) {
+    if order.resumes > 0u {
+        next_block = take_up(&path, aside);
+    }
+    let list_turns = turns_over_lists();
+    var is_done = path.remaining == 0u;
+    turns = 0u;
+    ray_is_cut = false;
+    // Ends, since each turn makes `turns` larger: after `turn_limit` turns at the latest, those of the loops within
+    // included but for the last ray's.
+    while !is_done && turns < order.turn_limit {
+        turns += 1u;
         var nearest = nothing();
         if !path.absorbed {
             if RAYS {
+                turns += list_turns;
                 nearest = intersect(path.ray);
             }
-            if RECORD {
-                record_ray(rays, path, nearest);
+            if HIERARCHY && ray_is_cut {
+                break;
             }
-            rays++;
+            if RECORD {
+                record_ray(words[2] + traced.rays, path, nearest);
+            }
+            traced.rays++;
         }
 
         // What the ray brings back, and whether it is the last of its path.
@@ -77,25 +105,45 @@ fn trace(position: vec2u, slot: u32) -> Traced {
             if path.remaining == 0u {
                 if next_block > 0u {
                     add_to_film(path.half, slot, path.sums);
+                    traced.finished += blocks[next_block - 1u].count;
                 }
                 if next_block == order.block_count {
+                    is_done = true;
                     break;
                 }
-                start_block(&path, blocks[next_block]);
+                enter_block(&path, blocks[next_block], 0u);
+                path.sums = vec3u(0u);
                 next_block++;
             }
         }
         send(&path, ended, nearest.sphere, row, point);
     }
-    return Traced(rays, path.rejected);
+    if !is_done {
+        put_aside(path, next_block, aside);
+        traced.unfinished = 1u;
+        traced.stuck = select(0u, 1u, ray_is_cut && traced.rays == 0u);
+    }
+    traced.rejected = path.rejected;
+    return traced;
 }
 
-fn start_block(path: ptr<function, Path>, block: Block) {
+// Turns of one ray's loops over lists: see `intersect`. Those over a hierarchy count themselves.
+fn turns_over_lists() -> u32 {
+    let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
+    if HIERARCHY && !BOOK_ARITHMETIC {
+        return anchored_count;
+    }
+    let opaque_count = select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);
+    let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
+    return opaque_count + two_root_count + anchored_count;
+}
+
+// Goes to sample `place` of a block.
+fn enter_block(path: ptr<function, Path>, block: Block, place: u32) {
     (*path).half = block.half;
-    (*path).counter = block.counter;
+    (*path).counter = block.counter + place * block.step;
     (*path).step = block.step;
-    (*path).remaining = block.count;
-    (*path).sums = vec3u(0u);
+    (*path).remaining = block.count - place;
     if SOBOL {
         (*path).key = pixel_key(job.seed, block.half, (*path).pixel);
     }

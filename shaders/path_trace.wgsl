@@ -2,6 +2,9 @@
 
 var<workgroup> group_rays: atomic<u32>;
 var<workgroup> group_rejected: atomic<u32>;
+var<workgroup> group_finished: atomic<u32>;
+var<workgroup> group_unfinished: atomic<u32>;
+var<workgroup> group_stuck: atomic<u32>;
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn path_trace(
@@ -18,10 +21,16 @@ fn path_trace(
     let in_film = corner + within;
     if number < order.tile_count && in_film.x < job.width && in_film.y < order.row_count {
         let position = vec2u(in_film.x, in_film.y + order.first_row);
-        let traced = trace(position, in_film.y * job.width + in_film.x);
+        let aside = order.first_aside + (number * WORKGROUP_SIZE + thread) * ASIDE_STRIDE;
+        let traced = trace(position, in_film.y * job.width + in_film.x, aside);
         atomicAdd(&group_rays, traced.rays);
+        atomicAdd(&group_finished, traced.finished);
         if traced.rejected > 0u {
             atomicAdd(&group_rejected, traced.rejected);
+        }
+        if traced.unfinished > 0u {
+            atomicAdd(&group_unfinished, 1u);
+            atomicAdd(&group_stuck, traced.stuck);
         }
     }
     workgroupBarrier();
@@ -33,6 +42,15 @@ fn path_trace(
         let rejected = atomicLoad(&group_rejected);
         if rejected > 0u && atomicAdd(&counters.rejected, rejected) > 0xFFFFFFFFu - rejected {
             atomicAdd(&counters.rejected_high, 1u);
+        }
+        let finished = atomicLoad(&group_finished);
+        if atomicAdd(&counters.finished, finished) > 0xFFFFFFFFu - finished {
+            atomicAdd(&counters.finished_high, 1u);
+        }
+        let unfinished = atomicLoad(&group_unfinished);
+        if unfinished > 0u {
+            atomicAdd(&counters.unfinished, unfinished);
+            atomicAdd(&counters.stuck, atomicLoad(&group_stuck));
         }
     }
 }

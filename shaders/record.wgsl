@@ -4,7 +4,7 @@
 
 fn record_ray(number: u32, path: Path, nearest: Nearest) {
     let base = RECORD_HEADER + number * RECORD_STRIDE;
-    if base + RECORD_STRIDE > arrayLength(&words) {
+    if base + RECORD_STRIDE > order.first_aside {
         return;
     }
     record_vector(base, path.ray.origin);

@@ -3,24 +3,22 @@
 //! **A sample is a pure function** of (job, pixel, sample index). It does not depend on the backend, the packet
 //! width, the thread, its neighbours or what was rendered before. Everything else rests on that.
 
+pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
+
 use crate::film::Film;
+use crate::memory::{self, MemoryError};
 use crate::scene::{Camera, Material, Scene, SceneError};
 use crate::stages::{Rules, Shading};
 use serde::{Deserialize, Serialize};
+use std::any::Any;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Largest width and height of a picture, pixels: a pixel's position is packed into 32 bits.
-pub const SIZE_LIMIT: u32 = 16_384;
-
 /// Largest number of rays a path may have.
 pub const DEPTH_LIMIT: u32 = 10_000;
-
-/// Sample indices are below this.
-pub const SAMPLE_LIMIT: u64 = 1 << 32;
 
 /// Where the numbers of a sample come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
@@ -83,6 +81,12 @@ impl RenderSettings {
         if self.estimate_error { 2 } else { 1 }
     }
 }
+
+/// What a pixel takes besides its sums while the picture is written.
+const OUTPUT_BYTES_PER_PIXEL: u64 = 4;
+
+/// What a sphere takes besides its place in the scene: tables, hierarchy, and what building them takes at its peak.
+pub const TRACING_BYTES_PER_SPHERE: u64 = 400;
 
 /// A picture to be rendered, checked once. Two equal jobs have the same samples.
 #[derive(Clone, Debug)]
@@ -163,6 +167,29 @@ impl RenderJob {
     /// An empty film for this job.
     pub fn new_film(&self) -> Film {
         Film::new(self.settings.width, self.settings.height, self.settings.half_count())
+    }
+
+    /// Refuses a job that would not fit into memory with `films` films of its size, while it is prepared, traced and
+    /// written.
+    ///
+    /// # Errors
+    /// [`MemoryError`], with what to do.
+    pub fn check_memory(&self, films: u64) -> Result<(), MemoryError> {
+        let RenderSettings { width, height, .. } = self.settings;
+        let film = Film::bytes(width, height, self.settings.half_count()).saturating_mul(films);
+        let output = u64::from(width) * u64::from(height) * OUTPUT_BYTES_PER_PIXEL;
+        let spheres = self.scene.spheres.len();
+        let remedy = match self.settings.half_count() {
+            1 => "choose a smaller --size, or a scene of fewer spheres",
+            _ => {
+                "choose a smaller --size, or halve the film with --estimate-error off, or choose a scene of fewer spheres"
+            }
+        };
+        memory::check(
+            || format!("a picture of {width}x{height} of {spheres} spheres"),
+            film.saturating_add(output).saturating_add(TRACING_BYTES_PER_SPHERE * spheres as u64),
+            remedy,
+        )
     }
 
     /// Whether a film has the shape of this job's.
@@ -293,9 +320,31 @@ pub enum RenderError {
         /// What it said.
         reason: String,
     },
+    /// The backend failed in the middle of adding, and what it had added could not be taken away again: the film is of
+    /// no use.
+    #[error("{backend} failed: {reason}; the samples that it was adding spoiled the film")]
+    FilmLost {
+        /// Its name.
+        backend: &'static str,
+        /// What it said.
+        reason: String,
+    },
     /// The same samples were asked for twice.
     #[error(transparent)]
     Film(#[from] crate::film::FilmError),
+}
+
+impl RenderError {
+    /// What a panic of a backend's is to others.
+    pub fn of_panic(backend: &'static str, payload: &(dyn Any + Send)) -> Self {
+        RenderError::Backend { backend, reason: format!("it panicked: {}", panic_text(payload)) }
+    }
+}
+
+/// What a panic said.
+pub fn panic_text(payload: &(dyn Any + Send)) -> &str {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("for no stated reason")
 }
 
 /// What a backend is, for reports.
@@ -361,8 +410,9 @@ pub trait Renderer: Send {
     /// `cancel` is looked at between small units of work.
     ///
     /// # Errors
-    /// [`RenderError::Cancelled`] leaves the film's sums incomplete: throw it away. After any other error it is
-    /// as it was.
+    /// [`RenderError::Cancelled`] and [`RenderError::FilmLost`] leave the film's sums incomplete: throw it away. After
+    /// any other error it is as it was, and so it is after a panic: whoever adds to it in pieces catches panics and
+    /// takes the pieces away again.
     fn accumulate(
         &mut self,
         job: &RenderJob,

@@ -8,14 +8,16 @@ use std::path::{Path, PathBuf};
 
 /// A room and the rooms that it may use. Lower layers first.
 const ROOMS: &[(&str, &[&str])] = &[
+    ("memory", &[]),
+    ("input", &["memory"]),
     ("scene", &[]),
     ("stages", &["scene"]),
-    ("film", &["stages"]),
-    ("render", &["scene", "stages", "film"]),
+    ("film", &["memory", "input", "stages"]),
+    ("render", &["memory", "scene", "stages", "film"]),
     ("record", &[]),
     ("heat", &[]),
-    ("recipe", &["scene", "stages", "render"]),
-    ("output", &["stages", "film"]),
+    ("recipe", &["memory", "input", "scene", "stages", "film", "render"]),
+    ("output", &["memory", "input", "stages", "film"]),
     ("chart", &["film"]),
     ("sampling", &["render"]),
     ("tables", &["scene", "stages", "film", "render"]),
@@ -33,6 +35,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
+            "memory",
             "scene",
             "stages",
             "film",
@@ -92,6 +95,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     (
         "report",
         &[
+            "input",
             "stages",
             "film",
             "render",
@@ -112,6 +116,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     (
         "compare",
         &[
+            "memory",
             "film",
             "heat",
             "render",

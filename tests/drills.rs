@@ -3,7 +3,7 @@
 //!
 //! Each runs a few rounds. For long series by hand, WEEKENDER_DRILLS is the number of rounds:
 //! `WEEKENDER_DRILLS=150 cargo test --release --test drills -- --nocapture`.
-#![cfg(unix)]
+#![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 use std::fs::{self, File};
@@ -280,7 +280,7 @@ fn signals_while_files_are_written_wait_for_them_and_are_answered() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // A pipe takes a picture as slowly as its reader likes.
-    succeeds(Command::new("mkfifo").arg(at.join("slow.png")));
+    succeeds(Command::new("mkfifo").arg(at.join("slow.png")).arg(at.join("pipe.exr")));
     let flags = ["--samples", "1", "--checkpoint", "g.exr", "--out", "slow.png"];
     let mut child = batch(at, "on", &flags).spawn().unwrap();
     let stderr = BufReader::new(child.stderr.take().unwrap());
@@ -299,6 +299,12 @@ fn signals_while_files_are_written_wait_for_them_and_are_answered() {
         }
         panic!("{part:?} is not said");
     };
+    let film_in_pipe =
+        batch(at, "off", &["--samples", "4294967296", "--out", "a.png", "--checkpoint", "pipe.exr"])
+            .output()
+            .unwrap();
+    assert_eq!(film_in_pipe.status.code(), Some(2), "{film_in_pipe:?}");
+    assert!(text(&film_in_pipe.stderr).contains("pipe.exr"), "{film_in_pipe:?}");
     hear("write slow.png");
     for _ in 0..3 {
         signal(&child, "INT");
@@ -382,8 +388,11 @@ fn a_full_disk_keeps_the_samples_elsewhere() {
 fn little_memory_is_an_error() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    let flags = ["--batch", "--size", "4000x3000", "--samples", "2", "--device", "cpu", "--out", "g.png"];
-    for kilobytes in [200_000, 400_000, 800_000] {
+    let large = ["--scene", "three-spheres", "--size", "4000x3000"];
+    let many = ["--scene", "field:3000000", "--size", "40x30"];
+    for (kilobytes, picture) in [(200_000, large), (400_000, large), (800_000, large), (600_000, many)] {
+        let flags =
+            [&["--batch", "--samples", "2", "--device", "cpu", "--out", "g.png"], &picture[..]].concat();
         let output = limited(at, &format!("ulimit -v {kilobytes}"), &flags);
         let code = output.status.code();
         assert!(matches!(code, Some(0..=3)), "{kilobytes} kB: {}: {}", output.status, text(&output.stderr));

@@ -1,15 +1,19 @@
 //! The film: exact sums, the set of samples, the resolved picture, the error estimate, film files and merging.
 
-#![allow(clippy::unwrap_used, clippy::single_range_in_vec_init)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::single_range_in_vec_init)]
 
 use proptest::prelude::*;
 use std::collections::HashSet;
+use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 use weekender::film::{
     CheckpointError, Description, FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, FilmError, MergeError, PixelSum,
-    RADIANCE_LIMIT, SampleRanges, checkpoint, fixed_point, key, merge_files, same_recipe_text, to_byte,
+    RADIANCE_LIMIT, SAMPLE_LIMIT, SampleRanges, checkpoint, fixed_point, key, merge_files, same_recipe_text,
+    to_byte,
 };
+use weekender::input::InputError;
+use weekender::output::decode_description;
 use weekender::stages::Transfer;
 
 const RECIPE: &str = "[render]\nwidth = 7\nsamples_per_pixel = 10\n";
@@ -270,6 +274,16 @@ proptest! {
                 prop_assert_eq!(&samples, &before);
             }
         }
+        prop_assert_eq!(&SampleRanges::from_ranges(samples.iter().collect::<Vec<_>>().into_iter().rev()).unwrap(), &samples);
+        let (mut first, mut second) = (SampleRanges::default(), SampleRanges::default());
+        for (index, range) in samples.iter().enumerate() {
+            if index % 2 == 0 { &mut first } else { &mut second }.insert(range).unwrap();
+        }
+        prop_assert_eq!(first.first_common(&second), None);
+        prop_assert_eq!(&first.union(&second).unwrap(), &samples);
+        if first.count() > 0 {
+            prop_assert!(samples.first_common(&first).is_some() && samples.union(&first).is_err());
+        }
         let held: HashSet<u64> = samples.iter().flatten().collect();
         prop_assert_eq!(&held, &set);
         let pieces: Vec<_> = samples.iter().collect();
@@ -318,11 +332,58 @@ proptest! {
 }
 
 #[test]
-fn a_set_of_samples_may_reach_the_last_number() {
+fn a_set_of_samples_may_reach_the_last_number_and_no_further() {
     let mut samples = SampleRanges::default();
-    samples.insert(1..u64::MAX).unwrap();
+    samples.insert(1..SAMPLE_LIMIT).unwrap();
     assert_eq!(samples.count_in_half(0, 2) + samples.count_in_half(1, 2), samples.count());
-    assert_eq!(samples.to_string(), format!("1..{}", u64::MAX));
+    assert_eq!(samples.to_string(), format!("1..{SAMPLE_LIMIT}"));
+    for end in [SAMPLE_LIMIT + 1, 1 << 63, u64::MAX] {
+        let range = SAMPLE_LIMIT..end;
+        let refused = Err(FilmError::Range { range: range.clone() });
+        assert_eq!(samples.insert(range.clone()), refused);
+        assert_eq!(SampleRanges::from_ranges([range.clone()]).map(|_| ()), refused);
+        let mut film = Film::new(1, 1, 1);
+        assert_eq!(film.record(range, 0), refused);
+        assert_eq!(film, Film::new(1, 1, 1));
+    }
+}
+
+#[test]
+fn more_rejected_samples_than_can_be_counted_are_an_error() {
+    let mut film = Film::new(1, 1, 1);
+    film.record(0..1, u64::MAX).unwrap();
+    let before = film.clone();
+    assert!(matches!(film.record(1..2, 1), Err(FilmError::Parts { .. })));
+    let mut other = Film::new(1, 1, 1);
+    other.record(1..2, 1).unwrap();
+    assert!(matches!(film.merge(&other), Err(FilmError::Parts { .. })));
+    assert_eq!(film, before);
+}
+
+#[test]
+fn a_film_may_have_very_many_ranges() {
+    // What is quadratic in them takes most of a minute here.
+    let even = || (0..200_000).map(|k| 2 * k..2 * k + 1);
+    let mut film = Film::new(1, 1, 1);
+    for range in even() {
+        film.record(range, 0).unwrap();
+    }
+    assert_eq!(film.samples(), &SampleRanges::from_ranges(even().rev()).unwrap());
+    let directory = tempfile::tempdir().unwrap();
+    let [path, odd] = ["even.exr", "odd.exr"].map(|name| directory.path().join(name));
+    checkpoint::save(&path, &film, &description()).unwrap();
+    assert_eq!(checkpoint::load(&path).unwrap().film, film);
+    let mut gaps = 0;
+    let mut other = Film::new(1, 1, 1);
+    while let Some(gap) = film.samples().first_gap(other.samples().end()..400_000, 10) {
+        other.record(gap.clone(), 0).unwrap();
+        other = if gap.end < 400_000 { other } else { break };
+        gaps += 1;
+    }
+    assert_eq!(gaps, 199_999);
+    checkpoint::save(&odd, &other, &description()).unwrap();
+    let merged = merge_files(&[path, odd], same_recipe_text).unwrap();
+    assert_eq!(merged.film.samples().to_string(), "0..400000");
 }
 
 #[test]
@@ -349,8 +410,12 @@ fn load_error(path: &Path) -> CheckpointError {
 fn what_is_no_film_file_is_refused_with_the_reason() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
-    assert!(matches!(load_error(&path), CheckpointError::Unreadable { .. }));
-    assert!(matches!(load_error(directory.path()), CheckpointError::Unreadable { .. }));
+    let input = |error| match error {
+        CheckpointError::Input(error) => error,
+        other => panic!("{other}"),
+    };
+    assert!(matches!(input(load_error(&path)), InputError::Unreadable { .. }));
+    assert!(matches!(input(load_error(directory.path())), InputError::NotFile { .. }));
     for bytes in [&b""[..], b"v/1", b"P6\n1 1\n255\nabc"] {
         std::fs::write(&path, bytes).unwrap();
         assert!(matches!(load_error(&path), CheckpointError::NotExr { .. }));
@@ -372,33 +437,71 @@ fn another_version_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 2, &[0..10]), &description()).unwrap();
-    spoil(&path, b"version = 2", 10, b'1');
+    spoil(&path, b"version = 3", 10, b'2');
     let error = load_error(&path);
-    assert_eq!(error, CheckpointError::Version { path, version: 1 });
+    let told = error.to_string();
+    assert!(told.contains("version 2, but this program reads version 3; go on with the program"), "{told}");
+    assert_eq!(error, CheckpointError::Version { path, version: 2 });
+}
+
+/// Where an attribute stands in a file, from its name, type and length to the end of its value.
+fn attribute(bytes: &[u8], name_and_type: &[u8]) -> Range<usize> {
+    let start = bytes.windows(name_and_type.len()).position(|window| window == name_and_type).unwrap();
+    let length = start + name_and_type.len();
+    let value = u32::from_le_bytes(bytes[length..length + 4].try_into().unwrap());
+    start..length + 4 + value as usize
 }
 
 #[test]
-fn no_changed_byte_changes_a_sum_unnoticed() {
+fn no_flipped_bit_changes_a_film_unnoticed() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
-    let film = noisy_film(9, 4, 2, &[0..10]);
+    let film = noisy_film(3, 2, 2, &[0..4, 9..12]);
     checkpoint::save(&path, &film, &description()).unwrap();
     let whole = std::fs::read(&path).unwrap();
-    let mut found = 0;
-    for place in (0..whole.len()).step_by(3) {
-        let mut bytes = whole.clone();
-        bytes[place] ^= 0x10;
-        std::fs::write(&path, bytes).unwrap();
-        // What is left to change without notice is the picture, the texts and the ranges of samples.
-        match checkpoint::load(&path) {
-            Ok(file) => assert_eq!(file.film.halves(), film.halves(), "byte {place}"),
-            Err(_) => found += 1,
+    let original = checkpoint::load(&path).unwrap();
+    // What other programs may ask for and this one does not.
+    let harmless: Vec<Range<usize>> = [
+        &b"displayWindow\0box2i\0"[..],
+        b"dataWindow\0box2i\0",
+        b"pixelAspectRatio\0float\0",
+        b"screenWindowCenter\0v2f\0",
+        b"screenWindowWidth\0float\0",
+        b"name\0string\0",
+        b"type\0string\0",
+        b"software\0string\0",
+        b"lineOrder\0lineOrder\0",
+        b"chunkCount\0int\0",
+        b"channels\0chlist\0",
+    ]
+    .into_iter()
+    .map(|name| attribute(&whole, name))
+    // The version of OpenEXR.
+    .chain([4..8])
+    .collect();
+    let (mut bytes, mut accepted) = (whole.clone(), Vec::new());
+    for bit in 0..8 * whole.len() {
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        if let Ok(read) = checkpoint::read(Cursor::new(&bytes), bytes.len() as u64, &path) {
+            assert_eq!(read, original, "bit {} of byte {}", bit % 8, bit / 8);
+            accepted.push(bit / 8);
         }
+        if let Ok(description) = decode_description(Cursor::new(&bytes), &path) {
+            assert_eq!(description, original.description, "bit {} of byte {}", bit % 8, bit / 8);
+        }
+        bytes[bit / 8] ^= 1 << (bit % 8);
     }
-    assert!(found > whole.len() / 3 / 2, "{found} of {}", whole.len() / 3);
-    for length in (0..whole.len()).step_by(101) {
-        std::fs::write(&path, &whole[..length]).unwrap();
-        load_error(&path);
+    accepted.dedup();
+    let surprising: Vec<String> = accepted
+        .iter()
+        .filter(|place| !harmless.iter().any(|range| range.contains(place)))
+        .map(|place| {
+            format!("{place}: {:?}", String::from_utf8_lossy(&whole[place.saturating_sub(30)..=*place]))
+        })
+        .collect();
+    assert!(surprising.is_empty(), "{surprising:#?}");
+    for length in 0..whole.len() {
+        assert!(checkpoint::read(Cursor::new(&whole[..length]), length as u64, &path).is_err(), "{length}");
     }
 }
 

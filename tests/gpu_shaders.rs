@@ -125,11 +125,13 @@ fn layouts_agree() {
         first_tile,
         tile_count,
         block_count,
-        ray_limit,
+        turn_limit,
         first_row,
         row_count,
         sample_count,
-        transfer
+        transfer,
+        resumes,
+        first_aside
     );
     same_layout!(module, GpuBlock, "Block", half, counter, step, count);
     same_layout!(
@@ -150,5 +152,19 @@ fn layouts_agree() {
     same_layout!(module, GpuNode, "Node", low, first, high, count);
     same_layout!(module, GpuCwbvhNode, "CwbvhNode", low, units, first_child, first_sphere, marks, x, y, z);
     same_layout!(module, GpuPixelSum, "PixelSum", red, green, blue);
-    same_layout!(module, GpuCounters, "Counters", rays, rays_high, rejected, rejected_high);
+    let (members, span) = offsets(&module, "Counters");
+    assert_eq!((span as usize, members.len()), (size_of::<GpuCounters>(), 8));
+    let own = [
+        ("rays", offset_of!(GpuCounters, rays)),
+        ("rays_high", offset_of!(GpuCounters, rays_high)),
+        ("rejected", offset_of!(GpuCounters, rejected)),
+        ("rejected_high", offset_of!(GpuCounters, rejected_high)),
+        ("finished", offset_of!(GpuCounters, dispatch.finished)),
+        ("finished_high", offset_of!(GpuCounters, dispatch.finished_high)),
+        ("unfinished", offset_of!(GpuCounters, dispatch.unfinished)),
+        ("stuck", offset_of!(GpuCounters, dispatch.stuck)),
+    ];
+    for (name, offset) in own {
+        assert_eq!(members.get(name).copied(), Some(offset as u32), "Counters.{name}");
+    }
 }

@@ -142,7 +142,7 @@ fn pictures_of_others_say_nothing() {
     }
     fs::write(&path, b"\x89PNG\r\n\x1a\n").unwrap();
     assert!(matches!(read_description(&path), Err(OutputError::Read { .. })));
-    assert!(matches!(read_description(directory.path()), Err(OutputError::Read { .. })));
+    assert!(matches!(read_description(directory.path()), Err(OutputError::Input(_))));
 }
 
 #[test]

@@ -3,14 +3,19 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::Duration;
-use weekender::backends::BackendChoice;
+use weekender::backends::{BackendChoice, Together};
 use weekender::film::{Film, PixelSum};
 use weekender::progressive::{EndReason, Factory, Phase, Plan, Progressive, Work};
+use weekender::recipe::Recipe;
 use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
-use weekender::render_cpu::CpuOptions;
+use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::scene::{Camera, Scene};
 use weekender::stages::Rules;
+
+/// What a sample of the fake takes at least.
+const PAUSE: Duration = Duration::from_micros(100);
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -19,6 +24,7 @@ struct Fake {
     name: &'static str,
     pause: Duration,
     fails_at: Option<u64>,
+    panics_at: Option<u64>,
 }
 
 fn sample(pixel: usize, index: u64) -> PixelSum {
@@ -45,6 +51,7 @@ impl Renderer for Fake {
         if self.fails_at.is_some_and(|at| range.end > at) {
             return Err(RenderError::Backend { backend: self.name, reason: "pulled out".into() });
         }
+        assert!(self.panics_at.is_none_or(|at| range.end <= at), "a slip of the tracer");
         for index in range.clone() {
             if cancel.load(Ordering::Relaxed) {
                 return Err(RenderError::Cancelled);
@@ -64,12 +71,17 @@ impl Renderer for Fake {
 fn factory() -> Factory {
     Box::new(|choice| {
         let fails_at = matches!(choice, BackendChoice::Reference { .. }).then_some(16);
-        Ok(Box::new(Fake { name: choice.name(), pause: Duration::from_micros(100), fails_at }))
+        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at, panics_at: None }))
     })
 }
 
-const CPU: BackendChoice =
-    BackendChoice::Cpu(CpuOptions { isa: None, lanes: None, threads: None, gives_way: false });
+const CPU: BackendChoice = BackendChoice::Cpu(CpuOptions {
+    isa: None,
+    lanes: None,
+    threads: None,
+    gives_way: false,
+    panics_after: None,
+});
 const FAILING: BackendChoice = BackendChoice::Reference { threads: None };
 
 fn other_cpu() -> BackendChoice {
@@ -90,7 +102,7 @@ fn job(width: u32) -> RenderJob {
 
 fn expected(samples: u64) -> Film {
     let mut film = job(2).new_film();
-    let mut fake = Fake { name: "alone", pause: Duration::ZERO, fails_at: None };
+    let mut fake = Fake { name: "alone", pause: Duration::ZERO, fails_at: None, panics_at: None };
     fake.accumulate(&job(2), 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
     film
 }
@@ -134,7 +146,7 @@ fn a_failing_backend_hands_its_film_to_the_cpu() {
 #[test]
 fn a_failing_fallback_ends_with_what_there_is() {
     let fails = |_: &BackendChoice| {
-        let fake = Fake { name: "cpu", pause: Duration::ZERO, fails_at: Some(8) };
+        let fake = Fake { name: "cpu", pause: Duration::ZERO, fails_at: Some(8), panics_at: None };
         Ok(Box::new(fake) as Box<dyn Renderer>)
     };
     let mut progressive = Progressive::with_factory(Box::new(fails)).unwrap();
@@ -142,6 +154,144 @@ fn a_failing_fallback_ends_with_what_there_is() {
     let status = progressive.wait_until_over();
     assert!(matches!(&status.phase, Phase::Failed(reason) if reason.contains("pulled out")), "{status:?}");
     assert_eq!(progressive.finish(), Some(expected(8)));
+}
+
+/// The history of a render whose samples take a known time at least.
+#[test]
+fn a_point_of_the_history_has_the_seconds_of_its_own_samples() {
+    let progressive = started(CPU, Plan::samples(128));
+    let status = progressive.wait_until_over();
+    for point in &status.history {
+        let least = PAUSE.as_secs_f64() * point.samples_per_pixel as f64;
+        assert!(point.trace_seconds >= least, "{point:?} before {least} s");
+    }
+    assert_eq!(status.history.last().map(|point| point.trace_seconds), Some(status.trace.as_secs_f64()));
+}
+
+#[test]
+fn a_panic_keeps_the_film_and_another_backend_goes_on() {
+    let progressive = Progressive::with_factory(Box::new(|choice| {
+        let panics_at = (*choice == CPU).then_some(16);
+        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at }))
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(Work::new(job(2), CPU, Plan::samples(100)));
+    let status = progressive.wait_until_over();
+    assert_eq!(status.phase, Phase::Done(EndReason::Samples));
+    let [message] = status.messages.as_slice() else { unreachable!("{:?}", status.messages) };
+    assert!(message.contains("a slip of the tracer") && message.contains("goes on"), "{message}");
+    assert_eq!(progressive.finish(), Some(expected(100)));
+}
+
+#[test]
+fn a_panic_of_every_backend_leaves_the_film_of_the_last_whole_pass() {
+    let asked = Arc::new(Mutex::new(Vec::new()));
+    let seen = Arc::clone(&asked);
+    let progressive = Progressive::with_factory(Box::new(move |choice| {
+        seen.lock().unwrap().push(choice.words());
+        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: Some(16) }))
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(Work::new(job(2), CPU, Plan::samples(100)));
+    let status = progressive.wait_until_over();
+    assert!(matches!(&status.phase, Phase::Failed(reason) if reason.contains("a slip of the tracer")));
+    assert_eq!(*asked.lock().unwrap(), ["the CPU", "the CPU's scalar code", "the reference"]);
+    assert_eq!(progressive.finish(), Some(expected(16)));
+}
+
+#[test]
+fn a_panic_while_preparing_or_looking_ends_nothing() {
+    let mut is_first = true;
+    let progressive = Progressive::with_factory(Box::new(move |choice| {
+        assert!(!std::mem::take(&mut is_first), "no such backend");
+        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None }))
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(Work::new(job(2), CPU, Plan::samples(2000)));
+    wait_for(&progressive, 8);
+    progressive.inspect(|_| unreachable!("a slip of the onlooker"));
+    let status = progressive.wait_until_over();
+    assert_eq!(status.phase, Phase::Done(EndReason::Samples));
+    let said = status.messages.join("; ");
+    assert!(said.contains("no such backend") && said.contains("a slip of the onlooker"), "{said}");
+    assert_eq!(progressive.finish(), Some(expected(2000)));
+}
+
+/// Records what it has not added.
+struct Forgetful;
+
+impl Renderer for Forgetful {
+    fn info(&self) -> BackendInfo {
+        BackendInfo { name: "cpu", device: "fake".into(), lanes: 1, threads: 1 }
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        _: &RenderJob,
+        _: Range<u64>,
+        _: &mut Film,
+        _: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        Ok(Stats::default())
+    }
+}
+
+#[test]
+fn samples_that_were_asked_for_and_not_added_are_missed() {
+    let progressive = Progressive::with_factory(Box::new(|choice| {
+        let fake = Fake { name: choice.name(), pause: Duration::ZERO, fails_at: None, panics_at: None };
+        Ok(if *choice == CPU { Box::new(Forgetful) as Box<dyn Renderer> } else { Box::new(fake) })
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(Work::new(job(2), CPU, Plan::samples(64)));
+    let status = progressive.wait_until_over();
+    assert_eq!(status.phase, Phase::Done(EndReason::Samples));
+    assert!(status.messages.iter().any(|said| said.contains("of 64 samples")), "{:?}", status.messages);
+    assert_eq!(progressive.finish(), Some(expected(64)));
+}
+
+#[test]
+fn a_member_that_panics_leaves_its_samples_to_the_others() {
+    let fake = |name, panics_at| -> Box<dyn Renderer> {
+        Box::new(Fake { name, pause: PAUSE, fails_at: None, panics_at })
+    };
+    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(4))]);
+    let mut film = job(2).new_film();
+    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
+    assert!(film == expected(64));
+    let said = together.take_messages().join("; ");
+    assert!(said.contains("a slip of the tracer") && said.contains("cpu goes on"), "{said}");
+}
+
+/// The tracer itself, which panics in the middle of a tile.
+#[test]
+fn a_panic_in_a_tile_leaves_the_film_as_it_was() {
+    let recipe = Recipe::find("three-spheres").unwrap();
+    for (half_count, estimate_error) in [(1, false), (2, true)] {
+        let size = RenderSettings { width: 100, height: 70, estimate_error, ..recipe.settings };
+        let job = recipe.job().unwrap().seen_by(*recipe.job().unwrap().camera(), size).unwrap();
+        let never = AtomicBool::new(false);
+        let mut film = job.new_film();
+        assert_eq!(film.halves().len(), half_count);
+        CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(&job, 0..6, &mut film, &never).unwrap();
+        let before = film.clone();
+        let options = CpuOptions { panics_after: Some(3), threads: Some(2), ..CpuOptions::default() };
+        let mut renderer = CpuRenderer::new(options).unwrap();
+        let error = renderer.accumulate(&job, 6..40, &mut film, &never).unwrap_err();
+        println!("{error}");
+        assert!(matches!(error, RenderError::Backend { backend: "cpu", .. }), "{error}");
+        assert!(error.to_string().contains("panicked") && error.to_string().contains("blocks"), "{error}");
+        assert!(film == before);
+        // It was one slip.
+        renderer.accumulate(&job, 6..40, &mut film, &never).unwrap();
+        let mut whole = job.new_film();
+        CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(&job, 0..40, &mut whole, &never).unwrap();
+        assert!(film == whole);
+    }
 }
 
 #[test]
@@ -212,7 +362,8 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
 #[test]
 fn a_new_job_takes_over_in_the_middle_of_a_pass() {
     let mut progressive = Progressive::with_factory(Box::new(|_| {
-        Ok(Box::new(Fake { name: "cpu", pause: Duration::from_millis(1), fails_at: None }))
+        let pause = Duration::from_millis(1);
+        Ok(Box::new(Fake { name: "cpu", pause, fails_at: None, panics_at: None }))
     }))
     .unwrap();
     progressive.start(Work::new(job(7), CPU, Plan { pass_target: PATIENCE, ..Plan::endless() }));
@@ -226,7 +377,7 @@ fn a_new_job_takes_over_in_the_middle_of_a_pass() {
 #[test]
 fn a_film_goes_on_where_it_has_gaps() {
     let mut film = job(2).new_film();
-    let mut fake = Fake { name: "before", pause: Duration::ZERO, fails_at: None };
+    let mut fake = Fake { name: "before", pause: Duration::ZERO, fails_at: None, panics_at: None };
     for range in [3..5, 10..30] {
         fake.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
     }

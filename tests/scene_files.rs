@@ -3,6 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use std::path::Path;
+use weekender::input::InputError;
 use weekender::recipe::Recipe;
 use weekender::recipe::file::{FileError, load, parse, to_picture_toml, to_toml};
 use weekender::render::{RenderSettings, SamplerKind};
@@ -433,10 +434,23 @@ fn unreadable_files_are_told_from_bad_ones() {
     let folder = tempfile::tempdir().expect("a folder");
     let missing = folder.path().join("missing.toml");
     let error = load(&missing).expect_err("missing");
-    assert!(matches!(error, FileError::Unreadable { .. }));
+    assert!(matches!(error, FileError::Input(InputError::Unreadable { .. })));
     let message = error.to_string();
     assert!(message.contains("missing.toml") && message.contains("check its name"), "{message}");
-    assert!(matches!(load(folder.path()), Err(FileError::Unreadable { .. })));
+    let message = load(folder.path()).expect_err("a directory").to_string();
+    assert!(message.contains("is a directory, but a file is needed; name a file in it"), "{message}");
+    let huge = folder.path().join("huge.toml");
+    std::fs::File::create(&huge).and_then(|file| file.set_len(1 << 40)).expect("a sparse file");
+    let message = load(&huge).expect_err("too long").to_string();
+    assert!(message.contains("has 1099.5 GB, but a scene file of more than 1.1 GB is not read"), "{message}");
+    #[cfg(unix)]
+    {
+        let message = load(Path::new("/dev/zero")).expect_err("endless").to_string();
+        assert!(
+            message.contains("/dev/zero is a device, but a file is needed; save what it gives"),
+            "{message}"
+        );
+    }
 
     let binary = folder.path().join("binary.toml");
     std::fs::write(&binary, b"[camera]\nlook_from = [0,\xff\xfe").expect("written");

@@ -120,10 +120,11 @@ fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'stati
 fn error_help(status: &Status) -> String {
     let uncertainty =
         status.error.map_or_else(String::new, |error| format!(", {} by chance", error.uncertainty()));
+    let doubt = status.doubt.as_ref().map_or_else(String::new, |doubt| format!("\nIn doubt: {doubt}."));
     format!(
         "Error estimated from the two halves of the film{uncertainty}: root of the mean square over pixels and \
          channels, linear radiance; and when the target will be reached, within two deviations.\n\
-         Against references the estimate was true within 1 %. What no path has found yet it cannot know."
+         Against references the estimate was true within 1 %. What no path has found yet it cannot know.{doubt}"
     )
 }
 

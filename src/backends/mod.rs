@@ -43,9 +43,36 @@ impl BackendChoice {
         is_there.then(|| BackendChoice::Gpu(GpuOptions::of_adapter(adapter)))
     }
 
-    /// What goes on when another backend fails: the CPU, with everything at its default.
-    pub fn fallback() -> Self {
-        BackendChoice::Cpu(CpuOptions::default())
+    /// What goes on when `failed` have failed, one after the other: the CPU's best code, then its plainest, then the
+    /// reference. `None` if they have all failed.
+    pub fn fallback(failed: &[BackendChoice]) -> Option<Self> {
+        let given = failed.iter().rev().find_map(|choice| match choice {
+            BackendChoice::Cpu(options) | BackendChoice::Both(options, _) => Some(*options),
+            _ => None,
+        });
+        let best = CpuOptions { isa: None, lanes: None, panics_after: None, ..given.unwrap_or_default() };
+        let plainest = CpuOptions { isa: Some(Isa::Baseline), lanes: Some(1), ..best };
+        let runs_alike = |a: &BackendChoice, b: &BackendChoice| match (a, b) {
+            (BackendChoice::Cpu(a), BackendChoice::Cpu(b)) => (a.isa, a.lanes) == (b.isa, b.lanes),
+            (a, b) => a.name() == b.name(),
+        };
+        let reference = BackendChoice::Reference { threads: best.threads };
+        [BackendChoice::Cpu(best), BackendChoice::Cpu(plainest), reference]
+            .into_iter()
+            .find(|choice| !failed.iter().any(|failed| runs_alike(failed, choice)))
+    }
+
+    /// As a sentence calls it.
+    pub fn words(&self) -> &'static str {
+        match self {
+            BackendChoice::Cpu(CpuOptions { isa: Some(Isa::Baseline), lanes: Some(1), .. }) => {
+                "the CPU's scalar code"
+            }
+            BackendChoice::Cpu(_) => "the CPU",
+            BackendChoice::Gpu(_) => "the GPU",
+            BackendChoice::Both(..) => "CPU and GPU",
+            BackendChoice::Reference { .. } => "the reference",
+        }
     }
 
     /// Names of single backends, for those who compare them: see [`BackendChoice::named`].
@@ -170,6 +197,21 @@ mod tests {
                 .count(),
             1
         );
+    }
+
+    #[test]
+    fn each_backend_is_fallen_back_to_once() {
+        let gives_way = CpuOptions { gives_way: true, ..CpuOptions::default() };
+        let mut failed = vec![BackendChoice::Both(gives_way, GpuOptions::default())];
+        while let Some(next) = BackendChoice::fallback(&failed) {
+            failed.push(next);
+        }
+        let words: Vec<_> = failed.iter().map(BackendChoice::words).collect();
+        assert_eq!(words, ["CPU and GPU", "the CPU", "the CPU's scalar code", "the reference"]);
+        assert_eq!(failed[1], BackendChoice::Cpu(gives_way));
+        let panicked = CpuOptions { panics_after: Some(3), ..CpuOptions::default() };
+        let next = BackendChoice::fallback(&[BackendChoice::Cpu(panicked)]);
+        assert_eq!(next.map(|next| next.words()), Some("the CPU's scalar code"));
     }
 
     #[test]

@@ -2,7 +2,9 @@
 
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
+use std::any::Any;
 use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -96,13 +98,16 @@ impl Together {
     fn leave_out(&mut self, failed: Vec<(usize, RenderError)>) -> Result<(), RenderError> {
         let mut last = None;
         for (index, error) in failed.into_iter().rev() {
-            let member = self.members.remove(index);
+            let mut member = self.members.remove(index);
             self.departed.extend((member.added > 0).then(|| (member.renderer.info(), member.added)));
             if !self.members.is_empty() {
                 let names: Vec<&str> = self.members.iter().map(|m| m.renderer.info().name).collect();
                 self.messages.push(format!("{error}; {} goes on with the same picture", names.join(", ")));
             }
             last = Some(error);
+            self.messages.extend(member.renderer.take_messages());
+            // A driver that hangs keeps waiting whoever closes it. Without a thread, it is closed here.
+            let _ = std::thread::Builder::new().name("close".to_owned()).spawn(move || drop(member));
         }
         match last {
             Some(error) if self.members.is_empty() => Err(error),
@@ -168,6 +173,7 @@ impl Renderer for Together {
     ) -> Result<Stats, RenderError> {
         let begin = Instant::now();
         let grain = film.halves().len() as u64;
+        let wanted = range.end.saturating_sub(range.start);
         let pieces = Mutex::new(Pieces { left: vec![range], grain });
         let mut stats = Stats::default();
         // A film for each member; only whole pieces are in it. They are added to the caller's at the end, so
@@ -186,7 +192,7 @@ impl Renderer for Together {
                 let threads: Vec<_> = self.members.iter_mut().enumerate().map(run).collect();
                 threads
                     .into_iter()
-                    .map(|thread| thread.join().unwrap_or_else(|_| Outcome::panicked()))
+                    .map(|thread| thread.join().unwrap_or_else(|payload| Outcome::panicked(payload.as_ref())))
                     .collect()
             });
             let mut failed = Vec::new();
@@ -205,6 +211,11 @@ impl Renderer for Together {
                 break;
             }
         }
+        let brought: u64 = films.iter().map(Film::sample_count).sum();
+        if brought != wanted {
+            let reason = format!("of {wanted} samples per pixel its members traced {brought}");
+            return Err(RenderError::Backend { backend: "cpu,gpu", reason });
+        }
         for part in &films {
             film.merge(part)?;
         }
@@ -214,9 +225,8 @@ impl Renderer for Together {
 }
 
 impl Outcome {
-    fn panicked() -> Self {
-        let reason = "its thread ended by a panic".to_owned();
-        let error = Some(RenderError::Backend { backend: "a renderer", reason });
+    fn panicked(payload: &(dyn Any + Send)) -> Self {
+        let error = Some(RenderError::of_panic("a renderer", payload));
         Outcome { film: None, stats: Stats::default(), error }
     }
 }
@@ -233,6 +243,7 @@ fn work_off(
     let mut outcome = Outcome { film: None, stats: Stats::default(), error: None };
     let mut taken = Vec::new();
     let renderer = member.renderer.as_mut();
+    let name = renderer.info().name;
     while outcome.error.is_none() {
         if cancel.load(Ordering::Relaxed) {
             outcome.error = Some(RenderError::Cancelled);
@@ -244,20 +255,25 @@ fn work_off(
             return outcome;
         }
         let film = outcome.film.get_or_insert_with(|| job.new_film());
-        let result = match piece {
+        let work = || match piece {
             Some(piece) => {
                 taken.push(piece.clone());
                 renderer.advance(job, piece, film, cancel)
             }
             None => renderer.collect(film),
         };
-        match result {
-            Ok(stats) => outcome.stats.add(&stats),
-            Err(error) => outcome.error = Some(error),
+        // After a panic the film is as it was, and what the member had not brought home is for the others.
+        match catch_unwind(AssertUnwindSafe(work)) {
+            Ok(Ok(stats)) => outcome.stats.add(&stats),
+            Ok(Err(error)) => outcome.error = Some(error),
+            Err(payload) => outcome.error = Some(RenderError::of_panic(name, payload.as_ref())),
         }
         if is_last {
             break;
         }
+    }
+    if matches!(outcome.error, Some(RenderError::FilmLost { .. })) {
+        outcome.film = Some(job.new_film());
     }
     let Some(film) = &outcome.film else { return outcome };
     // What a failing member had not brought home is for the others.

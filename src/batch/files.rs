@@ -118,7 +118,8 @@ pub(super) fn write(
     written
 }
 
-fn is_film(path: &Path) -> bool {
+/// Whether the name says that it is a film.
+pub(super) fn is_film(path: &Path) -> bool {
     OutputFormat::from_path(path).is_ok_and(|format| format == OutputFormat::Exr)
 }
 

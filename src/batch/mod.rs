@@ -3,7 +3,6 @@
 mod files;
 mod keeping;
 mod listing;
-mod memory;
 mod merging;
 mod progress;
 mod rescue;
@@ -17,7 +16,7 @@ use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
 use crate::console;
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::{Film, check_writable, write_text};
+use crate::film::{Film, check_film_writable, check_writable, write_text};
 use crate::interrupt::Interrupt;
 use crate::progressive::{Phase, Progressive, Status, Work};
 use crate::recipe::{Recipe, file};
@@ -116,10 +115,11 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     };
     let scene = options.save_scene.as_ref().map(|save| &save.path);
     for path in pictures.chain([json, scene]).flatten() {
-        check_writable(path).map_err(Failure::input)?;
+        let check = if files::is_film(path) { check_film_writable } else { check_writable };
+        check(path).map_err(Failure::input)?;
     }
     for render in &options.renders {
-        memory::check(render.job.settings()).map_err(Failure::input)?;
+        render.job.check_memory(1).map_err(Failure::input)?;
     }
     Ok(())
 }

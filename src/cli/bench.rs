@@ -186,6 +186,7 @@ pub(super) fn bench(raw: RawBench) -> Result<BenchOptions, CliError> {
         let recipe = sources::scene(name)?;
         let (name, samples) = (recipe.name.clone(), options.samples_of(&recipe));
         let job = options.change(recipe)?;
+        job.check_memory(2)?;
         options.scenes.push(BenchScene { name, job, samples });
     }
     Ok(options)

@@ -145,9 +145,11 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
         RawSide::Reference => SideChoice::Reference,
         RawSide::Gpu => SideChoice::Gpu(GpuOptions::of_adapter(raw.adapter.as_deref())),
     });
+    let job = recipe.job()?;
+    job.check_memory(2)?;
     Ok(DiffOptions {
         scene: stage.map_or(recipe.name.clone(), |stage| stage.id.to_owned()),
-        job: recipe.job()?,
+        job,
         path,
         sides,
         tolerance: raw.tolerance,

@@ -119,6 +119,14 @@ pub(super) struct RawRender {
     #[arg(long, value_name = "DISPATCHES", hide = true,
           conflicts_with_all = ["simulate_device_lost", "simulate_out_of_memory"], help_heading = "Device")]
     pub simulate_invalid_call: Option<u64>,
+    /// Let the GPU not answer for 10 s after so many dispatches: another drill
+    #[arg(long, value_name = "DISPATCHES", hide = true,
+          conflicts_with_all = ["simulate_device_lost", "simulate_out_of_memory", "simulate_invalid_call"],
+          help_heading = "Device")]
+    pub simulate_hang: Option<u64>,
+    /// Let the CPU's tracer panic after so many tiles: another drill
+    #[arg(long, value_name = "TILES", hide = true, help_heading = "Device")]
+    pub simulate_panic: Option<u64>,
     /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16
     #[arg(long, value_name = "LANES", value_parser = parse_simd, default_value = "auto",
           help_heading = "Device")]

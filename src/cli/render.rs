@@ -11,7 +11,7 @@ use crate::progressive::Plan;
 use crate::recipe::{Recipe, plain_name};
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::CpuOptions;
-use crate::render_gpu::{Drill, Fault, GpuOptions};
+use crate::render_gpu::{Drill, DrillPoint, Fault, GpuOptions};
 use crate::stages::Stage;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -250,14 +250,17 @@ fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
 fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
     let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
     let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
-    let cpu = CpuOptions { isa, lanes, threads, gives_way: false };
+    let cpu = CpuOptions { isa, lanes, threads, gives_way: false, panics_after: raw.simulate_panic };
     let drills = [
         (raw.simulate_device_lost, Fault::Lost, "--simulate-device-lost"),
         (raw.simulate_out_of_memory, Fault::OutOfMemory, "--simulate-out-of-memory"),
         (raw.simulate_invalid_call, Fault::Invalid, "--simulate-invalid-call"),
+        (raw.simulate_hang, Fault::Hang, "--simulate-hang"),
     ];
-    let drill =
-        drills.into_iter().find_map(|(after, fault, flag)| after.map(|after| (Drill { fault, after }, flag)));
+    let point = DrillPoint::Dispatch;
+    let drill = drills
+        .into_iter()
+        .find_map(|(after, fault, flag)| after.map(|after| (Drill { fault, point, after }, flag)));
     let gpu =
         GpuOptions { drill: drill.map(|(drill, _)| drill), ..GpuOptions::of_adapter(raw.adapter.as_deref()) };
     let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { drill.map(|(_, flag)| flag) };

@@ -298,7 +298,8 @@ fn report_scenes(
     let sized = |recipe: Result<Recipe, CliError>| {
         let mut recipe = recipe?;
         (recipe.settings.width, recipe.settings.height) = size;
-        recipe.job()?;
+        // A film, what it is compared with, and one of a pass.
+        recipe.job()?.check_memory(4)?;
         Ok::<Recipe, CliError>(recipe)
     };
     let scenes: Vec<Recipe> = if raw.scenes.is_empty() {

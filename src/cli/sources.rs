@@ -2,6 +2,7 @@
 
 use super::raw::{RawPicture, RawSwitch};
 use crate::film::key;
+use crate::memory::MemoryError;
 use crate::output::{OutputError, read_description};
 use crate::recipe::{Recipe, SceneNameError, file};
 use crate::render::JobError;
@@ -23,6 +24,9 @@ pub enum CliError {
     /// A value that no picture can be made with.
     #[error(transparent)]
     Job(#[from] JobError),
+    /// A picture or a scene that does not fit into memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
     /// The file's name or what it says of itself.
     #[error(transparent)]
     Output(#[from] OutputError),

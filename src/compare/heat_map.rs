@@ -13,7 +13,8 @@ const FRAMED: usize = 5;
 const FRAME: [u8; 3] = [0, 220, 255];
 
 /// Writes a PNG: each pixel's difference, root of the mean square of its channels, from dark (1e-4) to bright (1),
-/// with frames around the blocks that are farthest off. Pixels that could not be compared are black.
+/// with frames around the blocks that are farthest off. Pixels that are a number in one picture alone are as bright as
+/// any; others that could not be compared are black.
 pub(super) fn write(
     a: &Side,
     b: &Side,
@@ -23,7 +24,15 @@ pub(super) fn write(
     let mut image = RgbImage::from_fn(a.width, a.height, |x, y| {
         let pixel = (y * a.width + x) as usize;
         let squares: f64 = (0..3).map(|i| (b.pixels[pixel][i] - a.pixels[pixel][i]).powi(2)).sum();
-        image::Rgb(HeatScale::ERROR.colour((squares / 3.0).sqrt()))
+        let is_number = |side: &Side| side.pixels[pixel].iter().all(|x| x.is_finite());
+        let are_floats = a.steps.is_none() && b.steps.is_none();
+        let difference = match (is_number(a), is_number(b)) {
+            (true, true) => (squares / 3.0).sqrt(),
+            (false, false) => 0.0,
+            _ if are_floats => f64::INFINITY,
+            _ => 0.0,
+        };
+        image::Rgb(HeatScale::ERROR.colour(difference))
     });
     for block in test.worst(FRAMED) {
         for y in block.y.clone() {

@@ -6,16 +6,17 @@ mod text;
 mod verdict;
 
 pub use side::Side;
-pub use verdict::{Comparison, Evidence, PairedSamples, PairedSums, ROUNDING_BIAS, compare};
+pub use verdict::{Comparison, Evidence, NonFinite, PairedSamples, PairedSums, ROUNDING_BIAS, compare};
 
 use crate::cli::{CompareOptions, JsonTarget};
 use crate::failure::Failure;
 use crate::film::{check_writable, replace_file};
 use crate::recipe::Recipe;
+use crate::render::RenderSettings;
 use crate::terminal::{print_beside, write_json};
 use anyhow::{Result, bail};
 use serde::Serialize;
-use side::{Opened, Rendering};
+use side::{Opened, Rendering, check_memory, new_film};
 use std::process::ExitCode;
 
 /// Version of the JSON: it grows when a key changes its meaning or goes away.
@@ -45,6 +46,8 @@ struct Report {
     excess: [f64; 3],
     largest: f64,
     largest_limit: f64,
+    left_out: usize,
+    non_finite: NonFinite,
     worst_blocks: Vec<ReportedBlock>,
     paired_samples: Option<PairedSamples>,
     reasons: Vec<String>,
@@ -136,6 +139,8 @@ fn beside(options: &CompareOptions, read: &Side, rendering: &mut Rendering) -> R
     (recipe.settings.width, recipe.settings.height) = (read.width, read.height);
     recipe.settings.estimate_error |= read.film.is_none();
     let job = recipe.job()?;
+    job.check_memory(2)?;
+    check_memory(read.width, read.height, 2)?;
     match (&read.film, &read.job) {
         (Some(film), Some(other)) if *other == job && options.samples.is_none() => {
             rendering.render(&recipe, &job, film.samples().iter())
@@ -156,7 +161,11 @@ fn both(
     b: &mut Rendering,
 ) -> Result<([Side; 2], PairedSamples)> {
     let job = recipe.job()?;
-    let (mut film_a, mut film_b) = (job.new_film(), job.new_film());
+    let RenderSettings { width, height, .. } = *job.settings();
+    // Two of all samples, and two of the last.
+    job.check_memory(4)?;
+    check_memory(width, height, 4)?;
+    let (mut film_a, mut film_b) = (new_film(&job)?, new_film(&job)?);
     let mut sums = PairedSums::default();
     for index in 0..samples {
         let (sample_a, sample_b) = (a.sample(&job, index)?, b.sample(&job, index)?);
@@ -211,6 +220,8 @@ fn report(sides: &[Side; 2], comparison: &Comparison) -> Report {
         excess: test.excess,
         largest: test.largest,
         largest_limit: test.largest_limit,
+        left_out: comparison.left_out,
+        non_finite: comparison.non_finite,
         worst_blocks: test
             .worst(NAMED_BLOCKS)
             .into_iter()

@@ -2,10 +2,11 @@
 
 use crate::backends::{self, BackendChoice};
 use crate::cli::CompareSide;
-use crate::film::{Description, Film, checkpoint, key};
+use crate::film::{CheckpointError, Description, Film, checkpoint, key};
+use crate::memory;
 use crate::output::{Encoding, read_description, read_picture};
 use crate::recipe::{Recipe, file};
-use crate::render::{RenderJob, Renderer};
+use crate::render::{RenderJob, RenderSettings, Renderer};
 use anyhow::{Context, Result};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -21,7 +22,7 @@ pub struct Side {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Linear RGB, row by row from the top; NaN where it is not known.
+    /// Linear RGB, row by row from the top; with `steps`, NaN where it is not known.
     pub pixels: Vec<[f64; 3]>,
     /// See [`crate::output::ReadPicture::steps`].
     pub steps: Option<Vec<[f64; 3]>>,
@@ -42,18 +43,21 @@ impl Side {
     /// A file that cannot be read, with what to do.
     pub fn read(path: &Path, encoding: Encoding) -> Result<Self> {
         let name = path.display().to_string();
+        match checkpoint::load(path) {
+            Ok(read) => {
+                check_memory(read.film.width(), read.film.height(), 0)?;
+                let recipe = recipe_of(&read.description, &name);
+                let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
+                let about = format!("film, {}", about_film(&read.film, recipe.as_ref()));
+                return Ok(Side { recipe, job, ..Side::of_film(name, about, read.film) });
+            }
+            // A picture. A film that is damaged is none.
+            Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => {}
+            Err(error) => return Err(error.into()),
+        }
         // Most pictures do not say what they are; the picture itself is read below, with its errors.
         let description = read_description(path).ok();
-        let recipe = description.as_ref().and_then(|description| {
-            let mut recipe = file::parse(description.recipe(), &name).ok()?;
-            recipe.name = description.get(key::SCENE).unwrap_or("film").to_owned();
-            Some(recipe)
-        });
-        if let Ok(film) = checkpoint::load(path) {
-            let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
-            let about = format!("film, {}", about_film(&film.film, recipe.as_ref()));
-            return Ok(Side { recipe, job, ..Side::of_film(name, about, film.film) });
-        }
+        let recipe = description.as_ref().and_then(|description| recipe_of(description, &name));
         let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
         let picture = read_picture(path, encoding)?;
         let kind = if picture.steps.is_some() { "whole numbers" } else { "float" };
@@ -96,6 +100,36 @@ impl Side {
     }
 }
 
+/// What a pixel takes besides films while pictures are compared: both pictures, their difference, its noise and steps,
+/// and the map of it.
+const BYTES_PER_PIXEL: u64 = 5 * 24 + 8;
+
+/// Refuses pictures that do not fit into memory together, with `films` films of two halves that are rendered.
+///
+/// # Errors
+/// What is needed, what there is and what to do.
+pub(super) fn check_memory(width: u32, height: u32, films: u64) -> Result<()> {
+    let pixels = u64::from(width) * u64::from(height);
+    let bytes = films * Film::bytes(width, height, 2) + pixels * BYTES_PER_PIXEL;
+    let what = || format!("comparing pictures of {width}x{height}");
+    Ok(memory::check(what, bytes, "compare smaller pictures (--size for those that are rendered)")?)
+}
+
+fn recipe_of(description: &Description, name: &str) -> Option<Recipe> {
+    let mut recipe = file::parse(description.recipe(), name).ok()?;
+    recipe.name = description.get(key::SCENE).unwrap_or("film").to_owned();
+    Some(recipe)
+}
+
+/// An empty film for a job.
+///
+/// # Errors
+/// If there is no memory for it.
+pub(super) fn new_film(job: &RenderJob) -> Result<Film> {
+    let RenderSettings { width, height, .. } = *job.settings();
+    Ok(Film::try_new(width, height, job.settings().half_count())?)
+}
+
 fn said(description: Option<&Description>) -> String {
     let samples = description.and_then(|description| description.get(key::SAMPLES));
     samples.map_or_else(String::new, |samples| format!(", {samples} samples"))
@@ -133,8 +167,7 @@ impl Rendering {
     }
 
     fn samples(&mut self, job: &RenderJob, range: std::ops::Range<u64>) -> Result<Film> {
-        let settings = job.settings();
-        let mut film = Film::try_new(settings.width, settings.height, settings.half_count())?;
+        let mut film = new_film(job)?;
         self.renderer.accumulate(job, range, &mut film, &AtomicBool::new(false))?;
         Ok(film)
     }
@@ -160,7 +193,7 @@ impl Rendering {
         job: &RenderJob,
         ranges: impl Iterator<Item = std::ops::Range<u64>>,
     ) -> Result<Side> {
-        let mut film = job.new_film();
+        let mut film = new_film(job)?;
         for range in ranges {
             film.merge(&self.samples(job, range)?)?;
         }

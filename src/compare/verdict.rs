@@ -84,10 +84,78 @@ impl PairedSums {
     }
 }
 
+/// Channels that are NaN or infinite in a picture of floats.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct NonFinite {
+    /// Pixels with a channel that is a number in one picture and none in the other, or another kind of none: infinite
+    /// there and NaN here, or of the other sign. These are differences.
+    pub differing_pixels: usize,
+    /// Such channels.
+    pub differing: usize,
+    /// Column and row of the first of these pixels.
+    pub first: Option<[u32; 2]>,
+    /// Channels that are NaN in both pictures, or infinite with one sign in both. These are equal, and left out of all
+    /// means.
+    pub alike: usize,
+}
+
+/// What two values of a channel are to each other where one of them at least is no number.
+enum Relation {
+    /// Both are numbers, or one lies beyond what the other picture can tell.
+    Numbers,
+    Alike,
+    Differing,
+}
+
+/// `None` is a value at the end of a picture's whole numbers: any that is as large, infinity included.
+fn relation(a: Option<f64>, b: Option<f64>) -> Relation {
+    match (a, b) {
+        (Some(a), Some(b)) if a.is_finite() && b.is_finite() => Relation::Numbers,
+        (Some(a), Some(b)) if a == b || (a.is_nan() && b.is_nan()) => Relation::Alike,
+        (Some(_), Some(_)) => Relation::Differing,
+        (None, None) => Relation::Numbers,
+        (Some(one), None) | (None, Some(one)) if one.is_nan() || one == f64::NEG_INFINITY => {
+            Relation::Differing
+        }
+        _ => Relation::Numbers,
+    }
+}
+
+impl NonFinite {
+    fn of(a: &Side, b: &Side) -> Self {
+        let told = |side: &Side, value: f64| (side.steps.is_none() || !value.is_nan()).then_some(value);
+        let mut found = NonFinite::default();
+        for (pixel, (mine, theirs)) in a.pixels.iter().zip(&b.pixels).enumerate() {
+            let before = found.differing;
+            for (mine, theirs) in mine.iter().zip(theirs) {
+                match relation(told(a, *mine), told(b, *theirs)) {
+                    Relation::Numbers => {}
+                    Relation::Alike => found.alike += 1,
+                    Relation::Differing => found.differing += 1,
+                }
+            }
+            if found.differing > before {
+                found.differing_pixels += 1;
+                let width = a.width.max(1) as usize;
+                found.first.get_or_insert([(pixel % width) as u32, (pixel / width) as u32]);
+            }
+        }
+        found
+    }
+}
+
+/// Whether two pictures of floats hold the same bits; any NaN is equal to any other.
+fn is_same(a: &Side, b: &Side) -> bool {
+    let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+    a.steps.is_none()
+        && b.steps.is_none()
+        && a.pixels.iter().flatten().zip(b.pixels.iter().flatten()).all(same)
+}
+
 /// What two pictures differ by, and what of it is noise.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// Whether all pixels are equal to the bit.
+    /// Whether all pixels are equal to the bit; any NaN is equal to any other.
     pub is_same: bool,
     /// Root of the mean square difference over pixels and channels.
     pub rms: f64,
@@ -101,6 +169,8 @@ pub struct Comparison {
     pub evidence: Evidence,
     /// Channels of pixels that could not be compared.
     pub left_out: usize,
+    /// Channels that are NaN or infinite.
+    pub non_finite: NonFinite,
     /// The blocks.
     pub test: BlockTest,
     /// Sample by sample, where backends rendered both.
@@ -133,13 +203,14 @@ pub fn compare(a: &Side, b: &Side, paired: Option<PairedSamples>) -> Comparison 
     let count = finite().count();
     let mean = |sum: f64| sum / count.max(1) as f64;
     let mut comparison = Comparison {
-        is_same: count > 0 && steps.is_none() && finite().all(|x| x == 0.0),
+        is_same: count > 0 && is_same(a, b),
         rms: mean(finite().map(|x| x * x).sum()).sqrt(),
         bias: mean(finite().sum()),
         bias_deviation: variances.as_ref().map(|v| v.of_mean.hypot(ROUNDING_BIAS)),
         noise: variances.map(|v| v.of_both),
         evidence,
         left_out: 3 * difference.len() - count,
+        non_finite: NonFinite::of(a, b),
         test,
         paired,
         reasons: Vec::new(),
@@ -153,6 +224,13 @@ fn judge(comparison: &mut Comparison, compared: usize) {
     let Comparison { test, reasons, notes, .. } = comparison;
     if compared == 0 {
         reasons.push("no pixel could be compared".to_owned());
+    }
+    let non_finite = comparison.non_finite;
+    if let Some([column, row]) = non_finite.first {
+        reasons.push(format!(
+            "{} channels of {} pixels are NaN or infinite in one picture alone, the first at {column},{row}: find out what made them",
+            non_finite.differing, non_finite.differing_pixels
+        ));
     }
     if test.largest_excess() > SUM_DEVIATIONS {
         reasons.push(format!(
@@ -195,8 +273,12 @@ fn judge(comparison: &mut Comparison, compared: usize) {
     if test.is_too_near() && comparison.paired.is_none() {
         notes.push("the blocks are nearer to each other than the noise of the halves allows: do the halves belong to one picture?".to_owned());
     }
+    if non_finite.alike > 0 {
+        let text = "are NaN in both pictures, or infinite with the same sign: these count as equal";
+        notes.push(format!("{} channels of pixels {text}", non_finite.alike));
+    }
     if comparison.left_out > 0 {
-        let text = "are left out, with their blocks: they are at the end of a picture's whole numbers, or no numbers";
+        let text = "are left out of the figures, with their blocks: they are at the end of a picture's whole numbers, or no numbers";
         notes.push(format!("{} channels of pixels {text}", comparison.left_out));
     }
 }
@@ -313,6 +395,66 @@ mod tests {
         assert!(!same.is_equal() && same.times_noise() < 0.1, "{same:?}");
         assert!(compare(&side(1, 0.0), &side(1, 1e-6), None).is_equal());
         assert!(compare(&side(1, 0.0), &side(1, 0.0), None).is_same);
+    }
+
+    #[test]
+    fn what_is_no_number_in_one_picture_alone_is_a_difference() {
+        let floats = |value: f64| {
+            let mut side = side(1, 0.0);
+            side.pixels.iter_mut().take(60).for_each(|pixel| pixel[1] = value);
+            side.film = None;
+            side
+        };
+        let (nan, inf) = (f64::NAN, f64::INFINITY);
+        for (a, b) in [(nan, 0.5), (0.5, inf), (-inf, 0.5), (nan, inf), (inf, -inf), (nan, -inf)] {
+            let found = compare(&floats(a), &floats(b), None);
+            assert!(!found.is_equal() && !found.is_same, "{a} and {b}");
+            assert_eq!((found.non_finite.differing, found.non_finite.differing_pixels), (60, 60));
+            assert_eq!((found.non_finite.first, found.non_finite.alike), (Some([0, 0]), 0));
+            assert!(found.reasons[0].starts_with("60 channels of 60 pixels are NaN"), "{:?}", found.reasons);
+        }
+        for (a, b) in [(nan, -nan), (inf, inf), (-inf, -inf)] {
+            let found = compare(&floats(a), &floats(b), None);
+            assert!(found.is_equal() && found.is_same, "{a} and {b}: {:?}", found.reasons);
+            assert_eq!((found.non_finite.differing, found.non_finite.alike), (0, 60));
+        }
+        // Numbers that differ by their sign alone are equal, but not to the bit.
+        let found = compare(&floats(0.0), &floats(-0.0), None);
+        assert!(found.is_equal() && !found.is_same);
+    }
+
+    #[test]
+    fn a_picture_without_a_number_is_equal_to_none() {
+        let mut none = side(1, 0.0);
+        (none.film, none.pixels) = (None, vec![[f64::NAN; 3]; 80 * 48]);
+        let found = compare(&none, &none, None);
+        assert!(!found.is_equal() && !found.is_same, "{found:?}");
+    }
+
+    #[test]
+    fn the_end_of_whole_numbers_stands_for_any_larger_number() {
+        let whole = |value: f64| {
+            let mut side = side(1, 0.0);
+            (side.film, side.limit) = (None, 0.99);
+            side.pixels[7][2] = value;
+            side.steps = Some(vec![[0.002; 3]; 80 * 48]);
+            side
+        };
+        let float = |value: f64| {
+            let mut side = side(1, 0.0);
+            side.film = None;
+            side.pixels[7][2] = value;
+            side
+        };
+        let end = whole(f64::NAN);
+        for beyond in [1.0, 50.0, f64::INFINITY] {
+            assert!(compare(&end, &float(beyond), None).is_equal(), "{beyond}");
+        }
+        assert!(compare(&end, &end, None).is_equal());
+        for other in [f64::NAN, f64::NEG_INFINITY] {
+            assert!(!compare(&float(other), &end, None).is_equal(), "{other}");
+        }
+        assert!(!compare(&whole(0.5), &float(f64::INFINITY), None).is_equal());
     }
 
     #[test]

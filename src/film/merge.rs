@@ -74,11 +74,11 @@ pub fn merge_files<P: AsRef<Path>>(
         same_job(merged.description.recipe(), part.description.recipe()).map_err(|difference| {
             MergeError::OtherJob { first: first.to_owned(), other: other.to_owned(), difference }
         })?;
-        for (earlier, samples) in &added {
-            if let Some(range) = part.film.samples().iter().find_map(|range| samples.overlap(&range)) {
-                let first = earlier.to_path_buf();
-                return Err(MergeError::Overlap { first, other: other.to_owned(), range });
-            }
+        let overlap = added.iter().find_map(|(earlier, samples)| {
+            samples.first_common(part.film.samples()).map(|range| (earlier.to_path_buf(), range))
+        });
+        if let Some((first, range)) = overlap {
+            return Err(MergeError::Overlap { first, other: other.to_owned(), range });
         }
         merged.film.merge(&part.film).map_err(|reason| MergeError::Film {
             first: first.to_owned(),

@@ -6,6 +6,7 @@
 //! film that is not asked for its error has one half.
 
 pub mod checkpoint;
+mod checksum;
 mod description;
 mod identity;
 mod leftovers;
@@ -15,13 +16,15 @@ mod replace;
 mod shared_file;
 
 pub use checkpoint::{CheckpointError, FilmFile};
+pub use checksum::Checksum;
 pub use description::{Description, RECIPE_KEY, key};
 pub use identity::FileIdentity;
 pub use merge::{MergeError, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;
-pub use replace::{WriteError, check_writable, replace_file, write_text};
+pub use replace::{WriteError, check_film_writable, check_writable, replace_file, write_text};
 pub use shared_file::{Saved, SharedFile};
 
+use crate::memory::{self, MemoryError};
 use crate::stages::Transfer;
 use std::ops::Range;
 
@@ -35,12 +38,21 @@ pub const RADIANCE_LIMIT: f64 = 128.0;
 /// The largest `k`: that of the greatest `f32` below [`RADIANCE_LIMIT`].
 pub const FIXED_POINT_MAX: u32 = 2_147_483_520;
 
+/// Sample indices are below this, on every way into a film. So a pixel's sum, of all halves and of any films that may
+/// be added, is below `2^32 FIXED_POINT_MAX < 2^63` and cannot overflow.
+pub const SAMPLE_LIMIT: u64 = 1 << 32;
+
+const _: () = assert!((SAMPLE_LIMIT as u128) * (FIXED_POINT_MAX as u128) < 1 << 63);
+
+/// Largest width and height of a picture, pixels: a pixel's position is packed into 32 bits.
+pub const SIZE_LIMIT: u32 = 16_384;
+
 /// Sums of one pixel in units of `2^-24`, RGB.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PixelSum(pub [u64; 3]);
 
 impl PixelSum {
-    /// Adds another sum.
+    /// Adds another sum, of other samples of the pixel: see [`SAMPLE_LIMIT`] for why there is room.
     pub fn add(&mut self, other: PixelSum) {
         for (mine, theirs) in self.0.iter_mut().zip(other.0) {
             *mine += theirs;
@@ -76,7 +88,21 @@ pub struct ErrorEstimate {
     pub rel_mse: f64,
 }
 
+/// With fewer pixels in effect the error estimate is in doubt.
+const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
+
+/// It is so only if they are less than this share of all: small pictures have few pixels.
+const DOMINANT_SHARE: f64 = 0.2;
+
 impl ErrorEstimate {
+    /// As how many pixels of like errors those are from which it comes, `(sum e^2)^2 / sum e^4` with `e` the errors: few,
+    /// where a few pixels dominate it; infinite without any error.
+    pub fn pixels_in_effect(&self) -> f64 {
+        // Of n pixels, the variance of the mean square is (mean e^4 - (mean e^2)^2) / n.
+        let share = 2.0 * self.rmse_deviation / self.rmse;
+        if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
+    }
+
     /// How far off it may be by chance, as "± 0.2 %": one deviation.
     pub fn uncertainty(&self) -> String {
         let share = if self.rmse > 0.0 { self.rmse_deviation / self.rmse } else { 0.0 };
@@ -112,17 +138,13 @@ impl Film {
     /// As [`Film::new`], but having no memory is an error.
     ///
     /// # Errors
-    /// [`FilmError::Memory`]. A system that promises more memory than it has may end the program instead.
+    /// [`FilmError::Memory`], before any is taken.
     pub fn try_new(width: u32, height: u32, half_count: usize) -> Result<Self, FilmError> {
-        let no_memory = |_| FilmError::Memory { bytes: Film::bytes(width, height, half_count) };
-        let mut halves = Vec::with_capacity(half_count);
-        for _ in 0..half_count {
-            let mut half = Vec::new();
-            let pixels = width as usize * height as usize;
-            half.try_reserve_exact(pixels).map_err(no_memory)?;
-            half.resize(pixels, PixelSum::default());
-            halves.push(half);
-        }
+        let what = || format!("a film of {width}x{height} pixels");
+        memory::check(what, Film::bytes(width, height, half_count), SMALLER_FILM)?;
+        let pixels = width as usize * height as usize;
+        let half = |_| memory::filled(pixels, PixelSum::default(), what, SMALLER_FILM);
+        let halves = (0..half_count).map(half).collect::<Result<_, _>>()?;
         Ok(Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 })
     }
 
@@ -213,11 +235,18 @@ impl Film {
     /// Notes that every pixel now holds the samples of `range` besides, `rejected` of which were left out.
     ///
     /// # Errors
-    /// [`FilmError::Overlap`] if some of them were there before; the note is not taken.
+    /// [`FilmError::Overlap`] if some of them were there before, [`FilmError::Range`] if there are none so large; the
+    /// note is not taken.
     pub fn record(&mut self, range: Range<u64>, rejected: u64) -> Result<(), FilmError> {
+        let rejected = self.with_rejected(rejected)?;
         self.samples.insert(range)?;
-        self.rejected += rejected;
+        self.rejected = rejected;
         Ok(())
+    }
+
+    fn with_rejected(&self, more: u64) -> Result<u64, FilmError> {
+        let what = || format!("{} and {more} samples rejected, more than can be counted", self.rejected);
+        self.rejected.checked_add(more).ok_or_else(|| FilmError::Parts { what: what() })
     }
 
     /// Sum of a pixel over the halves.
@@ -283,7 +312,12 @@ impl Film {
     /// A pixel's sum if all its samples were 1. It is a product with a power of two, so that dividing by it is
     /// to the bit what dividing by the two factors would be.
     fn fixed_point_of_1(&self) -> f64 {
-        self.sample_count().max(1) as f64 * FIXED_POINT_SCALE
+        Film::fixed_point(self.sample_count())
+    }
+
+    /// The same for `samples` a pixel.
+    fn fixed_point(samples: u64) -> f64 {
+        samples.max(1) as f64 * FIXED_POINT_SCALE
     }
 
     fn for_each_sum<T>(&self, rows: Range<u32>, places: &mut [T], each: impl Fn(PixelSum, &mut T)) {
@@ -347,21 +381,38 @@ impl Film {
         })
     }
 
+    /// What to say where an estimate of this film's error is in doubt: few pixels dominate it, or no path has found any
+    /// light. It is then most likely too low, and its deviation with it.
+    pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
+        if estimate.rmse == 0.0 && self.halves.iter().flatten().all(|sum| sum.0 == [0; 3]) {
+            let count = self.sample_count();
+            return Some(format!(
+                "no path has found any light in {count} samples per pixel, so that the error cannot be estimated; only \
+                 more samples tell whether there is some"
+            ));
+        }
+        let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
+        (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64).then(|| {
+            format!(
+                "few pixels dominate the error estimate: it is worth that of {pixels:.0} of {all} pixels, where \
+                 {PIXELS_IN_EFFECT_MIN:.0} would do; it may be off by a factor, and only more samples tell"
+            )
+        })
+    }
+
     /// Adds another film of the same size.
     ///
     /// # Errors
-    /// [`FilmError::Size`] or [`FilmError::Overlap`]; this film is then as it was.
+    /// [`FilmError::Size`] or [`FilmError::Overlap`], or more rejected samples than can be counted; this film is then
+    /// as it was.
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
         let shape = |f: &Film| (f.width, f.height, f.halves.len());
         if shape(self) != shape(other) {
             return Err(FilmError::Size { mine: shape(self), theirs: shape(other) });
         }
-        let mut samples = self.samples.clone();
-        for range in other.samples.iter() {
-            samples.insert(range)?;
-        }
+        let samples = self.samples.union(&other.samples)?;
+        self.rejected = self.with_rejected(other.rejected)?;
         self.samples = samples;
-        self.rejected += other.rejected;
         for (mine, theirs) in self.halves.iter_mut().zip(&other.halves) {
             for (sum, more) in mine.iter_mut().zip(theirs) {
                 sum.add(*more);
@@ -370,6 +421,10 @@ impl Film {
         Ok(())
     }
 }
+
+/// What makes a film fit.
+const SMALLER_FILM: &str =
+    "choose a smaller picture, or half the film with --estimate-error off, or close other programs";
 
 fn mean_of(sum: PixelSum, count: u64) -> [f64; 3] {
     if count == 0 { [0.0; 3] } else { sum.radiance().map(|x| x / count as f64) }
@@ -395,6 +450,15 @@ pub enum FilmError {
         /// Width, height, halves.
         theirs: (u32, u32, usize),
     },
+    /// Sample indices that no film can hold.
+    #[error(
+        "samples {}..{} are no range of samples, which begins before it ends, at {SAMPLE_LIMIT} at most",
+        range.start, range.end
+    )]
+    Range {
+        /// The indices.
+        range: Range<u64>,
+    },
     /// A sample would be counted twice.
     #[error("samples {}..{} are already in the film; each sample may be added once", range.start, range.end)]
     Overlap {
@@ -402,11 +466,8 @@ pub enum FilmError {
         range: Range<u64>,
     },
     /// There is no memory for the sums.
-    #[error("the film needs {bytes} bytes of memory, which are not to be had; choose a smaller picture")]
-    Memory {
-        /// Bytes of all sums.
-        bytes: u64,
-    },
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
     /// Parts that do not fit together.
     #[error("this is no film: {what}")]
     Parts {

@@ -1,89 +1,159 @@
 //! A set of sample indices, as disjoint ranges.
 
-use super::FilmError;
+use super::{FilmError, SAMPLE_LIMIT};
 use std::fmt;
 use std::ops::Range;
 
-/// The samples that a film holds: sorted, disjoint, not touching.
+/// The samples that a film holds: sorted, disjoint, not touching, below [`SAMPLE_LIMIT`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct SampleRanges(Vec<Range<u64>>);
+pub struct SampleRanges {
+    ranges: Vec<Range<u64>>,
+    count: u64,
+}
 
 impl SampleRanges {
+    /// The set of all samples of `ranges`, which may stand in any order.
+    ///
+    /// # Errors
+    /// [`FilmError::Range`] for one that is empty or reaches beyond [`SAMPLE_LIMIT`], [`FilmError::Overlap`] for two
+    /// that have samples in common.
+    pub fn from_ranges(ranges: impl IntoIterator<Item = Range<u64>>) -> Result<Self, FilmError> {
+        let mut ranges: Vec<Range<u64>> = ranges.into_iter().collect();
+        for range in &ranges {
+            if range.is_empty() {
+                return Err(FilmError::Range { range: range.clone() });
+            }
+            check(range)?;
+        }
+        ranges.sort_unstable_by_key(|range| range.start);
+        Self::of_sorted(ranges)
+    }
+
+    fn of_sorted(ranges: impl IntoIterator<Item = Range<u64>>) -> Result<Self, FilmError> {
+        let mut set = SampleRanges::default();
+        for range in ranges {
+            if let Some(last) = set.ranges.last()
+                && last.end > range.start
+            {
+                return Err(FilmError::Overlap { range: range.start..range.end.min(last.end) });
+            }
+            set.push(range);
+        }
+        Ok(set)
+    }
+
+    /// Adds a range that begins where the set ends, or later.
+    fn push(&mut self, range: Range<u64>) {
+        self.count += range.end - range.start;
+        match self.ranges.last_mut() {
+            Some(last) if last.end == range.start => last.end = range.end,
+            _ => self.ranges.push(range),
+        }
+    }
+
     /// How many.
     pub fn count(&self) -> u64 {
-        self.0.iter().map(|r| r.end - r.start).sum()
+        self.count
     }
 
     /// How many of them fall to half `half` of `half_count`: those with `index mod half_count == half`.
     pub fn count_in_half(&self, half: usize, half_count: usize) -> u64 {
         let (half, half_count) = (half as u64, half_count as u64);
         let below = |end: u64| end / half_count + u64::from(end % half_count > half);
-        self.0.iter().map(|r| below(r.end) - below(r.start)).sum()
+        self.ranges.iter().map(|r| below(r.end) - below(r.start)).sum()
     }
 
     /// The ranges in order.
     pub fn iter(&self) -> impl Iterator<Item = Range<u64>> + '_ {
-        self.0.iter().cloned()
+        self.ranges.iter().cloned()
     }
 
     /// One past the largest sample, 0 when empty: where a run goes on.
     pub fn end(&self) -> u64 {
-        self.0.last().map_or(0, |r| r.end)
+        self.ranges.last().map_or(0, |r| r.end)
+    }
+
+    /// The number of ranges that end at or before `sample`.
+    fn ranges_before(&self, sample: u64) -> usize {
+        self.ranges.partition_point(|range| range.end <= sample)
     }
 
     /// The first samples of `range` that are there, in one piece.
     pub fn overlap(&self, range: &Range<u64>) -> Option<Range<u64>> {
-        let common = |r: &Range<u64>| r.start.max(range.start)..r.end.min(range.end);
-        self.0.iter().map(common).find(|both| !both.is_empty())
+        let first = self.ranges.get(self.ranges_before(range.start))?;
+        let both = first.start.max(range.start)..first.end.min(range.end);
+        (!both.is_empty()).then_some(both)
+    }
+
+    /// The first samples that both sets have, in one piece.
+    pub fn first_common(&self, other: &SampleRanges) -> Option<Range<u64>> {
+        let (few, many) = if self.ranges.len() < other.ranges.len() { (self, other) } else { (other, self) };
+        few.ranges.iter().find_map(|range| many.overlap(range))
     }
 
     /// Adds a range; ranges that touch become one.
     ///
     /// # Errors
-    /// [`FilmError::Overlap`] if any of it is there; nothing is then added.
+    /// [`FilmError::Overlap`] if any of it is there, [`FilmError::Range`] if it reaches beyond [`SAMPLE_LIMIT`];
+    /// nothing is then added.
     pub fn insert(&mut self, range: Range<u64>) -> Result<(), FilmError> {
         if range.is_empty() {
             return Ok(());
         }
+        check(&range)?;
         if let Some(range) = self.overlap(&range) {
             return Err(FilmError::Overlap { range });
         }
-        self.0.push(range);
-        self.0.sort_by_key(|r| r.start);
-        let mut joined: Vec<Range<u64>> = Vec::with_capacity(self.0.len());
-        for range in self.0.drain(..) {
-            match joined.last_mut() {
-                Some(last) if last.end == range.start => last.end = range.end,
-                _ => joined.push(range),
-            }
+        let place = self.ranges_before(range.start);
+        if place == self.ranges.len() {
+            self.push(range);
+            return Ok(());
         }
-        self.0 = joined;
+        self.count += range.end - range.start;
+        let joins_next = self.ranges[place].start == range.end;
+        let joins_last = place > 0 && self.ranges[place - 1].end == range.start;
+        match (joins_last, joins_next) {
+            (true, true) => self.ranges[place - 1].end = self.ranges.remove(place).end,
+            (true, false) => self.ranges[place - 1].end = range.end,
+            (false, true) => self.ranges[place].start = range.start,
+            (false, false) => self.ranges.insert(place, range),
+        }
         Ok(())
+    }
+
+    /// The samples of both sets.
+    ///
+    /// # Errors
+    /// [`FilmError::Overlap`] if they have some in common.
+    pub fn union(&self, other: &SampleRanges) -> Result<SampleRanges, FilmError> {
+        let mut ranges: Vec<Range<u64>> = self.iter().chain(other.iter()).collect();
+        // Two runs that are sorted are merged in linear time.
+        ranges.sort_by_key(|range| range.start);
+        Self::of_sorted(ranges)
     }
 
     /// The first samples of `within` that are missing, at most `limit` of them, in one piece; `None` when all
     /// are there, or the limit is 0.
     pub fn first_gap(&self, within: Range<u64>, limit: u64) -> Option<Range<u64>> {
-        let mut start = within.start;
-        for range in &self.0 {
-            if range.end <= start {
-                continue;
-            }
-            if range.start > start {
-                let end = range.start.min(within.end).min(start.saturating_add(limit));
-                return (start < end).then_some(start..end);
-            }
-            start = range.end;
-        }
-        let end = within.end.min(start.saturating_add(limit));
+        let place = self.ranges_before(within.start);
+        let (start, next) = match self.ranges.get(place) {
+            Some(range) if range.start <= within.start => (range.end, self.ranges.get(place + 1)),
+            next => (within.start, next),
+        };
+        let end = next.map_or(within.end, |next| next.start.min(within.end));
+        let end = end.min(start.saturating_add(limit));
         (start < end).then_some(start..end)
     }
+}
+
+fn check(range: &Range<u64>) -> Result<(), FilmError> {
+    if range.end > SAMPLE_LIMIT { Err(FilmError::Range { range: range.clone() }) } else { Ok(()) }
 }
 
 /// As `0..64, 128..256`.
 impl fmt::Display for SampleRanges {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, range) in self.0.iter().enumerate() {
+        for (index, range) in self.ranges.iter().enumerate() {
             let comma = if index == 0 { "" } else { ", " };
             write!(f, "{comma}{}..{}", range.start, range.end)?;
         }

@@ -118,6 +118,18 @@ impl NewFile {
     }
 }
 
+/// As [`check_writable`] for a film, which is not written from its beginning to its end.
+///
+/// # Errors
+/// As [`check_writable`], and for pipes.
+pub fn check_film_writable(path: &Path) -> Result<(), WriteError> {
+    if fs::metadata(path).is_ok_and(|found| is_pipe(&found)) {
+        let reason = io::Error::new(ErrorKind::NotSeekable, "a film cannot go through a pipe");
+        return Err(WriteError { path: path.to_owned(), reason });
+    }
+    check_writable(path)
+}
+
 enum Target {
     File { path: PathBuf, directory: PathBuf, old: Option<Metadata> },
     Device { path: PathBuf, is_pipe: bool },

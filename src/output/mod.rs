@@ -6,14 +6,14 @@ mod png;
 mod ppm;
 mod read;
 
-pub use read::{Encoding, ReadPicture, read_picture};
+pub use read::{Encoding, ReadPicture, decode_picture, read_picture};
 
 pub use crate::film::{Description, RECIPE_KEY, WriteError, check_writable, key, replace_file};
 
-use crate::film::{Film, checkpoint};
+use crate::film::{CheckpointError, Film, checkpoint};
+use crate::input::{self, InputError};
 use crate::stages::Transfer;
-use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, Write};
+use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 /// How a picture is kept in a file.
@@ -68,7 +68,13 @@ pub enum OutputError {
     /// The file system, or what it says.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The file cannot be read.
+    /// The file cannot be read, or is none.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A film that is damaged, or of another version.
+    #[error(transparent)]
+    Film(#[from] CheckpointError),
+    /// What is in the file cannot be read.
     #[error("cannot read {}: {reason}; check the name and that it is a whole picture", path.display())]
     Read {
         /// The file.
@@ -110,29 +116,38 @@ pub fn write_image(
 /// Reads what a picture says about itself. What the file is shows in its first bytes; its name does not matter.
 ///
 /// # Errors
-/// [`OutputError::Read`] or [`OutputError::NoDescription`].
+/// [`OutputError::Input`], [`OutputError::Read`], [`OutputError::Film`] or [`OutputError::NoDescription`].
 pub fn read_description(path: &Path) -> Result<Description, OutputError> {
-    let unreadable = |reason| OutputError::Read { path: path.to_owned(), reason };
-    let read = || {
-        let (reader, start) = opened(path)?;
-        match start.as_slice() {
-            [0x89, b'P', b'N', b'G', ..] => png::read_description(reader),
-            [b'P', b'6', ..] => ppm::read_description(reader),
-            start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader),
-            _ => Ok(None),
-        }
-    };
-    read().map_err(unreadable)?.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
+    let (file, _) = input::open(path)?;
+    decode_description(BufReader::new(file), path)
 }
 
-/// A file from its beginning, and the first bytes of it, which tell what it is.
-fn opened(path: &Path) -> io::Result<(BufReader<File>, Vec<u8>)> {
-    let mut reader = BufReader::new(File::open(path)?);
+/// The same from a reader; `path` stands in messages.
+///
+/// # Errors
+/// As [`read_description`].
+pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Result<Description, OutputError> {
+    let unreadable = |reason| OutputError::Read { path: path.to_owned(), reason };
+    let start = start_of(&mut reader).map_err(unreadable)?;
+    let found = match start.as_slice() {
+        [0x89, b'P', b'N', b'G', ..] => png::read_description(reader).map_err(unreadable)?,
+        [b'P', b'6', ..] => ppm::read_description(reader).map_err(unreadable)?,
+        start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader, path)?,
+        _ => None,
+    };
+    found.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
+}
+
+/// The first bytes, which tell what a file is.
+fn start_of(reader: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     reader.by_ref().take(8).read_to_end(&mut start)?;
     reader.rewind()?;
-    Ok((reader, start))
+    Ok(start)
 }
+
+/// Most bytes that the texts of a picture may have when unpacked.
+const TEXT_LIMIT: usize = 64 << 20;
 
 /// All pixels, 8-bit RGB, a row at a time: a picture may be larger than one likes to have in memory again.
 fn write_rows(film: &Film, transfer: Transfer, writer: &mut impl Write) -> io::Result<()> {

@@ -7,8 +7,8 @@ use std::io::{self, BufRead, Read};
 /// Longest word of the header, bytes.
 const WORD_LIMIT: usize = 32;
 
-/// Width, height and linear RGB, top row first. Grey becomes three equal channels.
-pub(super) fn read(mut reader: impl BufRead) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
+/// Width, height and linear RGB, top row first, of a file of `length` bytes. Grey becomes three equal channels.
+pub(super) fn read(mut reader: impl BufRead, length: u64) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
     let channels = match word(&mut reader)?.as_str() {
         "PF" => 3,
         "Pf" => 1,
@@ -22,8 +22,12 @@ pub(super) fn read(mut reader: impl BufRead) -> io::Result<(u32, u32, Vec<[f32; 
     let text = word(&mut reader)?;
     let scale: f32 = text.parse().map_err(|_| invalid(format!("its scale is {text:?}")))?;
     let count = super::read::pixel_count(width, height)? * channels;
-    // Read what is there before room is made for what the header promises.
+    if length < 4 * count as u64 {
+        return Err(invalid(format!("it has {length} bytes, but its pixels alone take {}", 4 * count)));
+    }
+    super::read::check_memory(width, height)?;
     let mut bytes = Vec::new();
+    bytes.try_reserve_exact(4 * count)?;
     reader.take(4 * count as u64).read_to_end(&mut bytes)?;
     if bytes.len() != 4 * count {
         return Err(invalid(format!("it ends after {} of {} bytes of pixels", bytes.len(), 4 * count)));
@@ -68,26 +72,31 @@ mod tests {
         header.bytes().chain(bytes).collect()
     }
 
+    fn read(bytes: &[u8]) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
+        super::read(bytes, bytes.len() as u64)
+    }
+
     #[test]
     fn rows_are_turned_over_and_both_orders_of_bytes_are_read() {
         let values: Vec<f32> = (0..12).map(|i| i as f32).collect();
         let expected = vec![[6.0, 7.0, 8.0], [9.0, 10.0, 11.0], [0.0, 1.0, 2.0], [3.0, 4.0, 5.0]];
         for (header, little) in [("PF\n2 2\n-1.0\n", true), ("PF 2 2 1\n", false)] {
-            let found = read(file(header, &values, little).as_slice()).unwrap();
+            let found = read(&file(header, &values, little)).unwrap();
             assert_eq!(found, (2, 2, expected.clone()));
         }
-        let grey = read(file("Pf\n1 2\n-1\n", &[0.25, 0.5], true).as_slice()).unwrap();
+        let grey = read(&file("Pf\n1 2\n-1\n", &[0.25, 0.5], true)).unwrap();
         assert_eq!(grey, (1, 2, vec![[0.5; 3], [0.25; 3]]));
     }
 
     #[test]
     fn what_is_no_pfm_is_refused_in_words() {
-        let cases: [(&[u8], &str); 5] = [
+        let cases: [(&[u8], &str); 6] = [
             (b"P6\n1 1\n255\n", "\"P6\""),
             (b"PF\nx 1\n-1\n", "width"),
             (b"PF\n0 1\n-1\n", "0x1"),
             (b"PF\n99999 99999\n-1\n", "99999x99999"),
-            (b"PF\n2 1\n-1\n1234", "4 of 24 bytes"),
+            (b"PF\n9999 9999\n-1\n1234", "it has 20 bytes, but its pixels alone take 1199760012"),
+            (b"PF\n2 1\n-1\n12345678901234567890", "20 of 24 bytes"),
         ];
         for (bytes, part) in cases {
             let message = read(bytes).unwrap_err().to_string();

@@ -1,6 +1,6 @@
 //! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe is a compressed one.
 
-use super::{Description, RECIPE_KEY, write_rows};
+use super::{Description, RECIPE_KEY, TEXT_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use std::io::{self, BufRead, Seek, Write};
@@ -70,9 +70,6 @@ fn encode(
     writer.finish()?;
     Ok(())
 }
-
-/// Most bytes that the texts of a file may have when unpacked.
-const TEXT_LIMIT: usize = 64 << 20;
 
 pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option<Description>> {
     let limits = ::png::Limits { bytes: TEXT_LIMIT };

@@ -1,7 +1,7 @@
 //! Binary PPM (P6). The header's comments hold the description: lines `# key: value`, then a line with the
 //! recipe's key and nothing after it, then the recipe's lines.
 
-use super::{Description, RECIPE_KEY, write_rows};
+use super::{Description, RECIPE_KEY, TEXT_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use std::io::{self, BufRead, Write};
@@ -24,7 +24,8 @@ pub(super) fn write(
     write_rows(film, transfer, writer)
 }
 
-pub(super) fn read_description(mut reader: impl BufRead) -> io::Result<Option<Description>> {
+pub(super) fn read_description(reader: impl BufRead) -> io::Result<Option<Description>> {
+    let mut reader = reader.take(TEXT_LIMIT as u64);
     let mut line = Vec::new();
     reader.read_until(b'\n', &mut line)?;
     let mut comments = Vec::new();

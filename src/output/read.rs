@@ -3,9 +3,11 @@
 use super::OutputError;
 use super::pfm;
 use crate::film::checkpoint;
+use crate::input;
+use crate::memory;
 use crate::stages::Transfer;
-use std::fs::File;
-use std::io::{self, BufReader};
+use image::ImageDecoder;
+use std::io::{self, BufRead, BufReader, Seek};
 use std::path::Path;
 
 /// What numbers of 8 or 16 bits stand for.
@@ -49,19 +51,45 @@ pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
 /// whole numbers.
 ///
 /// # Errors
-/// [`OutputError::Read`].
+/// [`OutputError::Input`] or [`OutputError::Read`].
 pub fn read_picture(path: &Path, encoding: Encoding) -> Result<ReadPicture, OutputError> {
-    let read = || {
-        let (reader, start) = super::opened(path)?;
-        match start.as_slice() {
-            [b'P', b'F' | b'f', ..] => pfm::read(reader).map(float),
-            start if start.starts_with(&checkpoint::MAGIC) => read_exr(reader).map(float),
-            [0x89, b'P', b'N', b'G', ..] => read_whole(reader, image::ImageFormat::Png, encoding),
-            [b'P', b'2'..=b'6', ..] => read_whole(reader, image::ImageFormat::Pnm, encoding),
-            _ => Err(invalid("it is no PFM, EXR, PNG or PPM")),
-        }
-    };
-    read().map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
+    let (file, length) = input::open(path)?;
+    decode_picture(BufReader::new(file), length, encoding)
+        .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
+}
+
+/// The same from a reader that gives `length` bytes.
+///
+/// # Errors
+/// What is wrong, or what the reader says.
+pub fn decode_picture(
+    mut reader: impl BufRead + Seek,
+    length: u64,
+    encoding: Encoding,
+) -> io::Result<ReadPicture> {
+    let start = super::start_of(&mut reader)?;
+    match start.as_slice() {
+        [b'P', b'F' | b'f', ..] => pfm::read(reader, length).map(float),
+        start if start.starts_with(&checkpoint::MAGIC) => read_exr(reader, length).map(float),
+        [0x89, b'P', b'N', b'G', ..] => read_whole(reader, length, image::ImageFormat::Png, encoding),
+        [b'P', b'2'..=b'6', ..] => read_whole(reader, length, image::ImageFormat::Pnm, encoding),
+        _ => Err(invalid("it is no PFM, EXR, PNG or PPM")),
+    }
+}
+
+/// What a pixel takes at most while a picture is read: as it is in the file, as it is decoded, and as numbers with
+/// their steps.
+const BYTES_PER_PIXEL: u64 = 80;
+
+/// Refuses a picture that does not fit into memory.
+pub(super) fn check_memory(width: u32, height: u32) -> io::Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
+    memory::check(
+        || format!("a picture of {width}x{height}"),
+        bytes,
+        "close other programs, or make it smaller",
+    )
+    .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
 }
 
 fn invalid(reason: impl ToString) -> io::Error {
@@ -73,9 +101,18 @@ fn float((width, height, pixels): (u32, u32, Vec<[f32; 3]>)) -> ReadPicture {
     ReadPicture { width, height, pixels, steps: None, limit: f64::INFINITY }
 }
 
-fn read_exr(reader: BufReader<File>) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
+fn read_exr(mut reader: impl BufRead + Seek, length: u64) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
     use exr::prelude::*;
     type Pixels = (usize, Vec<[f32; 3]>);
+    // Every layer is looked at: which of them is shown is the reader's choice.
+    let meta = MetaData::read_from_buffered(&mut reader, false).map_err(invalid)?;
+    for header in &meta.headers {
+        checkpoint::check_length(header, length).map_err(invalid)?;
+        let (width, height) = size_of_layer(header.layer_size)?;
+        pixel_count(width, height)?;
+        check_memory(width, height)?;
+    }
+    reader.rewind()?;
     let image = read()
         .no_deep_data()
         .largest_resolution_level()
@@ -96,16 +133,24 @@ fn read_exr(reader: BufReader<File>) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
         .non_parallel()
         .from_buffered(reader)
         .map_err(invalid)?;
-    let size = image.layer_data.size;
-    let (Ok(width), Ok(height)) = (u32::try_from(size.x()), u32::try_from(size.y())) else {
-        return Err(invalid(format!("a size of {}x{}", size.x(), size.y())));
-    };
+    let (width, height) = size_of_layer(image.layer_data.size)?;
     pixel_count(width, height)?;
     Ok((width, height, image.layer_data.channel_data.pixels.1))
 }
 
+fn size_of_layer(size: exr::prelude::Vec2<usize>) -> io::Result<(u32, u32)> {
+    match (u32::try_from(size.x()), u32::try_from(size.y())) {
+        (Ok(width), Ok(height)) => Ok((width, height)),
+        _ => Err(invalid(format!("a size of {}x{}", size.x(), size.y()))),
+    }
+}
+
+/// What a byte of a file of whole numbers may become at most: 1032 by deflation, and a bit of a palette 3 bytes.
+const LARGEST_RATIO: u64 = 1032 * 24;
+
 fn read_whole(
-    reader: BufReader<File>,
+    reader: impl BufRead + Seek,
+    length: u64,
     format: image::ImageFormat,
     encoding: Encoding,
 ) -> io::Result<ReadPicture> {
@@ -113,9 +158,18 @@ fn read_whole(
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(8 * PIXEL_LIMIT);
     reader.limits(limits);
-    let image = reader.decode().map_err(invalid)?;
-    let (width, height) = (image.width(), image.height());
+    let decoder = reader.into_decoder().map_err(invalid)?;
+    let (width, height) = decoder.dimensions();
     pixel_count(width, height)?;
+    let ratio = if format == image::ImageFormat::Png { LARGEST_RATIO } else { 8 };
+    if decoder.total_bytes() / ratio > length {
+        let least = decoder.total_bytes() / ratio;
+        return Err(invalid(format!(
+            "it has {length} bytes, but {width}x{height} pixels take at least {least}"
+        )));
+    }
+    check_memory(width, height)?;
+    let image = image::DynamicImage::from_decoder(decoder).map_err(invalid)?;
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
     let (levels, values): (u32, Vec<u16>) = if is_deep {
         (1 << 16, image.to_rgb16().into_raw())

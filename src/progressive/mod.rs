@@ -5,6 +5,7 @@
 //! asked for, a [`Picture`]. No call here waits for the renderer, but [`Progressive::wait`],
 //! [`Progressive::take_film`], [`Progressive::finish`] and dropping it.
 
+mod guard;
 mod passes;
 mod plan;
 mod render;

@@ -1,5 +1,6 @@
 //! The render at hand: a film, who adds to it, and what it says of itself.
 
+use super::guard::{dismiss, guarded};
 use super::shared::{Picture, Shared};
 use super::upcoming::Upcoming;
 use super::{EndReason, Factory, HistoryPoint, PassSizer, Phase, Plan, Status, View};
@@ -26,6 +27,8 @@ pub(super) struct Render {
     dealt: SampleRanges,
     cancel: Arc<AtomicBool>,
     choice: BackendChoice,
+    /// Who has failed.
+    failed: Vec<BackendChoice>,
     is_prepared: bool,
     upcoming: Option<Upcoming>,
     sizer: PassSizer,
@@ -62,6 +65,7 @@ impl Render {
             film,
             cancel,
             choice,
+            failed: Vec::new(),
         };
         render.status.planned_samples_per_pixel = render.planned_count();
         render.note_film();
@@ -112,6 +116,7 @@ impl Render {
 
     pub fn end(&mut self, reason: EndReason) {
         self.estimate_error();
+        self.status.say(self.status.doubt.iter().cloned().collect());
         self.status.phase = Phase::Done(reason);
     }
 
@@ -181,7 +186,7 @@ impl Render {
                 self.status.hierarchy += ready.renderer.hierarchy_time();
                 self.status.prepare += ready.took;
                 self.choice = upcoming.choice;
-                *backend = Some((self.choice.clone(), ready.renderer));
+                dismiss(backend.replace((self.choice.clone(), ready.renderer)));
                 self.sizer.restart();
             }
             Err(reason) => {
@@ -202,17 +207,28 @@ impl Render {
         }
     }
 
-    /// Lets the fallback go on with the film, or gives up if that was the one that failed.
-    pub fn fail(&mut self, reason: &str) {
+    /// Lets the next backend go on with the film, or gives up if none is left that has not failed.
+    pub fn fail(&mut self, error: &RenderError) {
+        if matches!(error, RenderError::FilmLost { .. }) {
+            self.film = self.job.new_film();
+            self.note_film();
+        }
         // What was not in the film is lost, and is rendered again.
         self.dealt = self.film.samples().clone();
-        let fallback = BackendChoice::fallback();
-        if self.choice == fallback {
-            self.status.phase = Phase::Failed(reason.to_owned());
-        } else {
-            self.status.messages.push(format!("{reason}; the CPU goes on with the same picture"));
-            self.change_backend(fallback);
+        self.failed.push(self.choice.clone());
+        match BackendChoice::fallback(&self.failed) {
+            Some(fallback) => {
+                let name = fallback.words();
+                self.status.say(vec![format!("{error}; {name} goes on with the same picture")]);
+                self.change_backend(fallback);
+            }
+            None => self.status.phase = Phase::Failed(error.to_string()),
         }
+    }
+
+    /// Notes something that went wrong and has no bearing on the film.
+    pub fn complain(&mut self, error: &RenderError) {
+        self.status.say(vec![error.to_string()]);
     }
 
     fn prepare(
@@ -227,21 +243,22 @@ impl Render {
             return Ok(());
         }
         if backend.as_ref().is_none_or(|(choice, _)| *choice != self.choice) {
-            let made = factory.lock().unwrap_or_else(PoisonError::into_inner)(&self.choice);
-            match (made, &backend) {
-                (Ok(renderer), _) => *backend = Some((self.choice.clone(), renderer)),
+            let choice = &self.choice;
+            let make = || Ok(factory.lock().unwrap_or_else(PoisonError::into_inner)(choice));
+            match (guarded(choice.name(), make)?, &backend) {
+                (Ok(renderer), _) => dismiss(backend.replace((self.choice.clone(), renderer))),
                 (Err(error), Some((old, _))) => {
                     self.status.messages.push(format!("{error}; the {} goes on", old.name()));
                     self.choice = old.clone();
                 }
                 (Err(error), None) => {
-                    self.fail(&error.to_string());
-                    return Ok(());
+                    let (backend, reason) = (self.choice.name(), error.to_string());
+                    return Err(RenderError::Backend { backend, reason });
                 }
             }
         }
         if let Some((_, renderer)) = backend {
-            renderer.prepare(&self.job, &self.cancel)?;
+            guarded(self.choice.name(), || renderer.prepare(&self.job, &self.cancel))?;
             self.status.backend = Some(renderer.info());
             self.status.say(renderer.take_messages());
             self.status.kernel = renderer.kernel();
@@ -281,13 +298,16 @@ impl Render {
         };
         let added = range.end - range.start;
         let held = self.film.sample_count();
-        let outcome = renderer.advance(&self.job, range.clone(), &mut self.film, &self.cancel);
+        let outcome = guarded(self.choice.name(), || {
+            renderer.advance(&self.job, range.clone(), &mut self.film, &self.cancel)
+        });
+        // Before the samples are noted, whose history has the seconds in which they were traced.
+        let took = begin.elapsed();
+        self.status.trace += took;
         self.note_added(renderer, held, &outcome);
         outcome?;
         self.dealt.insert(range)?;
-        let took = begin.elapsed();
         self.sizer.measured(added, took, self.plan.pass_target);
-        self.status.trace += took;
         // A renderer that changes with use (an adapter lost, threads given up) says so.
         self.status.backend = Some(renderer.info());
         self.status.say(renderer.take_messages());
@@ -295,7 +315,7 @@ impl Render {
             // The first picture is what someone waits for most.
             self.collect(renderer)?;
         } else if is_picture_wanted {
-            renderer.fetch()?;
+            guarded(self.choice.name(), || renderer.fetch())?;
         }
         Ok(())
     }
@@ -305,17 +325,25 @@ impl Render {
         if self.dealt != *self.film.samples() {
             let begin = Instant::now();
             let held = self.film.sample_count();
-            let outcome = renderer.collect(&mut self.film);
+            let outcome = guarded(self.choice.name(), || renderer.collect(&mut self.film));
             self.status.trace += begin.elapsed();
             self.note_added(renderer, held, &outcome);
             outcome?;
+        }
+        if self.dealt != *self.film.samples() {
+            let reason = format!(
+                "of {} samples per pixel that it was to trace the film has {}",
+                self.dealt.count(),
+                self.film.sample_count()
+            );
+            return Err(RenderError::Backend { backend: self.choice.name(), reason });
         }
         Ok(())
     }
 
     /// Notes who added to a film that held `held` samples, and what. Some can have come before a failure.
     fn note_added(&mut self, renderer: &dyn Renderer, held: u64, outcome: &Result<Stats, RenderError>) {
-        let added = self.film.sample_count() - held;
+        let added = self.film.sample_count().saturating_sub(held);
         if added > 0 {
             if let Ok(stats) = outcome {
                 self.status.stats.add(stats);
@@ -356,6 +384,7 @@ impl Render {
         if self.estimated_samples != self.film.sample_count() {
             let begin = Instant::now();
             self.status.error = self.film.error();
+            self.status.doubt = self.status.error.and_then(|error| self.film.doubt(&error));
             self.estimated_samples = self.film.sample_count();
             self.estimate_took = begin.elapsed();
             self.estimated_at = Instant::now();

@@ -86,6 +86,8 @@ pub struct Status {
     pub elapsed: Duration,
     /// The latest estimate of the film's error; it can be some passes old.
     pub error: Option<ErrorEstimate>,
+    /// Why that estimate is in doubt, in words.
+    pub doubt: Option<String>,
     /// The error at powers of two of samples per pixel.
     pub history: Vec<HistoryPoint>,
     /// Who has added how much, in the order of first appearance.

@@ -1,11 +1,13 @@
 //! The render thread: obeys commands, then renders a pass, and so on.
 
+use super::guard::{dismiss, guarded};
 use super::render::{Backend, Render};
 use super::shared::Shared;
 use super::{EndReason, Factory, Phase, Plan, Status, View, Work};
 use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::render::RenderError;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::sync::{Arc, Mutex};
@@ -61,31 +63,50 @@ impl Worker {
     pub(super) fn run(mut self) {
         let _note = DeathNote(Arc::clone(&self.shared));
         loop {
-            let is_working = self.render.as_ref().is_some_and(Render::is_working);
-            let command = if is_working {
-                match self.commands.try_recv() {
-                    Ok(command) => Some(command),
-                    Err(TryRecvError::Empty) => None,
-                    Err(TryRecvError::Disconnected) => Some(Command::Finish),
+            // Whatever panics, the film is not touched by it: renderers promise that, and others only look at it.
+            match catch_unwind(AssertUnwindSafe(|| self.turn())) {
+                Ok(true) => {}
+                Ok(false) => return,
+                Err(payload) => {
+                    self.give_up_backend(&RenderError::of_panic("the render thread", payload.as_ref()));
                 }
-            } else {
-                Some(self.commands.recv().unwrap_or(Command::Finish))
-            };
-            match command {
-                Some(Command::Finish) => return,
-                Some(Command::Take(taker)) => {
-                    // A taker who has gone away does not want it.
-                    let _ = taker.send(self.take_film());
-                    continue;
-                }
-                Some(command) => self.obey(command),
-                None => self.step(),
-            }
-            if let Some(render) = &mut self.render {
-                let renderer = self.backend.as_ref().map(|(_, renderer)| renderer.as_ref());
-                render.show(&self.shared, &self.view, renderer);
             }
         }
+    }
+
+    /// Obeys a command or renders a pass. Returns whether there is more to do.
+    fn turn(&mut self) -> bool {
+        let is_working = self.render.as_ref().is_some_and(Render::is_working);
+        let command = if is_working {
+            match self.commands.try_recv() {
+                Ok(command) => Some(command),
+                Err(TryRecvError::Empty) => None,
+                Err(TryRecvError::Disconnected) => Some(Command::Finish),
+            }
+        } else {
+            Some(self.commands.recv().unwrap_or(Command::Finish))
+        };
+        match command {
+            Some(Command::Finish) => return false,
+            Some(Command::Take(taker)) => {
+                // A taker who has gone away does not want it.
+                let _ = taker.send(self.take_film());
+                return true;
+            }
+            Some(command) => self.obey(command),
+            None => self.step(),
+        }
+        if let Some(render) = &mut self.render {
+            let renderer = self.backend.as_ref().map(|(_, renderer)| renderer.as_ref());
+            let shown = guarded("the picture", || {
+                render.show(&self.shared, &self.view, renderer);
+                Ok(())
+            });
+            if let Err(error) = shown {
+                render.complain(&error);
+            }
+        }
+        true
     }
 
     fn obey(&mut self, command: Command) {
@@ -115,7 +136,15 @@ impl Worker {
             Command::Stop if !render.status.phase.is_over() => render.end(EndReason::Stopped),
             Command::Switch(choice) => render.switch(choice, &self.factory),
             Command::SetPlan(plan) => render.set_plan(plan),
-            Command::Inspect(look) => look(render.film()),
+            Command::Inspect(look) => {
+                let looked = guarded("whoever looked at the film", || {
+                    look(render.film());
+                    Ok(())
+                });
+                if let Err(error) = looked {
+                    render.complain(&error);
+                }
+            }
             _ => {}
         }
         self.shared.publish(&render.status);
@@ -156,9 +185,9 @@ impl Worker {
 
     /// A renderer that failed is not asked again, not even for another job.
     fn give_up_backend(&mut self, error: &RenderError) {
-        self.backend = None;
+        dismiss(self.backend.take());
         if let Some(render) = &mut self.render {
-            render.fail(&error.to_string());
+            render.fail(error);
             self.shared.publish(&render.status);
         }
     }

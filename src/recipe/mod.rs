@@ -3,9 +3,10 @@
 
 pub mod file;
 
-use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT};
+use crate::memory::{self, MemoryError};
+use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT, TRACING_BYTES_PER_SPHERE};
 use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
-use crate::scene::{Camera, Scene, or_nearest, similar_names};
+use crate::scene::{Camera, Scene, Sphere, or_nearest, similar_names};
 use crate::stages::{Rules, Setup, Stage};
 use std::sync::Arc;
 use thiserror::Error;
@@ -52,6 +53,8 @@ impl Recipe {
         };
         match count.parse() {
             Ok(number) if FIELD_COUNT_LIMITS.contains(&number) => {
+                let bytes = number * (size_of::<Sphere>() as u64 + TRACING_BYTES_PER_SPHERE);
+                memory::check(|| format!("field:{number}"), bytes, "choose a field of fewer spheres")?;
                 let (scene, camera) = field(number);
                 Ok(Self::of_builtin(&BuiltinScene::FIELD, name, scene, camera))
             }
@@ -133,6 +136,9 @@ pub enum SceneNameError {
         /// What stands after the colon.
         count: String,
     },
+    /// There is no memory for so many spheres.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
 }
 
 /// A number of samples per pixel that cannot be had.

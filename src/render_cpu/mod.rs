@@ -18,15 +18,16 @@ pub use crate::record::{PathRecord, RecordedHit, RecordedRay};
 pub use isa::Isa;
 pub use record::{PathRecorder, record_path};
 
-use crate::film::Film;
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
+use crate::film::{Film, FilmError};
+use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy, panic_text};
 use crate::tables::{Real, Tables};
 use kernels::Kernel;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use tiles::{tile_side, tiles};
+use tiles::{Tile, tile_side, tiles};
 use wide::WideTables;
 use work::{DealtBlock, TileStats, Work, dealing_order};
 
@@ -45,6 +46,8 @@ pub struct CpuOptions {
     pub threads: Option<usize>,
     /// Whether the threads give way to whatever else wants to run, such as a window. On Linux.
     pub gives_way: bool,
+    /// Panics in the middle of a tile, after so many others: a drill.
+    pub panics_after: Option<u64>,
 }
 
 /// Options that this machine cannot meet.
@@ -100,6 +103,29 @@ pub struct CpuRenderer {
     prepared: Option<Prepared>,
     occupancy: TileOccupancy,
     messages: Vec<String>,
+    /// Tiles before one in which the tracer panics: a drill.
+    tiles_to_panic: Option<AtomicU64>,
+}
+
+/// What is to be traced in a pass, and how.
+#[derive(Clone, Copy)]
+struct Pass<'a> {
+    side: u32,
+    range: &'a Range<u64>,
+    cancel: &'a AtomicBool,
+    /// By tile, the blocks that are taken away from the film, in place of adding all.
+    taken_away: Option<&'a [u64]>,
+}
+
+/// What became of a tile.
+struct TracedTile {
+    stats: TileStats,
+    /// Blocks whose sums are in the film.
+    finished: u64,
+    /// Blocks there are.
+    expected: u64,
+    /// What the tracer's panic said, if it did.
+    panic: Option<String>,
 }
 
 impl CpuRenderer {
@@ -118,7 +144,8 @@ impl CpuRenderer {
         if !isa.lane_counts().contains(&lanes) {
             return Err(CpuError::Lanes { lanes, isa, available: isa.lane_counts().to_vec() });
         }
-        CpuRenderer::with_packets(Some((isa, lanes)), options.threads, options.gives_way)
+        let renderer = CpuRenderer::with_packets(Some((isa, lanes)), options.threads, options.gives_way)?;
+        Ok(CpuRenderer { tiles_to_panic: options.panics_after.map(AtomicU64::new), ..renderer })
     }
 
     /// The reference: scalar, `f64`, `threads` threads (`None`: one a core).
@@ -150,6 +177,7 @@ impl CpuRenderer {
                 job: None,
                 prepared: None,
                 occupancy: TileOccupancy::default(),
+                tiles_to_panic: None,
                 messages: Vec::new(),
             })
             .map_err(|error| {
@@ -240,19 +268,22 @@ impl Renderer for CpuRenderer {
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
         self.prepare(job, cancel)?;
+        if let Some(range) = film.samples().overlap(&range) {
+            return Err(FilmError::Overlap { range }.into());
+        }
         let start = Instant::now();
         let side = tile_side(film.width(), film.height(), self.threads.current_num_threads());
-        let traced = match &self.prepared {
-            Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, side, &range, film, cancel),
-            Some(Prepared::Double(tables, kernel)) => self.trace(tables, kernel, side, &range, film, cancel),
-            None => Vec::new(),
-        };
+        let pass = Pass { side, range: &range, cancel, taken_away: None };
+        let traced = self.trace_prepared(pass, film);
         if cancel.load(Ordering::Relaxed) {
             return Err(RenderError::Cancelled);
         }
+        if let Some(reason) = what_is_missing(&traced, side, film.width()) {
+            return Err(self.undone(pass, &traced, film, reason));
+        }
         let pixels = u64::from(film.width()) * u64::from(film.height());
         let paths = pixels * range.end.saturating_sub(range.start);
-        let tiles = traced.iter().copied().fold(TileStats::default(), TileStats::plus);
+        let tiles = traced.iter().map(|tile| tile.stats).fold(TileStats::default(), TileStats::plus);
         film.record(range, tiles.rejected)?;
         self.note_occupancy(side, film.width().div_ceil(side), &traced);
         Ok(Stats {
@@ -267,42 +298,90 @@ impl Renderer for CpuRenderer {
 }
 
 impl CpuRenderer {
-    /// Adds samples `range` to the film's sums. Returns the figures of each tile, row by row.
+    /// As [`CpuRenderer::trace`], with what is prepared.
+    fn trace_prepared(&self, pass: Pass, film: &mut Film) -> Vec<TracedTile> {
+        match &self.prepared {
+            Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, pass, film),
+            Some(Prepared::Double(tables, kernel)) => self.trace(tables, kernel, pass, film),
+            None => Vec::new(),
+        }
+    }
+
+    /// Adds a pass to the film's sums. Returns what became of each tile, row by row.
     fn trace<R: Real>(
         &self,
         tables: &WideTables<R>,
         kernel: &Kernel<R>,
-        side: u32,
-        range: &Range<u64>,
+        pass: Pass,
         film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Vec<TileStats> {
+    ) -> Vec<TracedTile> {
         let settings = &tables.tables.settings;
-        let blocks = DealtBlock::of_range(range.clone(), settings, tables.tables.block_limit);
-        let order = dealing_order(side);
-        let tiles = tiles(film.halves_mut(), settings.width, side);
-        self.threads.install(|| {
-            tiles
-                .into_par_iter()
-                .map(|tile| {
-                    if cancel.load(Ordering::Relaxed) {
-                        return TileStats::default();
-                    }
-                    kernel(tables, &mut Work::new(&blocks, &order, tile.corner, tile.height, tile.rows))
-                })
-                .collect()
-        })
+        let blocks = DealtBlock::of_range(pass.range.clone(), settings, tables.tables.block_limit);
+        let order = dealing_order(pass.side);
+        let tiles = tiles(film.halves_mut(), settings.width, pass.side);
+        let trace_tile = |(index, tile): (usize, Tile)| {
+            let mut work = Work::new(&blocks, &order, tile.corner, tile.height, tile.rows);
+            let expected = work.expected();
+            if let Some(taken_away) = pass.taken_away {
+                work = work.taking_away(taken_away[index]);
+            } else if self.is_to_panic() {
+                work = work.sabotaged();
+            }
+            let mut traced = TracedTile { stats: TileStats::default(), finished: 0, expected, panic: None };
+            if pass.cancel.load(Ordering::Relaxed) {
+                return traced;
+            }
+            // What `work` holds after a panic is whole: the sums that it counts are in the film.
+            match catch_unwind(AssertUnwindSafe(|| kernel(tables, &mut work))) {
+                Ok(stats) => traced.stats = stats,
+                Err(payload) => traced.panic = Some(panic_text(payload.as_ref()).to_owned()),
+            }
+            traced.finished = work.finished();
+            traced
+        };
+        self.threads.install(|| tiles.into_par_iter().enumerate().map(trace_tile).collect())
     }
 
-    fn note_occupancy(&mut self, side: u32, columns: u32, traced: &[TileStats]) {
+    fn is_to_panic(&self) -> bool {
+        self.tiles_to_panic.as_ref().is_some_and(|left| left.fetch_sub(1, Ordering::Relaxed) == 0)
+    }
+
+    /// Takes away from the film what a pass has added that cannot be finished. A sample is a pure function, so that
+    /// tracing it again tells what to take away; a pass that succeeds pays nothing for that.
+    fn undone(&self, pass: Pass, traced: &[TracedTile], film: &mut Film, reason: String) -> RenderError {
+        let backend = self.info().name;
+        let added: Vec<u64> = traced.iter().map(|tile| tile.finished).collect();
+        let never = AtomicBool::new(false);
+        let again = self.trace_prepared(Pass { taken_away: Some(&added), cancel: &never, ..pass }, film);
+        let is_undone = again.iter().zip(&added).all(|(tile, added)| tile.finished >= *added);
+        if is_undone {
+            RenderError::Backend { backend, reason }
+        } else {
+            RenderError::FilmLost { backend, reason }
+        }
+    }
+
+    fn note_occupancy(&mut self, side: u32, columns: u32, traced: &[TracedTile]) {
         let tiles = &mut self.occupancy.tiles;
         tiles.resize(traced.len(), [0; 2]);
-        for (tile, stats) in tiles.iter_mut().zip(traced) {
+        for (tile, TracedTile { stats, .. }) in tiles.iter_mut().zip(traced) {
             tile[0] += stats.rays;
             tile[1] += stats.offered_lanes;
         }
         (self.occupancy.side, self.occupancy.columns) = (side, columns);
     }
+}
+
+/// The first tile that has not all its samples, and why, in words; `None` if the pass is whole.
+fn what_is_missing(traced: &[TracedTile], side: u32, width: u32) -> Option<String> {
+    let index = traced.iter().position(|tile| tile.panic.is_some() || tile.finished != tile.expected)?;
+    let TracedTile { finished, expected, panic, .. } = &traced[index];
+    let columns = width.div_ceil(side) as usize;
+    let (x, y) = (index % columns * side as usize, index / columns * side as usize);
+    let why = panic.as_ref().map_or(String::new(), |text| format!("it panicked: {text}; "));
+    Some(format!(
+        "{why}of {expected} blocks of samples in the tile at pixel ({x}, {y}) {finished} were finished"
+    ))
 }
 
 #[cfg(test)]

@@ -63,7 +63,7 @@ impl DealtBlock {
 }
 
 /// What the lanes of a packet are at, as numbers in memory: they are dealt one by one and read together.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub struct LaneBlocks {
     /// The sampler's counter at the block's first sample.
     pub start: WideU,
@@ -77,8 +77,28 @@ pub struct LaneBlocks {
     pub pixel: WideU,
     /// What the block has added up to, RGB.
     pub sums: [WideU; 3],
-    /// Where they go: `row << 8 | column` of the tile's rows.
+    /// Where they go: `row << 8 | column` of the tile's rows, or [`NOWHERE`].
     slot: WideU,
+}
+
+/// The slot of a lane that has had no block yet.
+const NOWHERE: u32 = u32::MAX;
+
+impl Default for LaneBlocks {
+    fn default() -> Self {
+        let zero = WideU::default();
+        let mut slot = WideU::default();
+        slot.0.fill(NOWHERE);
+        LaneBlocks {
+            start: zero.clone(),
+            step: zero.clone(),
+            end: zero.clone(),
+            key: zero.clone(),
+            pixel: zero.clone(),
+            sums: [zero.clone(), zero.clone(), zero],
+            slot,
+        }
+    }
 }
 
 /// The pixels of a square tile with `side` pixels (at most 256) in the order in which they are dealt,
@@ -110,6 +130,9 @@ pub struct Work<'film> {
     rows: TileRows<'film>,
     next_block: usize,
     next_place: usize,
+    finished: u64,
+    /// So many blocks are taken away from the film, and none is added.
+    taken_away: Option<u64>,
 }
 
 impl<'film> Work<'film> {
@@ -122,7 +145,40 @@ impl<'film> Work<'film> {
         rows: TileRows<'film>,
     ) -> Self {
         let width = rows.first().map_or(0, |row| row.len() as u32);
-        Work { blocks, order, corner, width, height, rows, next_block: 0, next_place: 0 }
+        Work {
+            blocks,
+            order,
+            corner,
+            width,
+            height,
+            rows,
+            next_block: 0,
+            next_place: 0,
+            finished: 0,
+            taken_away: None,
+        }
+    }
+
+    /// Takes the first `count` blocks away from the film that are finished, in place of adding all: a kernel finishes
+    /// a tile's blocks in the same order each time, with the same sums.
+    pub fn taking_away(self, count: u64) -> Self {
+        Work { taken_away: Some(count), ..self }
+    }
+
+    /// Blocks whose sums are in the film, over all pixels.
+    pub fn finished(&self) -> u64 {
+        self.finished
+    }
+
+    /// Blocks there are, over all pixels.
+    pub fn expected(&self) -> u64 {
+        self.blocks.len() as u64 * u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// Leaves out the last row, so that a kernel panics in the middle of the tile: a drill.
+    pub fn sabotaged(mut self) -> Self {
+        self.rows.pop();
+        self
     }
 
     /// The next block and the place of its pixel in the tile.
@@ -153,8 +209,16 @@ impl<'film> Work<'film> {
             let lane = left.trailing_zeros() as usize;
             left &= left - 1;
             let slot = lanes.slot.0[lane];
-            let sums = [0, 1, 2].map(|channel| u64::from(lanes.sums[channel].0[lane]));
-            self.rows[(slot >> 8) as usize][(slot & 0xFF) as usize].add(PixelSum(sums));
+            if slot != NOWHERE {
+                let sums = [0, 1, 2].map(|channel| u64::from(lanes.sums[channel].0[lane]));
+                let pixel = &mut self.rows[(slot >> 8) as usize][(slot & 0xFF) as usize];
+                match self.taken_away {
+                    None => pixel.add(PixelSum(sums)),
+                    Some(count) if self.finished < count => take_away(pixel, sums),
+                    Some(_) => {}
+                }
+                self.finished += 1;
+            }
             for channel in &mut lanes.sums {
                 channel.0[lane] = 0;
             }
@@ -171,6 +235,12 @@ impl<'film> Work<'film> {
             lanes.key.0[lane] = block.half_key.map_or(0, |half_key| key_in_half(half_key, pixel));
         }
         retired
+    }
+}
+
+fn take_away(pixel: &mut PixelSum, sums: [u64; 3]) {
+    for (all, part) in pixel.0.iter_mut().zip(sums) {
+        *all = all.wrapping_sub(part);
     }
 }
 

@@ -1,9 +1,11 @@
 //! Adapters, the device, and what can go wrong with it.
 
+use super::options::COMPILING_PATIENCE;
 use super::{Fault, GpuError};
 use std::fmt;
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Duration;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 /// Storage buffers that the path tracer binds.
 const STORAGE_BUFFERS: u32 = 8;
@@ -27,6 +29,8 @@ pub struct AdapterInfo {
     pub buffer_limit: u64,
     /// Whether it can time a dispatch itself.
     pub has_timestamps: bool,
+    /// Most threads that run in step.
+    pub subgroup_size: u32,
     /// Why the path tracer cannot run on it, if it cannot.
     pub lacks: Option<String>,
 }
@@ -65,8 +69,16 @@ impl AdapterInfo {
             storage_binding_limit: limits.max_storage_buffer_binding_size,
             buffer_limit: limits.max_buffer_size,
             has_timestamps: adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY),
+            subgroup_size: info.subgroup_max_size,
             lacks,
         }
+    }
+
+    /// By how many threads a limit of the turns of loops is shared: software counts those of all threads that run in
+    /// step. No limit of a GPU is known.
+    pub fn threads_in_step(&self) -> u32 {
+        // Some do not tell; a processor has room for 8 in its registers.
+        if self.is_software { self.subgroup_size.clamp(8, 64) } else { 1 }
     }
 
     /// Whether it is chosen when none is named: a GPU that the path tracer can run on.
@@ -207,10 +219,27 @@ pub struct Gpu {
     pub layouts: Layouts,
     /// Its failures.
     pub faults: Arc<Faults>,
+    /// How long it is waited for.
+    patience: Duration,
+    silence: Arc<Mutex<Silence>>,
 }
 
-/// Longer than any dispatch takes: a device that has not finished by then hangs.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// How long a device has not answered.
+#[derive(Debug, Default)]
+struct Silence {
+    /// What was waited since its last answer.
+    waited: Duration,
+    /// Whether the driver may be compiling.
+    compiles: bool,
+    /// When a drill ends in which it does not answer.
+    simulated_until: Option<Instant>,
+}
+
+/// How often whoever waits for the device looks whether its answer is still wanted.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// How long a device does not answer in a drill.
+const DRILL_SILENCE: Duration = Duration::from_secs(10);
 
 /// Buffers of the largest size that a drill asks for: no device has so much memory.
 const DRILL_BUFFERS: usize = 4096;
@@ -221,7 +250,7 @@ impl Gpu {
     ///
     /// # Errors
     /// [`GpuError`] with the adapters that there are.
-    pub fn open(wanted: Option<&str>, allow_software: bool) -> Result<Self, GpuError> {
+    pub fn open(wanted: Option<&str>, allow_software: bool, patience: Duration) -> Result<Self, GpuError> {
         let matches = |info: &AdapterInfo| {
             let text = info.to_string().to_lowercase();
             wanted.is_none_or(|wanted| text.contains(&wanted.to_lowercase()))
@@ -266,7 +295,8 @@ impl Gpu {
             noted.note(format!("the device was lost ({reason:?}){colon}{message}"));
         });
         let layouts = Layouts::new(&device);
-        let gpu = Gpu { adapter: info.clone(), device, queue, layouts, faults };
+        let silence = Arc::default();
+        let gpu = Gpu { adapter: info.clone(), device, queue, layouts, faults, patience, silence };
         gpu.faults.check().map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
         Ok(gpu)
     }
@@ -329,6 +359,9 @@ impl Gpu {
         match fault {
             Fault::Lost => self.device.destroy(),
             Fault::OutOfMemory => self.use_up_memory(),
+            Fault::Hang => self.silence().simulated_until = Some(Instant::now() + DRILL_SILENCE),
+            // It is the dispatch's.
+            Fault::Short | Fault::AlwaysShort => {}
             // More than the buffer has room for.
             Fault::Invalid => {
                 let small = self.device.create_buffer(&wgpu::BufferDescriptor {
@@ -356,19 +389,65 @@ impl Gpu {
         }
     }
 
+    fn silence(&self) -> MutexGuard<'_, Silence> {
+        self.silence.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next answer may take longer: a kernel runs for the first time.
+    pub fn expect_compiling(&self) {
+        self.silence().compiles = true;
+    }
+
     /// Waits until a submission is done.
-    pub fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), String> {
-        let wait = wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
-        let polled = self.device.poll(wait);
-        self.faults.check()?;
-        match polled {
-            Ok(_) => Ok(()),
-            Err(error) => {
-                // A loss is told to the callback at the next poll.
-                let _ = self.device.poll(wgpu::PollType::Poll);
-                self.faults.check()?;
-                Err(format!("the device was lost or does not answer: {error}"))
+    ///
+    /// # Errors
+    /// What failed, also if the device has not answered for too long.
+    pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<(), String> {
+        self.wait_unless(submission, None).map(drop)
+    }
+
+    /// Waits until a submission is done, which it returns, or `cancel` is set.
+    ///
+    /// # Errors
+    /// As [`Gpu::wait`].
+    pub fn wait_unless(
+        &self,
+        submission: &wgpu::SubmissionIndex,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<bool, String> {
+        loop {
+            let begin = Instant::now();
+            let polled = self.poll(submission);
+            self.faults.check()?;
+            let mut silence = self.silence();
+            match polled {
+                Ok(_) => {
+                    (silence.waited, silence.compiles) = (Duration::ZERO, false);
+                    return Ok(true);
+                }
+                Err(wgpu::PollError::Timeout) => silence.waited += begin.elapsed(),
+                Err(error) => return Err(format!("the device was lost: {error}")),
+            }
+            if silence.waited >= self.patience * if silence.compiles { COMPILING_PATIENCE } else { 1 } {
+                self.faults.note(format!(
+                    "{} has not answered for {:.0} s and is given up; render on the CPU, or start again once it answers",
+                    self.adapter.name,
+                    silence.waited.as_secs_f64()
+                ));
+            } else if cancel.is_some_and(|cancel| cancel.load(Ordering::Relaxed)) {
+                return Ok(false);
             }
         }
+    }
+
+    /// Waits for a moment.
+    fn poll(&self, submission: &wgpu::SubmissionIndex) -> Result<wgpu::PollStatus, wgpu::PollError> {
+        let simulated_until = self.silence().simulated_until;
+        if simulated_until.is_some_and(|until| Instant::now() < until) {
+            std::thread::sleep(LOOK);
+            return Err(wgpu::PollError::Timeout);
+        }
+        self.device
+            .poll(wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(LOOK) })
     }
 }

@@ -1,15 +1,18 @@
-//! Dispatches: cut from a range of samples, sent off ahead of the device, timed, and sized by what they took.
+//! Dispatches: cut from a range of samples, sent off ahead of the device, gone on with until all their samples are
+//! there, timed, and sized by what they took.
 
 use super::device::Gpu;
-use super::layout::{GpuDispatch, tile_size};
+use super::layout::{ASIDE_STRIDE, GpuBlock, GpuDispatch, WORKGROUP_SIZE, tile_size};
+use super::options::DrillPoint;
 use super::prepared::Prepared;
-use super::readback::Timer;
+use super::readback::{Receipt, Told};
 use super::schedule::{Blocks, Budget};
-use super::{GpuRenderer, Overrides, failed};
+use super::{Fault, GpuRenderer, Overrides, failed};
 use crate::film::Film;
 use crate::render::{RenderError, Stats};
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -19,44 +22,123 @@ const QUEUE_DEPTH: usize = 2;
 /// Most workgroups along one axis of a dispatch; WebGPU allows 65,535.
 const GROUPS_ACROSS: u32 = 32_768;
 
+/// Turns of all its loops that a thread of a dispatch makes, its last ray's not included; then it puts its path aside
+/// and the next dispatch goes on with it.
+///
+/// Half of the smallest limit known: llvmpipe ends every loop once the loops of a thread have made 65,535 turns
+/// together, those counted twice that two of the 8 threads make which it runs in step.
+pub const TURN_LIMIT: u32 = 1 << 15;
+
+/// Most threads of a dispatch: so many can put their paths aside, 64 bytes each.
+const THREAD_LIMIT: u64 = 1 << 20;
+
+/// Bytes in which a thread puts its path aside.
+const ASIDE_SIZE: u64 = 4 * ASIDE_STRIDE as u64;
+
+/// By so many bits less a dispatch does each time that samples were missing.
+const CAUTION_SHIFT: u32 = 3;
+
+/// How often samples that are missing are traced again.
+pub(super) const CAUTION_LIMIT: u32 = 3;
+
+/// Why a pass is not whole.
+pub(super) enum Broken {
+    /// The device failed, or nobody wants it any more.
+    Ended(RenderError),
+    /// Samples are missing though the device reported no fault: in words, how many and where.
+    Short(String),
+}
+
+impl From<RenderError> for Broken {
+    fn from(error: RenderError) -> Self {
+        Broken::Ended(error)
+    }
+}
+
+/// A dispatch with all that it binds.
+struct Work {
+    kernel: Overrides,
+    pipeline: wgpu::ComputePipeline,
+    scene: wgpu::BindGroup,
+    film: wgpu::BindGroup,
+    order_buffer: wgpu::Buffer,
+    blocks_buffer: wgpu::Buffer,
+    counters: wgpu::Buffer,
+    blocks: Arc<[GpuBlock]>,
+    order: GpuDispatch,
+    /// Threads times samples, by which the budget counts.
+    paths: u64,
+    /// Samples of all pixels in it.
+    samples: u64,
+}
+
 /// A submission that is not known to be done.
 struct UnderWay {
+    slot: usize,
     submission: wgpu::SubmissionIndex,
-    timer: Option<usize>,
-    paths: u64,
-    kernel: Overrides,
     submitted: Instant,
+    work: Work,
+    /// Samples that earlier rounds have finished.
+    finished: u64,
+    /// Whether its film is still wanted.
+    is_wanted: bool,
+}
+
+/// What one dispatch at a time has.
+struct Slot {
+    receipt: Receipt,
+    aside: wgpu::Buffer,
+    /// Group 2: where paths are put aside.
+    group: wgpu::BindGroup,
+    /// Whether paths lie there that nobody wants.
+    is_littered: bool,
+}
+
+impl Slot {
+    fn new(gpu: &Gpu, size: u64) -> Result<Self, String> {
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+        let aside = gpu.buffer("paths put aside", size, usage)?;
+        let group = gpu.bind(&gpu.layouts.words, &[&aside]);
+        Ok(Slot { receipt: Receipt::new(gpu)?, aside, group, is_littered: false })
+    }
 }
 
 /// What is under way, and what was learnt from what is done.
 pub(super) struct Dispatches {
-    timers: Vec<Timer>,
+    slots: Vec<Slot>,
     under_way: VecDeque<UnderWay>,
     last_done: Instant,
     /// By kernel, so that another view of a scene goes on at full speed.
     budgets: HashMap<Overrides, Budget>,
     target: Duration,
+    /// Turns of a thread, as the adapter counts them.
+    turn_limit: u32,
+    /// How often samples were missing.
+    pub(super) caution: u32,
+    /// Which samples are missing of those that are wanted.
+    shortfall: Option<String>,
     /// Dispatches so far.
     pub(super) count: u64,
     /// What those that are done took.
     pub(super) time: Duration,
-    /// Dispatches when the film was last sent for.
-    count_at_fetch: u64,
 }
 
 impl Dispatches {
-    pub(super) fn new(gpu: &Gpu, target: Duration) -> Self {
-        let timers: Vec<Timer> = (0..QUEUE_DEPTH).map_while(|_| Timer::new(gpu)).collect();
-        Dispatches {
-            timers: if timers.len() == QUEUE_DEPTH { timers } else { Vec::new() },
+    /// # Errors
+    /// If the device has no memory.
+    pub(super) fn new(gpu: &Gpu, target: Duration, turn_limit: Option<u32>) -> Result<Self, String> {
+        Ok(Dispatches {
+            slots: (0..QUEUE_DEPTH).map(|_| Slot::new(gpu, ASIDE_SIZE)).collect::<Result<_, _>>()?,
             under_way: VecDeque::new(),
             last_done: Instant::now(),
             budgets: HashMap::new(),
             target,
+            turn_limit: turn_limit.unwrap_or(TURN_LIMIT / gpu.adapter.threads_in_step()),
+            caution: 0,
+            shortfall: None,
             count: 0,
             time: Duration::ZERO,
-            count_at_fetch: 0,
-        }
+        })
     }
 
     /// By what they are timed.
@@ -66,42 +148,165 @@ impl Dispatches {
 
     /// Whether the device's own clock tells what dispatches take.
     pub(super) fn is_timed_by_device(&self) -> bool {
-        !self.timers.is_empty()
+        self.slots.iter().all(|slot| slot.receipt.has_clock())
+    }
+
+    /// Whether a kernel was never run.
+    pub(super) fn is_new(&self, kernel: &Overrides) -> bool {
+        !self.budgets.contains_key(kernel)
     }
 
     fn budget(&mut self, kernel: &Overrides) -> &mut Budget {
         self.budgets.entry(*kernel).or_insert_with(|| Budget::new(self.target))
     }
 
-    /// Waits for the oldest dispatch and learns from it.
-    fn finish(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
-        let Some(done) = self.under_way.pop_front() else { return Ok(()) };
-        let took = match done.timer {
-            Some(slot) => self.timers[slot].wait(gpu, done.submission).map_err(failed)?,
-            None => {
-                gpu.wait(done.submission).map_err(failed)?;
-                let begun = self.last_done.max(done.submitted);
-                self.last_done = Instant::now();
-                self.last_done - begun
-            }
-        };
-        self.time += took;
-        self.budget(&done.kernel).learn(done.paths, took);
-        Ok(())
+    /// Turns of a thread in one dispatch.
+    fn turn_limit(&self) -> u32 {
+        (self.turn_limit >> (CAUTION_SHIFT * self.caution)).max(1)
     }
 
-    /// Waits for all that is under way.
-    pub(super) fn drain(&mut self, gpu: &Gpu) -> Result<(), RenderError> {
-        while !self.under_way.is_empty() {
-            self.finish(gpu)?;
+    /// Has room for the paths of a picture of so many threads, or of as many as a dispatch may have.
+    ///
+    /// # Errors
+    /// If the device has no memory.
+    pub(super) fn make_room(&mut self, gpu: &Gpu, threads: u64, binding_limit: u64) -> Result<(), String> {
+        let size = threads.min(THREAD_LIMIT).min(binding_limit / ASIDE_SIZE) * ASIDE_SIZE;
+        for slot in &mut self.slots {
+            if slot.aside.size() < size {
+                let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
+                slot.aside = gpu.buffer("paths put aside", size, usage)?;
+                slot.group = gpu.bind(&gpu.layouts.words, &[&slot.aside]);
+            }
         }
         Ok(())
     }
 
-    /// Whether all that is under way came after the film was sent for.
-    fn are_past_fetch(&self) -> bool {
-        self.count - self.under_way.len() as u64 >= self.count_at_fetch
+    /// Most tiles of a dispatch.
+    fn tile_limit(&self) -> u64 {
+        let sizes = self.slots.iter().map(|slot| slot.aside.size());
+        (sizes.min().unwrap_or_default() / (ASIDE_SIZE * u64::from(WORKGROUP_SIZE))).max(1)
     }
+
+    /// Nobody wants the film of what is under way.
+    pub(super) fn abandon(&mut self) {
+        self.shortfall = None;
+        self.under_way.iter_mut().for_each(|under_way| under_way.is_wanted = false);
+    }
+
+    /// Sends a dispatch off, in a slot that is free.
+    fn submit(&mut self, gpu: &Gpu, slot: usize, work: Work, finished: u64) -> Result<(), String> {
+        let Slot { receipt, aside, group, is_littered } = &mut self.slots[slot];
+        gpu.queue.write_buffer(&work.blocks_buffer, 0, bytemuck::cast_slice(&work.blocks));
+        gpu.queue.write_buffer(&work.order_buffer, 0, bytemuck::bytes_of(&work.order));
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        if *is_littered {
+            encoder.clear_buffer(aside, 0, None);
+            *is_littered = false;
+        }
+        receipt.begin(&mut encoder, &work.counters);
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("path_trace"),
+                timestamp_writes: receipt.writes(),
+            });
+            pass.set_pipeline(&work.pipeline);
+            pass.set_bind_group(0, &work.scene, &[]);
+            pass.set_bind_group(1, &work.film, &[]);
+            pass.set_bind_group(2, &*group, &[]);
+            let [x, y] = groups(work.order.tile_count);
+            pass.dispatch_workgroups(x, y, 1);
+        }
+        receipt.end(&mut encoder, &work.counters);
+        let submitted = Instant::now();
+        let submission = gpu.queue.submit([encoder.finish()]);
+        receipt.ask();
+        self.under_way.push_back(UnderWay { slot, submission, submitted, work, finished, is_wanted: true });
+        self.count += 1;
+        gpu.faults.check()
+    }
+
+    /// Waits for the oldest dispatch and learns from it. Where threads have put paths aside, it is sent off again.
+    fn finish(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Broken> {
+        let Some(oldest) = self.under_way.front() else { return Ok(()) };
+        if !gpu.wait_unless(&oldest.submission, cancel).map_err(failed)? {
+            return Err(RenderError::Cancelled.into());
+        }
+        let Some(mut done) = self.under_way.pop_front() else { return Ok(()) };
+        let told = self.slots[done.slot].receipt.read().map_err(failed)?;
+        let took = told.took.unwrap_or_else(|| {
+            let begun = self.last_done.max(done.submitted);
+            self.last_done = Instant::now();
+            self.last_done - begun
+        });
+        self.time += took;
+        if !done.is_wanted {
+            self.slots[done.slot].is_littered |= told.counters.unfinished > 0;
+            return Ok(());
+        }
+        self.learn(&done.work, &told, took);
+        done.finished += told.finished();
+        if told.counters.stuck > 0 {
+            return Err(failed(stuck(told.counters.stuck)).into());
+        }
+        if told.counters.unfinished > 0 {
+            done.work.order.resumes = 1;
+            self.submit(gpu, done.slot, done.work, done.finished).map_err(failed)?;
+        } else if done.finished != done.work.samples {
+            self.shortfall = Some(done.work.shortfall(done.finished));
+        }
+        self.check_whole()
+    }
+
+    /// `Err` as long as samples are missing that are wanted.
+    fn check_whole(&self) -> Result<(), Broken> {
+        self.shortfall.clone().map_or(Ok(()), |shortfall| Err(Broken::Short(shortfall)))
+    }
+
+    fn learn(&mut self, work: &Work, told: &Told, took: Duration) {
+        let share = told.finished() as f64 / work.samples.max(1) as f64;
+        let paths = ((work.paths as f64 * share) as u64).max(1);
+        self.budget(&work.kernel).learn(paths, took);
+    }
+
+    /// Waits for all that is under way.
+    pub(super) fn drain(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Broken> {
+        while !self.under_way.is_empty() {
+            self.finish(gpu, cancel)?;
+        }
+        self.check_whole()
+    }
+
+    /// A slot that has nothing under way, for which it may wait.
+    fn free_slot(&mut self, gpu: &Gpu, cancel: &AtomicBool) -> Result<usize, Broken> {
+        loop {
+            let is_free = |slot: &usize| self.under_way.iter().all(|under_way| under_way.slot != *slot);
+            if let Some(slot) = (0..self.slots.len()).find(is_free) {
+                return Ok(slot);
+            }
+            self.finish(gpu, Some(cancel))?;
+        }
+    }
+}
+
+impl Work {
+    fn shortfall(&self, finished: u64) -> String {
+        let GpuDispatch { first_tile, tile_count, first_row, .. } = self.order;
+        let block_count = self.blocks.len();
+        let last_tile = first_tile + tile_count.saturating_sub(1);
+        format!(
+            "of {} samples the device added {finished}, in {block_count} blocks of the tiles {first_tile} to \
+             {last_tile} below row {first_row}",
+            self.samples
+        )
+    }
+}
+
+/// What is wrong where rays cannot be traced to their end.
+pub(super) fn stuck(pixels: u32) -> String {
+    format!(
+        "{pixels} pixels have a ray that meets more of the scene than a loop of this driver can go through \
+         (llvmpipe: 65,535 turns); render this scene on the CPU"
+    )
 }
 
 impl GpuRenderer {
@@ -113,51 +318,65 @@ impl GpuRenderer {
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
+    ) -> Result<Stats, Broken> {
         prepared.film.check_new(range, film)?;
+        self.dispatches.check_whole()?;
         let settings = *prepared.job.settings();
-        let [tile_width, tile_height] = tile_size(settings.width, settings.height);
-        let tile_pixels = u64::from(tile_width) * u64::from(tile_height);
+        let tile = tile_size(settings.width, settings.height);
+        let tile_pixels = u64::from(tile[0]) * u64::from(tile[1]);
         let mut stats = Stats::default();
         for slab in 0..prepared.film.slabs.len() {
             let (first_row, row_count) = {
                 let slab = &prepared.film.slabs[slab];
                 (slab.first_row, slab.row_count)
             };
-            let tiles = settings.width.div_ceil(tile_width) * row_count.div_ceil(tile_height);
+            let area = [settings.width, row_count];
+            let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
             let mut left = Blocks::of_range(range.clone(), &settings, prepared.scene.tables.block_limit);
             loop {
                 let affordable = self.dispatches.budget(&prepared.overrides).paths();
                 let pixels = u64::from(tiles) * tile_pixels;
                 let samples = self.options.samples_per_dispatch.unwrap_or(affordable / pixels);
-                let (blocks, samples) = left.take(samples);
+                let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
                 if blocks.is_empty() {
                     break;
                 }
-                self.gpu.queue.write_buffer(&prepared.film.blocks, 0, bytemuck::cast_slice(&blocks));
-                let rays = samples.saturating_mul(u64::from(settings.max_depth)).saturating_add(1);
+                let blocks: Arc<[GpuBlock]> = blocks.into();
                 let mut first_tile = 0;
                 while first_tile < tiles {
                     if cancel.load(Ordering::Relaxed) {
-                        return Err(RenderError::Cancelled);
+                        return Err(RenderError::Cancelled.into());
                     }
-                    while self.dispatches.under_way.len() >= QUEUE_DEPTH {
-                        self.dispatches.finish(&self.gpu)?;
-                    }
+                    let slot = self.dispatches.free_slot(&self.gpu, cancel)?;
                     let affordable = self.dispatches.budget(&prepared.overrides).paths();
+                    let tile_limit =
+                        (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
+                    let tile_count = evenly(tiles - first_tile, tile_limit);
                     let order = GpuDispatch {
                         first_tile,
-                        tile_count: evenly(tiles - first_tile, affordable / (tile_pixels * samples).max(1)),
+                        tile_count,
                         block_count: blocks.len() as u32,
-                        ray_limit: rays.min(u64::from(u32::MAX)) as u32,
+                        turn_limit: self.dispatches.turn_limit(),
                         first_row,
                         row_count,
                         ..GpuDispatch::default()
                     };
-                    let paths = u64::from(order.tile_count) * tile_pixels * samples;
-                    self.submit(prepared, slab, &order, paths).map_err(failed)?;
-                    first_tile += order.tile_count;
-                    if prepared.film.is_leaving() && self.dispatches.are_past_fetch() {
+                    let work = Work {
+                        kernel: prepared.overrides,
+                        pipeline: prepared.kernel.pipeline.clone(),
+                        scene: prepared.scene.group.clone(),
+                        film: prepared.film.slabs[slab].group.clone(),
+                        order_buffer: prepared.film.order.clone(),
+                        blocks_buffer: prepared.film.blocks.clone(),
+                        counters: prepared.film.counters().clone(),
+                        blocks: Arc::clone(&blocks),
+                        order,
+                        paths: u64::from(tile_count) * tile_pixels * samples,
+                        samples: pixels_within(area, tile, first_tile..first_tile + tile_count) * samples,
+                    };
+                    self.send_off(slot, work).map_err(failed)?;
+                    first_tile += tile_count;
+                    if prepared.film.is_leaving() {
                         stats.add(&prepared.film.arrive(&self.gpu, film)?);
                     }
                 }
@@ -167,72 +386,86 @@ impl GpuRenderer {
         Ok(stats)
     }
 
-    /// Sends a dispatch off.
-    fn submit(
-        &mut self,
-        prepared: &Prepared,
-        slab: usize,
-        order: &GpuDispatch,
-        paths: u64,
-    ) -> Result<(), String> {
-        if let Some(drill) = self.options.drill
-            && drill.after == self.dispatches.count
-        {
-            self.gpu.break_by(drill.fault);
+    /// Sends a new dispatch off, unless a drill is due.
+    fn send_off(&mut self, slot: usize, mut work: Work) -> Result<(), String> {
+        let fault = self.drill(DrillPoint::Dispatch, self.dispatches.count);
+        if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
+            work.order.block_count = 0;
         }
-        let dispatches = &mut self.dispatches;
-        let slot = (dispatches.count % QUEUE_DEPTH as u64) as usize;
-        let timer = dispatches.timers.get(slot);
-        self.gpu.queue.write_buffer(&prepared.film.order, 0, bytemuck::bytes_of(order));
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("path_trace"),
-                timestamp_writes: timer.map(Timer::writes),
-            });
-            pass.set_pipeline(&prepared.kernel.pipeline);
-            pass.set_bind_group(0, &prepared.scene.group, &[]);
-            pass.set_bind_group(1, &prepared.film.slabs[slab].group, &[]);
-            pass.set_bind_group(2, &self.words_group, &[]);
-            let [x, y] = groups(order.tile_count);
-            pass.dispatch_workgroups(x, y, 1);
-        }
-        if let Some(timer) = timer {
-            timer.resolve(&mut encoder);
-        }
-        let timer = timer.map(|_| slot);
-        let submitted = Instant::now();
-        let submission = self.gpu.queue.submit([encoder.finish()]);
-        let kernel = prepared.overrides;
-        dispatches.under_way.push_back(UnderWay { submission, timer, paths, kernel, submitted });
-        dispatches.count += 1;
-        self.gpu.faults.check()
+        self.dispatches.submit(&self.gpu, slot, work, 0)
     }
 
-    /// Sends for the film.
-    pub(super) fn send_for_film(&mut self, prepared: &mut Prepared) -> Result<(), RenderError> {
+    /// Sends for the film, once it is whole.
+    pub(super) fn send_for_film(&mut self, prepared: &mut Prepared) -> Result<(), Broken> {
         if !prepared.film.is_leaving() {
+            self.drill(DrillPoint::Fetch, self.fetches);
+            self.fetches += 1;
+            self.dispatches.drain(&self.gpu, None)?;
             prepared.film.leave(&self.gpu);
-            self.dispatches.count_at_fetch = self.dispatches.count;
         }
-        self.gpu.faults.check().map_err(failed)
+        Ok(self.gpu.faults.check().map_err(failed)?)
     }
 
     /// Adds all that was traced to the film.
-    pub(super) fn collect_all(
-        &mut self,
-        prepared: &mut Prepared,
-        film: &mut Film,
-    ) -> Result<Stats, RenderError> {
+    pub(super) fn collect_all(&mut self, prepared: &mut Prepared, film: &mut Film) -> Result<Stats, Broken> {
         let mut stats = Stats::default();
         // What is on its way already comes first.
         while prepared.film.holds_samples() {
             self.send_for_film(prepared)?;
-            self.dispatches.drain(&self.gpu)?;
             stats.add(&prepared.film.arrive(&self.gpu, film)?);
         }
         Ok(stats)
     }
+
+    /// Traces again what is on the device and `range`, because samples were missing: less in each dispatch.
+    ///
+    /// # Errors
+    /// If samples are missing still; the film is then as it was.
+    pub(super) fn trace_again(
+        &mut self,
+        prepared: &mut Prepared,
+        mut shortfall: String,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        let mut missing = prepared.film.held();
+        // It may have been noted before.
+        if missing.overlap(&range).is_none() {
+            missing.insert(range)?;
+        }
+        while self.dispatches.caution < CAUTION_LIMIT {
+            self.dispatches.caution += 1;
+            self.messages.push(format!("{shortfall}; they are traced again in smaller pieces"));
+            self.forget(prepared);
+            let begin = Instant::now();
+            let mut stats = Stats::default();
+            let outcome = missing.iter().try_for_each(|range| {
+                stats.add(&self.trace_range(prepared, &range, film, cancel)?);
+                self.dispatches.drain(&self.gpu, Some(cancel))?;
+                prepared.film.note(range, begin.elapsed()).map_err(Broken::from)
+            });
+            match outcome.and_then(|()| self.collect_all(prepared, film)) {
+                Ok(collected) => {
+                    stats.add(&collected);
+                    return Ok(stats);
+                }
+                Err(Broken::Ended(error)) => return Err(error),
+                Err(Broken::Short(reason)) => shortfall = reason,
+            }
+        }
+        Err(failed(format!("{shortfall}; update the graphics driver or render on the CPU")))
+    }
+}
+
+/// Pixels of tiles, counted row by row of a picture of `area` pixels across and down.
+fn pixels_within([width, height]: [u32; 2], tile: [u32; 2], tiles: Range<u32>) -> u64 {
+    let across = width.div_ceil(tile[0]);
+    let pixels = |number: u32| {
+        let corner = [number % across * tile[0], number / across * tile[1]];
+        u64::from((width - corner[0]).min(tile[0])) * u64::from((height - corner[1]).min(tile[1]))
+    };
+    tiles.map(pixels).sum()
 }
 
 /// So many of what is left that no dispatch is left with a few: at most `affordable`, at least one.
@@ -244,4 +477,21 @@ fn evenly(left: u32, affordable: u64) -> u32 {
 /// Workgroups along x and y that are together at least `count`.
 pub(super) fn groups(count: u32) -> [u32; 2] {
     if count <= GROUPS_ACROSS { [count, 1] } else { [GROUPS_ACROSS, count.div_ceil(GROUPS_ACROSS)] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_have_all_pixels_once() {
+        for (area, tile) in
+            [([50_u32, 43_u32], [8, 8]), ([1, 2000], [1, 64]), ([4, 4], [4, 16]), ([64, 64], [8, 8])]
+        {
+            let tiles = area[0].div_ceil(tile[0]) * area[1].div_ceil(tile[1]);
+            assert_eq!(pixels_within(area, tile, 0..tiles), u64::from(area[0]) * u64::from(area[1]));
+            assert_eq!(pixels_within(area, tile, 0..0), 0);
+        }
+        assert_eq!(pixels_within([50, 43], [8, 8], 6..7), 2 * 8);
+    }
 }

@@ -166,6 +166,21 @@ impl FilmBuffers {
         self.leaving.is_some() || self.traced.count() > 0
     }
 
+    /// The samples that are on the device.
+    pub fn held(&self) -> SampleRanges {
+        let mut held = self.traced.clone();
+        for range in self.leaving.iter().flat_map(|leaving| leaving.samples.iter()) {
+            // None of them was traced twice: [`FilmBuffers::check_new`].
+            let _ = held.insert(range);
+        }
+        held
+    }
+
+    /// What dispatches count: [`GpuCounters`].
+    pub fn counters(&self) -> &wgpu::Buffer {
+        &self.counters
+    }
+
     /// Whether samples are on their way.
     pub fn is_leaving(&self) -> bool {
         self.leaving.is_some()
@@ -216,7 +231,7 @@ impl FilmBuffers {
     /// What the device said; the film is as it was.
     pub fn arrive(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
         let Some(leaving) = self.leaving.take() else { return Ok(Stats::default()) };
-        gpu.wait(leaving.submission).map_err(failed)?;
+        gpu.wait(&leaving.submission).map_err(failed)?;
         for _ in self.stagings() {
             let mapped = leaving.mapped.try_recv().map_err(|_| failed("results stayed away".to_owned()))?;
             mapped.map_err(|error| failed(format!("reading results: {error}")))?;
@@ -231,6 +246,11 @@ impl FilmBuffers {
         let sums =
             views.iter().map(|view| bytemuck::try_cast_slice(view)).collect::<Result<Vec<&[u64]>, _>>();
         let sums = sums.map_err(|error| failed(format!("reading results: {error}")))?;
+
+        let words = |rows: u32| film.width() as usize * rows as usize * film.halves().len() * PIXEL_WORDS;
+        if self.slabs.iter().zip(&sums).any(|(slab, sums)| sums.len() < words(slab.row_count)) {
+            return Err(failed("reading results: there are fewer than pixels".to_owned()));
+        }
 
         // All is here: from now on nothing can fail.
         for (slab, sums) in self.slabs.iter().zip(sums) {

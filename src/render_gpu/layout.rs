@@ -14,6 +14,9 @@ pub const UNIFORM_SPHERES: usize = 32;
 /// The same for anchored spheres.
 pub const UNIFORM_ANCHORED: usize = 4;
 
+/// Words in which a thread puts its path aside. Twin: shaders/aside.wgsl.
+pub const ASIDE_STRIDE: u32 = 17;
+
 /// The bits of [`GpuAnchoredSphere::flags`] that tell which roots count.
 pub const ROOTS_MASK: u32 = 3;
 
@@ -182,8 +185,8 @@ pub struct GpuDispatch {
     pub tile_count: u32,
     /// Blocks of samples.
     pub block_count: u32,
-    /// Most rays of one pixel.
-    pub ray_limit: u32,
+    /// Turns of its loops after which a thread puts its path aside.
+    pub turn_limit: u32,
     /// First row of the picture that the film buffer holds.
     pub first_row: u32,
     /// Rows that it holds.
@@ -192,6 +195,10 @@ pub struct GpuDispatch {
     pub sample_count: u32,
     /// For resolve: a `TRANSFER_` tag.
     pub transfer: u32,
+    /// 1 where threads go on with what they put aside, 0 where they begin.
+    pub resumes: u32,
+    /// The first of the words in which paths are put aside.
+    pub first_aside: u32,
 }
 
 /// Twin: `Block` in bindings.wgsl.
@@ -317,4 +324,20 @@ pub struct GpuCounters {
     pub rejected: u32,
     /// High word.
     pub rejected_high: u32,
+    /// What one dispatch counted.
+    pub dispatch: GpuDispatchCounters,
+}
+
+/// The counters of one dispatch alone: the last four of `Counters` in bindings.wgsl.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct GpuDispatchCounters {
+    /// Samples whose sums are in the film, low word.
+    pub finished: u32,
+    /// High word.
+    pub finished_high: u32,
+    /// Threads that have put a path aside.
+    pub unfinished: u32,
+    /// Those of them that could not trace one ray to its end.
+    pub stuck: u32,
 }

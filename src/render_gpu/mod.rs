@@ -20,15 +20,17 @@ pub mod shader_source;
 mod small_programs;
 
 pub use device::{AdapterInfo, adapters};
+pub use dispatches::TURN_LIMIT;
 pub use options::{
-    BATCH_TARGET, Drill, Fault, GpuError, GpuOptions, GpuReport, HierarchyKind, INTERACTIVE_TARGET,
+    BATCH_TARGET, Drill, DrillPoint, Fault, GpuError, GpuOptions, GpuReport, HierarchyKind,
+    INTERACTIVE_TARGET,
 };
 pub use overrides::{Constant, Overrides};
 
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 use device::Gpu;
-use dispatches::Dispatches;
+use dispatches::{Broken, Dispatches};
 use kernel::Kernels;
 use prepared::Prepared;
 use std::ops::Range;
@@ -41,9 +43,11 @@ pub struct GpuRenderer {
     options: GpuOptions,
     kernels: Kernels,
     dispatches: Dispatches,
-    /// Group 2 where a kernel takes no words.
-    words_group: wgpu::BindGroup,
     prepared: Option<Prepared>,
+    /// How often a job was prepared.
+    preparations: u64,
+    /// How often a film was sent for.
+    fetches: u64,
     report: GpuReport,
     messages: Vec<String>,
 }
@@ -58,12 +62,9 @@ impl GpuRenderer {
     /// # Errors
     /// [`GpuError`], with the adapters that there are.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
-        let gpu = Gpu::open(options.adapter.as_deref(), options.allow_software)?;
-        let nothing = gpu
-            .buffer("no words", 16, wgpu::BufferUsages::STORAGE)
+        let gpu = Gpu::open(options.adapter.as_deref(), options.allow_software, options.patience)?;
+        let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.turn_limit)
             .map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
-        let words_group = gpu.bind(&gpu.layouts.words, &[&nothing]);
-        let dispatches = Dispatches::new(&gpu, options.dispatch_target);
         let report = GpuReport { timer: dispatches.timer(), ..GpuReport::default() };
         let messages = if gpu.adapter.is_software {
             let adapter = &gpu.adapter;
@@ -78,8 +79,9 @@ impl GpuRenderer {
             options,
             kernels: Kernels::default(),
             dispatches,
-            words_group,
             prepared: None,
+            preparations: 0,
+            fetches: 0,
             report,
             messages,
         })
@@ -127,10 +129,58 @@ impl GpuRenderer {
         };
         let result = work(self, &mut prepared);
         if let Err(RenderError::Cancelled | RenderError::Backend { .. }) = result {
-            prepared.film.forget(&self.gpu);
+            self.forget(&mut prepared);
         }
         self.prepared = Some(prepared);
         result
+    }
+
+    /// Throws away what was traced and is not in a film.
+    fn forget(&mut self, prepared: &mut Prepared) {
+        self.dispatches.abandon();
+        prepared.film.forget(&self.gpu);
+    }
+
+    /// The fault that a drill brings about at this point, the `count`th of its kind; a broken device is broken.
+    fn drill(&self, point: DrillPoint, count: u64) -> Option<Fault> {
+        let is_due = |drill: &Drill| {
+            let lasts = drill.fault == Fault::AlwaysShort;
+            drill.point == point && (drill.after == count || lasts && drill.after < count)
+        };
+        let drill = self.options.drill.filter(is_due)?;
+        self.gpu.break_by(drill.fault);
+        Some(drill.fault)
+    }
+
+    fn traced(
+        &mut self,
+        prepared: &mut Prepared,
+        range: &Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, Broken> {
+        let begin = Instant::now();
+        let stats = self.trace_range(prepared, range, film, cancel)?;
+        prepared.film.note(range.clone(), begin.elapsed())?;
+        if prepared.film.is_due() {
+            self.send_for_film(prepared)?;
+        }
+        Ok(stats)
+    }
+
+    fn traced_and_collected(
+        &mut self,
+        prepared: &mut Prepared,
+        range: &Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, Broken> {
+        let begin = Instant::now();
+        let mut stats = self.trace_range(prepared, range, film, cancel)?;
+        self.dispatches.drain(&self.gpu, Some(cancel))?;
+        prepared.film.note(range.clone(), begin.elapsed())?;
+        stats.add(&self.collect_all(prepared, film)?);
+        Ok(stats)
     }
 }
 
@@ -164,7 +214,7 @@ impl Renderer for GpuRenderer {
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
         self.with_prepared(job, cancel, |this, prepared| {
             if prepared.film.holds_samples() {
-                prepared.film.forget(&this.gpu);
+                this.forget(prepared);
             }
             Ok(())
         })
@@ -178,12 +228,11 @@ impl Renderer for GpuRenderer {
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
         self.with_prepared(job, cancel, |this, prepared| {
-            let begin = Instant::now();
-            let mut stats = this.trace_range(prepared, &range, film, cancel)?;
-            this.dispatches.drain(&this.gpu)?;
-            prepared.film.note(range, begin.elapsed())?;
-            stats.add(&this.collect_all(prepared, film)?);
-            Ok(stats)
+            match this.traced_and_collected(prepared, &range, film, cancel) {
+                Ok(stats) => Ok(stats),
+                Err(Broken::Ended(error)) => Err(error),
+                Err(Broken::Short(reason)) => this.trace_again(prepared, reason, range, film, cancel),
+            }
         })
     }
 
@@ -194,22 +243,28 @@ impl Renderer for GpuRenderer {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        self.with_prepared(job, cancel, |this, prepared| {
-            let begin = Instant::now();
-            let stats = this.trace_range(prepared, &range, film, cancel)?;
-            prepared.film.note(range, begin.elapsed())?;
-            if prepared.film.is_due() {
-                this.send_for_film(prepared)?;
-            }
-            Ok(stats)
+        self.with_prepared(job, cancel, |this, prepared| match this.traced(prepared, &range, film, cancel) {
+            Ok(stats) => Ok(stats),
+            Err(Broken::Ended(error)) => Err(error),
+            Err(Broken::Short(reason)) => this.trace_again(prepared, reason, range, film, cancel),
         })
     }
 
     fn fetch(&mut self) -> Result<(), RenderError> {
-        self.with_present(Self::send_for_film)
+        self.with_present(|this, prepared| match this.send_for_film(prepared) {
+            // The next call finds what is missing.
+            Ok(()) | Err(Broken::Short(_)) => Ok(()),
+            Err(Broken::Ended(error)) => Err(error),
+        })
     }
 
     fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
-        self.with_present(|this, prepared| this.collect_all(prepared, film))
+        self.with_present(|this, prepared| match this.collect_all(prepared, film) {
+            Ok(stats) => Ok(stats),
+            Err(Broken::Ended(error)) => Err(error),
+            Err(Broken::Short(reason)) => {
+                this.trace_again(prepared, reason, 0..0, film, &AtomicBool::new(false))
+            }
+        })
     }
 }

@@ -9,6 +9,12 @@ pub const BATCH_TARGET: Duration = Duration::from_millis(50);
 /// What a dispatch should take while someone interacts.
 pub const INTERACTIVE_TARGET: Duration = Duration::from_millis(8);
 
+/// Longer than any dispatch takes: a device that has not answered by then hangs.
+pub const PATIENCE: Duration = Duration::from_secs(8);
+
+/// The first dispatch of a kernel can wait for the driver to compile it, and gets so many times as long.
+pub const COMPILING_PATIENCE: u32 = 6;
+
 /// The hierarchy over a scene of many spheres. Both find the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HierarchyKind {
@@ -28,6 +34,24 @@ pub enum Fault {
     OutOfMemory,
     /// It was asked for something invalid: a mistake of this program or of the driver.
     Invalid,
+    /// It does not answer for 10 s.
+    Hang,
+    /// It reports a dispatch as done and has left out all of it. Only at [`DrillPoint::Dispatch`].
+    Short,
+    /// So it does from then on.
+    AlwaysShort,
+}
+
+/// Where a drill can strike.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DrillPoint {
+    /// Before a job is prepared.
+    Prepare,
+    /// Before a dispatch is sent off.
+    #[default]
+    Dispatch,
+    /// Before a film is sent for.
+    Fetch,
 }
 
 /// A fault that is brought about on purpose, to see that a render survives it.
@@ -35,7 +59,9 @@ pub enum Fault {
 pub struct Drill {
     /// What goes wrong.
     pub fault: Fault,
-    /// After how many dispatches.
+    /// Where.
+    pub point: DrillPoint,
+    /// After how many of these.
     pub after: u64,
 }
 
@@ -54,8 +80,12 @@ pub struct GpuOptions {
     pub hierarchy: HierarchyKind,
     /// Samples of a pixel in one dispatch, instead of as many as the target allows: to measure.
     pub samples_per_dispatch: Option<u64>,
+    /// Turns of loops after which a thread puts its path aside, instead of as many as are safe: to test.
+    pub turn_limit: Option<u32>,
     /// Most bytes of a film on the device at once; by default what the adapter can bind.
     pub film_limit: Option<u64>,
+    /// How long the device is waited for before it is given up.
+    pub patience: Duration,
     /// Breaks the device: a drill.
     pub drill: Option<Drill>,
 }
@@ -69,7 +99,9 @@ impl Default for GpuOptions {
             specialise: true,
             hierarchy: HierarchyKind::default(),
             samples_per_dispatch: None,
+            turn_limit: None,
             film_limit: None,
+            patience: PATIENCE,
             drill: None,
         }
     }

@@ -1,12 +1,15 @@
 //! A job on the device: tables and hierarchy in buffers, the kernel, the film.
 
+use super::dispatches::TURN_LIMIT;
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
-use super::layout::{GpuAnchoredSphere, GpuJob, GpuRow};
+use super::layout::{GpuAnchoredSphere, GpuJob, GpuRow, WORKGROUP_SIZE, tile_size};
+use super::options::DrillPoint;
 use super::scene::SceneData;
 use super::shader_source::EntryPoint;
 use super::{GpuRenderer, HierarchyKind, Overrides, failed};
 use crate::render::{RenderError, RenderJob};
+use crate::stages::Surface;
 use crate::tables::Tables;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -39,6 +42,9 @@ impl GpuRenderer {
     pub(super) fn get_ready(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
         if self.prepared.as_ref().is_none_or(|prepared| prepared.job != *job) {
             let old = self.prepared.take();
+            self.dispatches.abandon();
+            self.drill(DrillPoint::Prepare, self.preparations);
+            self.preparations += 1;
             self.prepared = Some(self.built(job, old, cancel)?);
         }
         Ok(())
@@ -69,11 +75,16 @@ impl GpuRenderer {
             }
         };
         let overrides = self.overrides(job, &scene.tables);
+        self.check_lists(&overrides, &scene.tables).map_err(failed)?;
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &overrides, 0);
         self.messages.extend(scene.tables.warnings().iter().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
+        self.make_room(job).map_err(failed)?;
         let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &overrides, 0, cancel)?;
         self.gpu.faults.check().map_err(failed)?;
+        if self.dispatches.is_new(&overrides) {
+            self.gpu.expect_compiling();
+        }
         self.report.features = overrides.summary();
         self.report.compile_time = kernel.compile_time;
         Ok(Prepared { job: job.clone(), scene, overrides, kernel, film })
@@ -109,6 +120,29 @@ impl GpuRenderer {
         };
         let cwbvh = overrides.hierarchy && self.options.hierarchy == HierarchyKind::Cwbvh;
         Overrides { cwbvh, ..overrides }
+    }
+
+    /// Refuses lists that are longer than a driver's loops.
+    fn check_lists(&self, overrides: &Overrides, tables: &Tables<f32>) -> Result<(), String> {
+        let listed = tables.opaque.len() + tables.two_root.len();
+        let turns = tables.anchored.len()
+            + if overrides.hierarchy && overrides.surface == Surface::Exact { 0 } else { listed };
+        if self.gpu.adapter.threads_in_step() > 1 && turns as u64 >= u64::from(TURN_LIMIT) {
+            return Err(format!(
+                "each ray is tested against {turns} spheres, but loops of {} end after {TURN_LIMIT} turns; render this scene on the CPU",
+                self.gpu.adapter.name
+            ));
+        }
+        Ok(())
+    }
+
+    /// Has room for the paths that the threads of a picture may put aside.
+    fn make_room(&mut self, job: &RenderJob) -> Result<(), String> {
+        let (width, height) = (job.settings().width, job.settings().height);
+        let [tile_width, tile_height] = tile_size(width, height);
+        let tiles = u64::from(width.div_ceil(tile_width)) * u64::from(height.div_ceil(tile_height));
+        let limit = self.binding_limit();
+        self.dispatches.make_room(&self.gpu, tiles * u64::from(WORKGROUP_SIZE), limit)
     }
 
     /// Most bytes that a shader can see of one buffer.
@@ -164,6 +198,7 @@ impl GpuRenderer {
         let limit = self.film_limit();
         match old {
             Some(mut film) if film.fit(job.settings(), limit) => {
+                // What is under way was abandoned.
                 film.forget(&self.gpu);
                 Ok(film)
             }

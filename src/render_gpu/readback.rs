@@ -1,7 +1,9 @@
 //! From the device to memory.
 
 use super::device::Gpu;
-use std::sync::mpsc;
+use super::layout::{GpuCounters, GpuDispatchCounters};
+use std::mem::offset_of;
+use std::sync::mpsc::{self, Receiver};
 use std::time::Duration;
 
 /// The first `count` words of `from`, once all that was submitted is done.
@@ -15,26 +17,33 @@ pub fn words(gpu: &Gpu, from: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, S
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(from, 0, &staging, 0, size);
     let submission = gpu.queue.submit([encoder.finish()]);
+    let mapping = asked(&staging, size);
+    gpu.wait(&submission)?;
     let mut words = Vec::new();
-    mapped(gpu, &staging, size, submission, |bytes| words = bytemuck::pod_collect_to_vec(bytes))?;
+    shown(&staging, size, &mapping, |bytes| words = bytemuck::pod_collect_to_vec(bytes))?;
     Ok(words)
 }
 
-/// Waits for `submission`, then shows the first `length` bytes of a staging buffer.
-fn mapped(
-    gpu: &Gpu,
-    staging: &wgpu::Buffer,
-    length: u64,
-    submission: wgpu::SubmissionIndex,
-    take: impl FnOnce(&[u8]),
-) -> Result<(), String> {
+/// Asks for the first `length` bytes of a staging buffer, which come once what was submitted is done.
+fn asked(staging: &wgpu::Buffer, length: u64) -> Mapping {
     let (sender, receiver) = mpsc::channel();
     staging.map_async(wgpu::MapMode::Read, 0..length, move |result| {
         // The receiver is gone only after an error that is reported already.
         let _ = sender.send(result);
     });
-    gpu.wait(submission)?;
     receiver
+}
+
+type Mapping = Receiver<Result<(), wgpu::BufferAsyncError>>;
+
+/// Shows the first `length` bytes of a staging buffer that was asked for and has come.
+fn shown(
+    staging: &wgpu::Buffer,
+    length: u64,
+    mapping: &Mapping,
+    take: impl FnOnce(&[u8]),
+) -> Result<(), String> {
+    mapping
         .try_recv()
         .map_err(|_| "the device did not hand its results over".to_owned())?
         .map_err(|error| format!("reading results: {error}"))?;
@@ -46,21 +55,116 @@ fn mapped(
     Ok(())
 }
 
-/// Two timestamps around a dispatch, of which there can be one under way for each slot.
+/// What a dispatch says when it is done. One can be under way for each receipt.
 #[derive(Debug)]
-pub struct Timer {
+pub struct Receipt {
+    /// `None` where the device has no clock.
+    clock: Option<Clock>,
+    /// Two times, then the dispatch's counters.
+    staging: wgpu::Buffer,
+    mapping: Option<Mapping>,
+}
+
+/// Two timestamps around a dispatch.
+#[derive(Debug)]
+struct Clock {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
-    staging: wgpu::Buffer,
     period_ns: f32,
+}
+
+/// What a dispatch took by the device's clock, and what it counted.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Told {
+    /// `None` without a clock.
+    pub took: Option<Duration>,
+    /// Its counters.
+    pub counters: GpuDispatchCounters,
+}
+
+impl Told {
+    /// Samples whose sums are in the film.
+    pub fn finished(&self) -> u64 {
+        u64::from(self.counters.finished) | u64::from(self.counters.finished_high) << 32
+    }
 }
 
 /// Bytes of two timestamps.
 const TIMES_SIZE: u64 = 16;
 
-impl Timer {
+/// Bytes of a dispatch's counters.
+const COUNTERS_SIZE: u64 = size_of::<GpuDispatchCounters>() as u64;
+
+/// Where they stand among the counters.
+const COUNTERS_OFFSET: u64 = offset_of!(GpuCounters, dispatch) as u64;
+
+impl Receipt {
+    /// Of this device.
+    ///
+    /// # Errors
+    /// If it has no memory.
+    pub fn new(gpu: &Gpu) -> Result<Receipt, String> {
+        let read = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
+        let staging = gpu.buffer("receipt", TIMES_SIZE + COUNTERS_SIZE, read)?;
+        Ok(Receipt { clock: Clock::new(gpu), staging, mapping: None })
+    }
+
+    /// Whether the device's own clock tells what dispatches take.
+    pub fn has_clock(&self) -> bool {
+        self.clock.is_some()
+    }
+
+    /// Before the pass: its counters begin at 0.
+    pub fn begin(&self, encoder: &mut wgpu::CommandEncoder, counters: &wgpu::Buffer) {
+        encoder.clear_buffer(counters, COUNTERS_OFFSET, Some(COUNTERS_SIZE));
+    }
+
+    /// For the pass that is to be timed.
+    pub fn writes(&self) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        self.clock.as_ref().map(|clock| wgpu::ComputePassTimestampWrites {
+            query_set: &clock.queries,
+            beginning_of_pass_write_index: Some(0),
+            end_of_pass_write_index: Some(1),
+        })
+    }
+
+    /// After the pass.
+    pub fn end(&self, encoder: &mut wgpu::CommandEncoder, counters: &wgpu::Buffer) {
+        if let Some(clock) = &self.clock {
+            encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
+            encoder.copy_buffer_to_buffer(&clock.resolved, 0, &self.staging, 0, TIMES_SIZE);
+        }
+        encoder.copy_buffer_to_buffer(counters, COUNTERS_OFFSET, &self.staging, TIMES_SIZE, COUNTERS_SIZE);
+    }
+
+    /// After the submission.
+    pub fn ask(&mut self) {
+        self.mapping = Some(asked(&self.staging, TIMES_SIZE + COUNTERS_SIZE));
+    }
+
+    /// What a dispatch that is done says.
+    ///
+    /// # Errors
+    /// What the device said.
+    pub fn read(&mut self) -> Result<Told, String> {
+        let mapping = self.mapping.take().ok_or("nothing was submitted")?;
+        let mut told = Told::default();
+        shown(&self.staging, TIMES_SIZE + COUNTERS_SIZE, &mapping, |bytes| {
+            let (times, counters) = bytes.split_at(TIMES_SIZE as usize);
+            let mut ticks = times.chunks_exact(8).map(|time| time.try_into().map_or(0, u64::from_le_bytes));
+            let (begin, end) = (ticks.next().unwrap_or(0), ticks.next().unwrap_or(0));
+            let seconds =
+                |clock: &Clock| end.saturating_sub(begin) as f64 * f64::from(clock.period_ns) * 1e-9;
+            told.took = self.clock.as_ref().map(|clock| Duration::from_secs_f64(seconds(clock)));
+            told.counters = bytemuck::pod_read_unaligned(counters);
+        })?;
+        Ok(told)
+    }
+}
+
+impl Clock {
     /// `None` where the device has no timestamps.
-    pub fn new(gpu: &Gpu) -> Option<Timer> {
+    fn new(gpu: &Gpu) -> Option<Clock> {
         if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return None;
         }
@@ -70,42 +174,10 @@ impl Timer {
             count: 2,
         });
         let resolve = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        let read = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
-        Some(Timer {
+        Some(Clock {
             queries,
             resolved: gpu.buffer("dispatch times", TIMES_SIZE, resolve).ok()?,
-            staging: gpu.buffer("dispatch times, read", TIMES_SIZE, read).ok()?,
             period_ns: gpu.queue.get_timestamp_period(),
         })
-    }
-
-    /// For the pass that is to be timed.
-    pub fn writes(&self) -> wgpu::ComputePassTimestampWrites<'_> {
-        wgpu::ComputePassTimestampWrites {
-            query_set: &self.queries,
-            beginning_of_pass_write_index: Some(0),
-            end_of_pass_write_index: Some(1),
-        }
-    }
-
-    /// After the pass.
-    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
-        encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.staging, 0, TIMES_SIZE);
-    }
-
-    /// Waits for the pass and returns what it took.
-    ///
-    /// # Errors
-    /// What the device said.
-    pub fn wait(&self, gpu: &Gpu, submission: wgpu::SubmissionIndex) -> Result<Duration, String> {
-        let mut times = [0_u64; 2];
-        mapped(gpu, &self.staging, TIMES_SIZE, submission, |bytes| {
-            for (time, eight) in times.iter_mut().zip(bytes.chunks_exact(8)) {
-                *time = eight.try_into().map_or(0, u64::from_le_bytes);
-            }
-        })?;
-        let ticks = times[1].saturating_sub(times[0]);
-        Ok(Duration::from_secs_f64(ticks as f64 * f64::from(self.period_ns) * 1e-9))
     }
 }

@@ -2,17 +2,40 @@
 //!
 //! Twin: shaders/record.wgsl
 
+use super::layout::ASIDE_STRIDE;
 use super::shader_source::{RECORD_HEADER, RECORD_STRIDE};
 use crate::film::PixelSum;
 use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use crate::tables::NONE;
 use glam::DVec3;
 
+/// Words before those in which the path is put aside.
+pub fn first_aside(max_depth: u32) -> usize {
+    RECORD_HEADER + RECORD_STRIDE * max_depth as usize
+}
+
 /// Words that the path at `pixel` needs, with what the shader must know in them.
 pub fn words_for([x, y]: [u32; 2], max_depth: u32) -> Vec<u32> {
-    let mut words = vec![0; RECORD_HEADER + RECORD_STRIDE * max_depth as usize];
+    let mut words = vec![0; first_aside(max_depth) + ASIDE_STRIDE as usize];
     words[..2].copy_from_slice(&[x, y]);
     words
+}
+
+/// Whether the path was put aside. Its words are then made ready for the shader to go on with it; `None` if it has not
+/// got on since `rays` were recorded.
+pub fn is_aside(words: &mut [u32], [x, y]: [u32; 2], max_depth: u32, rays: &mut u32) -> Option<bool> {
+    // The word that is 0 where nothing was put aside.
+    const STATE: usize = 11;
+    if words.get(first_aside(max_depth) + STATE).is_none_or(|state| *state == 0) {
+        return Some(false);
+    }
+    let recorded = words.first().copied().unwrap_or_default();
+    if recorded == *rays {
+        return None;
+    }
+    *rays = recorded;
+    words.get_mut(..3)?.copy_from_slice(&[x, y, recorded]);
+    Some(true)
 }
 
 /// The path that the words tell. `scene_index` turns a sphere's number into its index in the scene; positions are

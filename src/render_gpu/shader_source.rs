@@ -1,6 +1,6 @@
 //! The shaders' text: constants that live in Rust, then the files in the order in which they use each other.
 
-use super::layout::{ROOTS_MASK, UNDER_EYE, UNIFORM_ANCHORED, UNIFORM_SPHERES, WORKGROUP_SIZE};
+use super::layout::{ASIDE_STRIDE, ROOTS_MASK, UNDER_EYE, UNIFORM_ANCHORED, UNIFORM_SPHERES, WORKGROUP_SIZE};
 use super::overrides::{Constant, Overrides};
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
@@ -63,7 +63,7 @@ impl EntryPoint {
 }
 
 /// The functions and bindings that all entry points share.
-const SHARED: [&str; 10] = [
+const SHARED: [&str; 11] = [
     include_str!("../../shaders/lanes.wgsl"),
     include_str!("../../shaders/rng.wgsl"),
     include_str!("../../shaders/camera.wgsl"),
@@ -73,6 +73,7 @@ const SHARED: [&str; 10] = [
     include_str!("../../shaders/bindings.wgsl"),
     include_str!("../../shaders/material.wgsl"),
     include_str!("../../shaders/path.wgsl"),
+    include_str!("../../shaders/aside.wgsl"),
     include_str!("../../shaders/record.wgsl"),
 ];
 
@@ -140,6 +141,7 @@ pub fn prelude() -> String {
     unsigned("UNIFORM_ANCHORED", UNIFORM_ANCHORED as u32);
     unsigned("STACK_SIZE", STACK_SIZE as u32);
     unsigned("CWBVH_STACK_SIZE", CWBVH_STACK_SIZE as u32);
+    unsigned("ASIDE_STRIDE", ASIDE_STRIDE);
     unsigned("PROBE_STRIDE", PROBE_STRIDE as u32);
     unsigned("RECORD_HEADER", RECORD_HEADER as u32);
     unsigned("RECORD_STRIDE", RECORD_STRIDE as u32);

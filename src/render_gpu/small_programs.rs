@@ -1,13 +1,13 @@
 //! What the device runs besides tracing: the film as a picture, small functions for tests, one recorded path.
 
-use super::dispatches::groups;
+use super::dispatches::{self, groups};
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
 use super::layout::{GpuDispatch, WORKGROUP_SIZE};
 use super::prepared::Prepared;
 use super::schedule::Blocks;
 use super::shader_source::{EntryPoint, PROBE_STRIDE, Probe, transfer_tag};
-use super::{GpuRenderer, Overrides, failed, readback, record};
+use super::{GpuRenderer, Overrides, TURN_LIMIT, failed, readback, record};
 use crate::film::Film;
 use crate::record::PathRecord;
 use crate::render::{RenderError, RenderJob};
@@ -78,18 +78,28 @@ impl GpuRenderer {
             let settings = job.settings();
             let (blocks, _) =
                 Blocks::of_range(index..index + 1, settings, prepared.scene.tables.block_limit).take(1);
-            let order = GpuDispatch {
+            let mut order = GpuDispatch {
                 block_count: blocks.len() as u32,
-                // One turn besides to start the path.
-                ray_limit: settings.max_depth + 1,
+                turn_limit: TURN_LIMIT,
                 row_count: buffers.slabs.first().map_or(0, |slab| slab.row_count),
+                first_aside: record::first_aside(settings.max_depth) as u32,
                 ..GpuDispatch::default()
             };
             this.gpu.queue.write_buffer(&buffers.blocks, 0, bytemuck::cast_slice(&blocks));
-            this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
-            let words = record::words_for(pixel, settings.max_depth);
-            let words = this.run(prepared, &buffers, &kernel, &words, 1)?;
-            Ok(record::from_words(&words, &prepared.scene.scene_index, prepared.scene.tables.origin))
+            let mut words = record::words_for(pixel, settings.max_depth);
+            let mut rays = 0;
+            loop {
+                this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
+                words = this.run(prepared, &buffers, &kernel, &words, 1)?;
+                match record::is_aside(&mut words, pixel, settings.max_depth, &mut rays) {
+                    Some(true) => order.resumes = 1,
+                    Some(false) => {
+                        let (index, origin) = (&prepared.scene.scene_index, prepared.scene.tables.origin);
+                        return Ok(record::from_words(&words, index, origin));
+                    }
+                    None => return Err(failed(dispatches::stuck(1))),
+                }
+            }
         })
     }
 

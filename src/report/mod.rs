@@ -16,6 +16,7 @@ use crate::cli::{JsonTarget, ReferenceChoice, ReportOptions};
 use crate::console;
 use crate::failure::{Failure, INTERRUPTED};
 use crate::film::{Film, check_writable, write_text};
+use crate::input;
 use crate::interrupt::Interrupt;
 use crate::recipe::{Recipe, plain_name};
 use crate::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
@@ -23,7 +24,8 @@ use crate::terminal::{print, write_json};
 use anyhow::{Context, Result};
 use calibration::Calibration;
 use contender::{Contender, Limits};
-use data::{Curve, Data, SCHEMA, Settings};
+pub use data::Data;
+use data::{Curve, SCHEMA, Settings};
 use progress::Progress;
 use reference::Reference;
 use serde::Serialize;
@@ -277,9 +279,20 @@ fn settings(options: &ReportOptions) -> Settings {
     }
 }
 
+/// Reads what a report has measured, as `report.json` holds it.
+///
+/// # Errors
+/// What is wrong, with its place.
+pub fn parse(json: &[u8]) -> Result<Data, serde_json::Error> {
+    serde_json::from_slice(json)
+}
+
+/// Most bytes of a report that is gone on with.
+const REPORT_LIMIT: u64 = 64 << 20;
+
 /// What is in `path`, if it was measured with the same settings.
 fn resumed(path: &Path, settings: &Settings) -> Option<Data> {
-    let data: Data = serde_json::from_str(&std::fs::read_to_string(path).ok()?).ok()?;
+    let data = parse(&input::read(path, "a report", REPORT_LIMIT).ok()?).ok()?;
     (data.schema == SCHEMA && data.settings == *settings).then_some(data)
 }
 

@@ -127,7 +127,7 @@ mod tests {
     fn the_page_shows_what_was_rendered() {
         let directory = tempfile::tempdir().unwrap();
         let case = cases().iter().find(|case| case.id == "scaled/1e-3").unwrap();
-        let mut backend = Backend::new("cpu", BackendChoice::fallback());
+        let mut backend = Backend::new("cpu", BackendChoice::Cpu(crate::render_cpu::CpuOptions::default()));
         write_pictures(directory.path(), case, &mut backend, &AtomicBool::new(false)).unwrap();
         let report = Report {
             schema: 1,

@@ -156,8 +156,9 @@ pub fn widest() -> CpuRenderer {
 }
 
 pub fn packets(isa: Isa, lanes: usize) -> CpuRenderer {
-    CpuRenderer::new(CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: THREADS, gives_way: false })
-        .unwrap()
+    let options =
+        CpuOptions { isa: Some(isa), lanes: Some(lanes), threads: THREADS, ..CpuOptions::default() };
+    CpuRenderer::new(options).unwrap()
 }
 
 /// Scalar `f32` without fused multiply and add: every processor has it.

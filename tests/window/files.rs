@@ -32,7 +32,7 @@ fn rendered_again(path: &Path) -> Vec<u8> {
     let samples = description.get("Samples").unwrap().parse().unwrap();
     let mut progressive = Progressive::spawn().unwrap();
     let job = recipe.job().unwrap();
-    let backend = weekender::backends::BackendChoice::fallback();
+    let backend = weekender::backends::BackendChoice::Cpu(weekender::render_cpu::CpuOptions::default());
     progressive.start(Work::new(job, backend, Plan::samples(samples)));
     progressive.wait_until_over();
     progressive.finish().unwrap().to_rgb8(recipe.rules.transfer)

@@ -1,23 +1,22 @@
 //! What can be wrong with a scene file, with the line where it is.
 
+use crate::input::InputError;
+use crate::memory::MemoryError;
 use crate::recipe::{SamplesError, SceneNameError};
 use crate::render::JobError;
 use std::ops::Range;
-use std::path::PathBuf;
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
 /// A scene file that cannot be used. The message names the file, the line and what to do.
 #[derive(Debug, Error)]
 pub enum FileError {
-    /// The system would not hand it over.
-    #[error("cannot read the scene file {}: {reason}; check its name and whether you may read it", path.display())]
-    Unreadable {
-        /// Where it should be.
-        path: PathBuf,
-        /// What the system said.
-        reason: std::io::Error,
-    },
+    /// The system would not hand it over, or it is no scene file.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// There is no memory to read it.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
     /// Not UTF-8.
     #[error(
         "{name}:{line}: this is no text in UTF-8, as a scene file must be; save it as such, or give a .toml file"

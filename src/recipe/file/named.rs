@@ -1,6 +1,7 @@
 //! Built-in scenes that a file names in place of their spheres.
 
-use crate::scene::builtin::{FIELD_COUNT_LIMITS, field};
+use crate::film::Checksum;
+use crate::scene::builtin::is_field;
 use crate::scene::{Material, Scene};
 use glam::DVec3;
 
@@ -11,20 +12,14 @@ const NAMED_FROM: usize = 10_000;
 /// The name of the built-in field that the scene is, to the bit, if it is so large that it is named.
 pub(super) fn name_of(scene: &Scene) -> Option<String> {
     let count = scene.spheres.len().checked_sub(1).filter(|count| *count >= NAMED_FROM)? as u64;
-    let is_field = FIELD_COUNT_LIMITS.contains(&count) && field(count).0 == *scene;
-    is_field.then(|| format!("field:{count}"))
+    is_field(scene, count).then(|| format!("field:{count}"))
 }
 
-/// A mark of all that a scene holds, by which another is told from it: FNV-1a over names and the bits of numbers.
+/// A mark of all that a scene holds, by which another is told from it: of names and the bits of numbers.
 pub(super) fn mark(scene: &Scene) -> String {
-    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut word = |word: u64| {
-        hash = (hash ^ word).wrapping_mul(0x0000_0100_0000_01b3);
-        // The product carries upwards only.
-        hash ^= hash >> 32;
-    };
+    let mut sum = Checksum::default();
     let vector = |v: DVec3| v.to_array().map(f64::to_bits);
-    let mut add = |words: &[u64]| words.iter().for_each(|w| word(*w));
+    let mut add = |words: &[u64]| sum.words(words);
     add(&vector(scene.sky.bottom));
     add(&vector(scene.sky.top));
     for named in &scene.materials {
@@ -39,12 +34,13 @@ pub(super) fn mark(scene: &Scene) -> String {
         add(&vector(sphere.center));
         add(&[sphere.radius.to_bits(), sphere.material as u64]);
     }
-    format!("{hash:016x}")
+    sum.finish()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::builtin::field;
     use crate::stages::Stage;
 
     #[test]

@@ -2,6 +2,8 @@
 
 use super::error::{FileError, Reason, Step, find_place, line_and_column};
 use super::named;
+use crate::input;
+use crate::memory;
 use crate::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::render::{DEPTH_LIMIT, JobError, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::scene::{Camera, Material, Scene, SceneError, Sky};
@@ -15,14 +17,20 @@ use std::path::Path;
 use std::sync::Arc;
 use toml::Spanned;
 
+/// Most bytes of a scene file: ten million spheres take about as many.
+const FILE_LIMIT: u64 = 1 << 30;
+
+/// What a value, key or line of a scene file takes while it is read, at most: measured with listed spheres, which take
+/// the most, and with the shortest values.
+const VALUE_BYTES: u64 = 260;
+
 /// Reads a scene file; the recipe has the name of the file without its ending.
 ///
 /// # Errors
 /// [`FileError`] for a file that cannot be read, is malformed, or of which no picture can be made.
 pub fn load(path: &Path) -> Result<Recipe, FileError> {
     let label = path.display().to_string();
-    let bytes =
-        std::fs::read(path).map_err(|reason| FileError::Unreadable { path: path.to_owned(), reason })?;
+    let bytes = input::read(path, "a scene file", FILE_LIMIT)?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
@@ -37,6 +45,13 @@ pub fn load(path: &Path) -> Result<Recipe, FileError> {
 /// # Errors
 /// [`FileError`] for a text that is malformed or of which no picture can be made.
 pub fn parse(text: &str, name: &str) -> Result<Recipe, FileError> {
+    let values = text.bytes().filter(|byte| b",=[{\n".contains(byte)).count() as u64;
+    let bytes = text.len() as u64 + VALUE_BYTES * values;
+    memory::check(
+        || format!("reading {name}"),
+        bytes,
+        "use a scene of fewer spheres, or close other programs",
+    )?;
     let raw: RawFile = toml::from_str(text).map_err(|error| {
         let (line, column) = line_and_column(text, error.span().map_or(0, |span| span.start));
         FileError::Malformed { name: name.to_owned(), line, column, message: in_toml_words(error.message()) }

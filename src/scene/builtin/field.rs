@@ -1,7 +1,7 @@
 //! A field of any number of spheres, for measuring how time grows with them.
 
 use super::random::{Draws, to_four_decimals};
-use crate::scene::{Camera, Material, Scene};
+use crate::scene::{Camera, Material, Scene, Sphere};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
@@ -25,29 +25,12 @@ const CELL: f64 = 1.0;
 /// memory (40 bytes each) are in proportion to it.
 pub fn field(count: u64) -> (Scene, Camera) {
     let count = count.clamp(*FIELD_COUNT_LIMITS.start(), *FIELD_COUNT_LIMITS.end());
-    let columns = (count as f64).sqrt().ceil() as u64;
-    let half_width = 0.5 * CELL * columns as f64;
-    // So wide that the field is a gently curved part of it.
-    let ground_radius = (100.0 * half_width).max(1000.0);
-    let ground_center = DVec3::new(0.0, -ground_radius, 0.0);
-
-    let mut scene = Scene::default();
-    let ground = scene.add_material("ground", Material::Lambertian { albedo: DVec3::new(0.45, 0.44, 0.42) });
-    scene.add_sphere(ground_center, ground_radius, ground);
-    add_palette(&mut scene);
+    let ground = Ground::of(count);
+    let mut scene = ground.bare_scene();
     scene.spheres.reserve_exact(count as usize);
+    scene.spheres.extend((0..count).map(|index| ground.sphere(index)));
 
-    for index in 0..count {
-        let mut draws = Draws::new(SEED, index);
-        let radius = to_four_decimals(draws.within(0.18, 0.42));
-        let room = 0.5 * CELL - radius;
-        let mut along = |cell: u64| (cell as f64 + 0.5) * CELL - half_width + draws.within(-room, room);
-        let (x, z) = (along(index % columns), along(index / columns));
-        let toward = DVec3::new(x, ground_radius, z).normalize();
-        let center = (ground_center + (ground_radius + radius) * toward).map(to_four_decimals);
-        scene.add_sphere(center, radius, 1 + palette_index(x, z, &mut draws));
-    }
-
+    let half_width = ground.half_width;
     // The middle ground stays in view while the far edge recedes.
     let height = 3.0 * (half_width / 16.0).sqrt().max(0.5);
     let camera = Camera {
@@ -57,6 +40,59 @@ pub fn field(count: u64) -> (Scene, Camera) {
         ..Camera::BOOK
     };
     (scene, camera)
+}
+
+/// Whether a scene is the [`field`] of `count` spheres, to the bit. It takes no memory.
+pub fn is_field(scene: &Scene, count: u64) -> bool {
+    if !FIELD_COUNT_LIMITS.contains(&count) || scene.spheres.len() as u64 != count + 1 {
+        return false;
+    }
+    let ground = Ground::of(count);
+    let bare = ground.bare_scene();
+    (&scene.materials, scene.sky, scene.spheres[0]) == (&bare.materials, bare.sky, bare.spheres[0])
+        && scene.spheres[1..].iter().copied().eq((0..count).map(|index| ground.sphere(index)))
+}
+
+/// What the spheres of a field stand on.
+struct Ground {
+    /// Cells in a row.
+    columns: u64,
+    /// Half the field's side, scene units.
+    half_width: f64,
+    radius: f64,
+    center: DVec3,
+}
+
+impl Ground {
+    fn of(count: u64) -> Self {
+        let columns = (count as f64).sqrt().ceil() as u64;
+        let half_width = 0.5 * CELL * columns as f64;
+        // So wide that the field is a gently curved part of it.
+        let radius = (100.0 * half_width).max(1000.0);
+        Ground { columns, half_width, radius, center: DVec3::new(0.0, -radius, 0.0) }
+    }
+
+    /// All materials, and the ground alone.
+    fn bare_scene(&self) -> Scene {
+        let mut scene = Scene::default();
+        let ground =
+            scene.add_material("ground", Material::Lambertian { albedo: DVec3::new(0.45, 0.44, 0.42) });
+        scene.add_sphere(self.center, self.radius, ground);
+        add_palette(&mut scene);
+        scene
+    }
+
+    /// The small sphere in the cell `index`.
+    fn sphere(&self, index: u64) -> Sphere {
+        let mut draws = Draws::new(SEED, index);
+        let radius = to_four_decimals(draws.within(0.18, 0.42));
+        let room = 0.5 * CELL - radius;
+        let mut along = |cell: u64| (cell as f64 + 0.5) * CELL - self.half_width + draws.within(-room, room);
+        let (x, z) = (along(index % self.columns), along(index / self.columns));
+        let toward = DVec3::new(x, self.radius, z).normalize();
+        let center = (self.center + (self.radius + radius) * toward).map(to_four_decimals);
+        Sphere { center, radius, material: 1 + palette_index(x, z, &mut draws) }
+    }
 }
 
 fn add_palette(scene: &mut Scene) {

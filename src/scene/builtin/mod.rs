@@ -10,7 +10,7 @@ pub use chapters::{
     LeftSphere, empty, matte_on_ground, metals, one_sphere, three_spheres, touching_spheres,
     view_from_the_side,
 };
-pub use field::{FIELD_COUNT_LIMITS, field};
+pub use field::{FIELD_COUNT_LIMITS, field, is_field};
 
 use super::{Camera, Scene};
 use std::fmt;

@@ -1,0 +1,115 @@
+//! What a film file says of its sums, and the checksums.
+
+use super::{Checksum, Description, Film, FilmError, PixelSum, SampleRanges, VERSION};
+use serde::{Deserialize, Serialize};
+
+/// What a film file says of its sums.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Head {
+    pub version: u32,
+    pub width: u32,
+    pub height: u32,
+    pub halves: usize,
+    pub samples: Vec<[u64; 2]>,
+    pub rejected: u64,
+    /// Of what stands above and of the texts.
+    pub head_checksum: String,
+    /// Of the same, and of all sums.
+    pub checksum: String,
+}
+
+/// What stands in a file beside its head and its pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Texts<'a> {
+    pub recipe: &'a [u8],
+    pub comments: &'a [u8],
+}
+
+impl Head {
+    /// The head of a film with these texts.
+    pub fn of(film: &Film, texts: Texts) -> Self {
+        let mut head = Head {
+            version: VERSION,
+            width: film.width(),
+            height: film.height(),
+            halves: film.halves().len(),
+            samples: film.samples().iter().map(|range| [range.start, range.end]).collect(),
+            rejected: film.rejected(),
+            head_checksum: String::new(),
+            checksum: String::new(),
+        };
+        head.seal(texts, film.halves());
+        head
+    }
+
+    /// Sets the checksums.
+    pub fn seal(&mut self, texts: Texts, halves: &[Vec<PixelSum>]) {
+        let sum = self.sum(texts);
+        self.head_checksum = sum.finish();
+        self.checksum = with_sums(sum, halves);
+    }
+
+    /// Reads a head.
+    ///
+    /// # Errors
+    /// Its version, if it has another, or else what is wrong.
+    pub fn read(text: &str) -> Result<Self, HeadError> {
+        let damaged = |what: &str| HeadError::Damaged(what.to_owned());
+        // The version first: another one may say other things.
+        let table: toml::Table = text.parse().map_err(|_| damaged("its head cannot be read"))?;
+        let version = table.get("version").and_then(toml::Value::as_integer);
+        match version.ok_or_else(|| damaged("its head has no version"))? {
+            version if version == i64::from(VERSION) => {}
+            version => return Err(HeadError::Version(version)),
+        }
+        let head: Head = table.try_into().map_err(|error: toml::de::Error| {
+            HeadError::Damaged(format!("its head cannot be read: {}", error.message()))
+        })?;
+        if !(1..=2).contains(&head.halves) {
+            return Err(HeadError::Damaged(format!("{} halves, where there are 1 or 2", head.halves)));
+        }
+        Ok(head)
+    }
+
+    /// Whether head and texts are those that were written.
+    pub fn is_whole(&self, texts: Texts) -> bool {
+        self.sum(texts).finish() == self.head_checksum
+    }
+
+    /// Whether the sums are those that were written.
+    pub fn has_sums(&self, texts: Texts, halves: &[Vec<PixelSum>]) -> bool {
+        with_sums(self.sum(texts), halves) == self.checksum
+    }
+
+    /// The samples that the film holds.
+    pub fn ranges(&self) -> Result<SampleRanges, FilmError> {
+        SampleRanges::from_ranges(self.samples.iter().map(|[start, end]| *start..*end))
+    }
+
+    fn sum(&self, texts: Texts) -> Checksum {
+        let mut sum = Checksum::default();
+        sum.words(&[self.version.into(), self.width.into(), self.height.into(), self.halves as u64]);
+        sum.words(&[self.rejected, self.samples.len() as u64]);
+        self.samples.iter().for_each(|range| sum.words(range));
+        sum.text(texts.recipe);
+        sum.text(texts.comments);
+        sum
+    }
+}
+
+fn with_sums(mut sum: Checksum, halves: &[Vec<PixelSum>]) -> String {
+    halves.iter().flatten().for_each(|pixel| sum.words(&pixel.0));
+    sum.finish()
+}
+
+/// The lines of a description as they stand in a file.
+pub(super) fn comments(description: &Description) -> String {
+    description.lines().map(|line| line + "\n").collect()
+}
+
+/// A head that cannot be used.
+pub(super) enum HeadError {
+    Version(i64),
+    Damaged(String),
+}

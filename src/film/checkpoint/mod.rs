@@ -1,0 +1,216 @@
+//! Film files: an OpenEXR picture that any viewer opens, and in it the exact sums, so that the same file is
+//! picture, checkpoint and part to be merged.
+//!
+//! One part, scan lines, lossless. Channels `R`, `G`, `B` (float) are the mean. Channels `sum.a.R.lo`,
+//! `sum.a.R.hi` and so on (32-bit unsigned) are the low and high words of each half's sums. Three texts go with
+//! them: `comments` has the description's lines, `weekenderRecipe` the recipe, `weekenderFilm` what [`Head`]
+//! says.
+//!
+//! Nothing that is read can change unnoticed: one checksum covers the texts and all numbers of the head, another these
+//! and the sums, and the mean is held against the sums. What a flipped bit may leave without notice says nothing of
+//! the film: the standard attributes that other programs read (the program's name, the window's place, the aspect of
+//! a pixel), and spaces.
+
+mod head;
+mod read;
+mod write;
+
+pub(crate) use read::{check_length, read_description};
+pub use read::{load, read};
+pub use write::save;
+pub(crate) use write::write;
+
+use super::{Checksum, Description, Film, FilmError, PixelSum, SampleRanges, WriteError, replace_file};
+use crate::input::InputError;
+use crate::memory::MemoryError;
+use exr::prelude::SampleType;
+use std::path::PathBuf;
+
+/// The version of what is in a film file beyond the picture, and of the numbers that its samples are made from: films
+/// of other numbers are neither resumed nor merged.
+pub const VERSION: u32 = 3;
+
+/// How an OpenEXR file begins.
+pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+
+const FILM_ATTRIBUTE: &str = "weekenderFilm";
+const RECIPE_ATTRIBUTE: &str = "weekenderRecipe";
+
+/// What a film file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilmFile {
+    /// The sums.
+    pub film: Film,
+    /// The recipe of the film's job, and what else is said of it.
+    pub description: Description,
+}
+
+/// A file that is no film.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+pub enum CheckpointError {
+    /// The file cannot be read.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// Another kind of file.
+    #[error("{} is no EXR file; a film is kept in a file that ends in .exr", path.display())]
+    NotExr {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A plain picture.
+    #[error(
+        "{} is a picture without the sums of its samples, so nothing can be added to it; only an .exr file that Weekender wrote has them",
+        path.display()
+    )]
+    NotFilm {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Written by another version.
+    #[error(
+        "{} holds a film of version {version}, but this program reads version {VERSION}; go on with the program that wrote it, or render it again",
+        path.display()
+    )]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        version: i64,
+    },
+    /// Something in it is missing or was changed.
+    #[error("{} is damaged: {what}; use an earlier copy or render it again", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+    /// There is no memory for it.
+    #[error("cannot read {}: {reason}", path.display())]
+    Memory {
+        /// The file.
+        path: PathBuf,
+        /// What it needs, and what there is.
+        reason: MemoryError,
+    },
+}
+
+/// What a channel holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Plane {
+    Mean { colour: usize },
+    Sum { half: usize, colour: usize, shift: u32 },
+}
+
+impl Plane {
+    /// All that a film of `half_count` halves has, with their names.
+    fn all(half_count: usize) -> Vec<(String, Plane)> {
+        let mut planes = Vec::new();
+        for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
+            planes.push((name.to_owned(), Plane::Mean { colour }));
+            for (half, half_name) in ["a", "b"].into_iter().enumerate().take(half_count) {
+                for (shift, word) in [(0, "lo"), (32, "hi")] {
+                    planes
+                        .push((format!("sum.{half_name}.{name}.{word}"), Plane::Sum { half, colour, shift }));
+                }
+            }
+        }
+        planes
+    }
+
+    fn sample_type(self) -> SampleType {
+        match self {
+            Plane::Mean { .. } => SampleType::F32,
+            Plane::Sum { .. } => SampleType::U32,
+        }
+    }
+}
+
+/// The mean of `sum` as the picture has it. `unit` is [`Film::fixed_point_of_1`].
+fn mean(sum: u64, unit: f64) -> f32 {
+    (sum as f64 / unit) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::head::{Head, Texts};
+    use super::write::write_with;
+    use super::*;
+    use crate::film::SIZE_LIMIT;
+    use std::io::Cursor;
+    use std::path::Path;
+
+    const TEXTS: Texts = Texts { recipe: b"[render]\n", comments: b"Scene: none\n" };
+
+    fn film() -> Film {
+        let mut film = Film::new(4, 3, 2);
+        for (index, sum) in film.halves_mut().iter_mut().flatten().enumerate() {
+            sum.0 = [index as u64 * 0x1000_0001; 3];
+        }
+        film.record(0..10, 1).unwrap();
+        film
+    }
+
+    /// A film file of which all is whole but what `change` does.
+    fn file(change: impl FnOnce(&mut Head)) -> Vec<u8> {
+        let film = film();
+        let mut head = Head::of(&film, TEXTS);
+        change(&mut head);
+        head.seal(TEXTS, film.halves());
+        let mut file = Cursor::new(Vec::new());
+        write_with(&film, TEXTS, &head, &mut file).unwrap();
+        file.into_inner()
+    }
+
+    fn opened(bytes: &[u8]) -> Result<FilmFile, CheckpointError> {
+        read(Cursor::new(bytes), bytes.len() as u64, Path::new("x.exr"))
+    }
+
+    #[test]
+    fn a_head_that_was_made_up_is_refused_whatever_its_checksum() {
+        assert_eq!(opened(&file(|_| {})).unwrap().film, film());
+        let refused = |change: fn(&mut Head), part: &str| {
+            let told = opened(&file(change)).unwrap_err().to_string();
+            assert!(told.contains("x.exr is damaged") && told.contains(part), "{part}: {told}");
+        };
+        refused(|head| head.samples = vec![[0, 1 << 62]], "0..4611686018427387904");
+        refused(|head| head.samples = vec![[0, 5], [1 << 32, (1 << 32) + 5]], "4294967296");
+        refused(|head| head.samples = vec![[7, 7]], "7..7");
+        refused(|head| head.samples = vec![[9, 3]], "9..3");
+        refused(|head| head.samples = vec![[0, 6], [4, 10]], "samples 4..6 are already");
+        refused(|head| head.samples = vec![[0, 20]], "the picture is not that of the sums");
+        refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
+        refused(|head| head.rejected = 121, "121 samples rejected");
+        refused(|head| head.halves = 3, "3 halves");
+        refused(|head| head.halves = 1, "is of no film");
+        refused(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
+    }
+
+    #[test]
+    fn ranges_may_stand_in_any_order_and_touch() {
+        let bytes = file(|head| head.samples = vec![[5, 10], [0, 3], [3, 5]]);
+        assert_eq!(opened(&bytes).unwrap().film, film());
+    }
+
+    /// The file with other bytes behind an attribute's name, type and length.
+    fn with_attribute(mut bytes: Vec<u8>, name: &[u8], offset: usize, value: i32) -> Vec<u8> {
+        let place = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len() + 4;
+        bytes[place + offset..place + offset + 4].copy_from_slice(&value.to_le_bytes());
+        bytes
+    }
+
+    #[test]
+    fn a_file_that_is_too_short_for_its_size_is_refused_before_memory_is_taken() {
+        let claim = |side: u32| {
+            let bytes = file(|head| (head.width, head.height) = (side, side));
+            let bytes = with_attribute(bytes, b"chunkCount\0int\0", 0, side as i32);
+            let last = side as i32 - 1;
+            let bytes = with_attribute(bytes, b"dataWindow\0box2i\0", 8, last);
+            opened(&with_attribute(bytes, b"dataWindow\0box2i\0", 12, last)).unwrap_err().to_string()
+        };
+        let told = claim(SIZE_LIMIT);
+        assert!(told.contains("bytes, but 16384x16384 pixels of 60 bytes take at least"), "{told}");
+        let told = claim(20_000);
+        assert!(told.contains("a size of 20000x20000, where each side has 1 to 16384"), "{told}");
+    }
+}

@@ -1,0 +1,119 @@
+//! Writing a film file.
+
+use super::head::{Head, Texts, comments};
+use super::{Description, FILM_ATTRIBUTE, Film, Plane, RECIPE_ATTRIBUTE, WriteError, mean, replace_file};
+use exr::block::writer::ChunksWriter;
+use exr::block::{BlockIndex, UncompressedBlock};
+use exr::meta::BlockDescription;
+use exr::meta::header::Header;
+use exr::prelude::{AttributeValue, ChannelDescription, Compression, LineOrder, MetaData, SmallVec, Text};
+use std::io::{self, Seek, Write};
+use std::path::Path;
+
+/// Writes a film file in place of `path`. Beside the film it takes the memory of one row.
+///
+/// # Errors
+/// [`WriteError`]; the file that was there is then as it was.
+pub fn save(path: &Path, film: &Film, description: &Description) -> Result<(), WriteError> {
+    replace_file(path, |writer| write(film, description, writer))
+}
+
+/// Writes a film file.
+///
+/// # Errors
+/// Those of `writer`.
+pub(crate) fn write(
+    film: &Film,
+    description: &Description,
+    writer: &mut (impl Write + Seek),
+) -> io::Result<()> {
+    let comments = comments(description);
+    let texts = Texts { recipe: description.recipe().as_bytes(), comments: comments.as_bytes() };
+    write_with(film, texts, &Head::of(film, texts), writer)
+}
+
+/// Writes a film file with what `head` says.
+pub(super) fn write_with(
+    film: &Film,
+    texts: Texts,
+    head: &Head,
+    writer: &mut (impl Write + Seek),
+) -> io::Result<()> {
+    let head = toml::to_string(head).map_err(invalid)?;
+    // The format wants channels in the order of their names.
+    let mut planes = Plane::all(film.halves().len());
+    planes.sort_by(|a, b| a.0.cmp(&b.0));
+    let channels: SmallVec<[ChannelDescription; 5]> = planes
+        .iter()
+        .map(|(name, plane)| ChannelDescription::new(text(name.as_bytes()), plane.sample_type(), false))
+        .collect();
+    let size = (film.width() as usize, film.height() as usize);
+    // RLE drops the empty high words and leaves the low ones, which are noise: ZIP takes many times as long for
+    // little.
+    let mut header = Header::new(text(b"Weekender"), size, channels).with_encoding(
+        Compression::RLE,
+        BlockDescription::ScanLines,
+        LineOrder::Increasing,
+    );
+    header.own_attributes.software_name =
+        Some(text(concat!("Weekender ", env!("CARGO_PKG_VERSION")).as_bytes()));
+    header.own_attributes.comments = Some(text(texts.comments));
+    // One in each of the two maps, so that a film always becomes the same bytes.
+    let attribute = |bytes: &[u8]| AttributeValue::Text(text(bytes));
+    header.own_attributes.other.insert(text(FILM_ATTRIBUTE.as_bytes()), attribute(head.as_bytes()));
+    header.shared_attributes.other.insert(text(RECIPE_ATTRIBUTE.as_bytes()), attribute(texts.recipe));
+
+    let mut headers = SmallVec::new();
+    headers.push(header);
+    exr::block::write(writer, headers, true, |meta, chunks| {
+        let mut compressor = chunks.sequential_blocks_compressor(&meta);
+        for (index, block) in meta.collect_ordered_blocks(|index| row_block(film, &planes, &meta, index)) {
+            compressor.compress_block(index, block)?;
+        }
+        Ok(())
+    })
+    .map_err(io_error)
+}
+
+fn row_block(
+    film: &Film,
+    planes: &[(String, Plane)],
+    meta: &MetaData,
+    index: BlockIndex,
+) -> UncompressedBlock {
+    let (width, unit) = (film.width() as usize, film.fixed_point_of_1());
+    let mut data = Vec::with_capacity(index.pixel_size.area() * meta.headers[0].channels.bytes_per_pixel);
+    let first_row = index.pixel_position.y();
+    for row in first_row..first_row + index.pixel_size.y() {
+        let pixels = row * width..(row + 1) * width;
+        for (_, plane) in planes {
+            match *plane {
+                Plane::Mean { colour } => data.extend(
+                    pixels.clone().flat_map(|i| mean(film.pixel_sum(i).0[colour], unit).to_ne_bytes()),
+                ),
+                Plane::Sum { half, colour, shift } => data.extend(
+                    film.halves()[half][pixels.clone()]
+                        .iter()
+                        .flat_map(|sum| ((sum.0[colour] >> shift) as u32).to_ne_bytes()),
+                ),
+            }
+        }
+    }
+    UncompressedBlock { index, data }
+}
+
+fn text(text: &[u8]) -> Text {
+    // UTF-8 as it is, which is what current readers expect.
+    Text::from_slice_unchecked(text)
+}
+
+fn invalid(reason: impl ToString) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, reason.to_string())
+}
+
+fn io_error(error: exr::error::Error) -> io::Error {
+    match error {
+        exr::error::Error::Io(error) => error,
+        other => invalid(other),
+    }
+}

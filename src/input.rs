@@ -1,0 +1,155 @@
+//! Files that the program is given: what they are and how long is found out before anything is read.
+
+use crate::memory::words;
+use std::fs::{self, File, FileType};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+/// A file that cannot be read, or not with sense.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+pub enum InputError {
+    /// The system would not hand it over.
+    #[error("cannot read {}: {reason}; check its name and whether you may read it", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+    /// A directory, a device, a pipe.
+    #[error("{} is {kind}, but a file is needed; {remedy}", path.display())]
+    NotFile {
+        /// What was named.
+        path: PathBuf,
+        /// What it is.
+        kind: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
+    /// Longer than anything of its kind.
+    #[error(
+        "{} has {}, but {what} of more than {} is not read; check that it is the right file",
+        path.display(), words(*bytes), words(*limit)
+    )]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+        /// Its length.
+        bytes: u64,
+        /// What it should be.
+        what: &'static str,
+        /// Most bytes of it that are read.
+        limit: u64,
+    },
+}
+
+impl InputError {
+    fn unreadable(path: &Path, reason: impl ToString) -> Self {
+        InputError::Unreadable { path: path.to_owned(), reason: reason.to_string() }
+    }
+}
+
+/// Opens a file and says its length in bytes.
+///
+/// # Errors
+/// [`InputError`]: what is no file is not opened, since some of it never ends and some never begins.
+pub fn open(path: &Path) -> Result<(File, u64), InputError> {
+    let unreadable = |reason: io::Error| InputError::unreadable(path, reason);
+    let found = fs::metadata(path).map_err(unreadable)?;
+    if let Some((kind, remedy)) = no_file(found.file_type()) {
+        return Err(InputError::NotFile { path: path.to_owned(), kind, remedy });
+    }
+    let file = File::open(path).map_err(unreadable)?;
+    let length = file.metadata().map_err(unreadable)?.len();
+    Ok((file, length))
+}
+
+/// What it is and what to do, unless it is a file.
+fn no_file(kind: FileType) -> Option<(&'static str, &'static str)> {
+    let save = "save what it gives and name that";
+    if kind.is_file() {
+        return None;
+    }
+    if kind.is_dir() {
+        return Some(("a directory", "name a file in it"));
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return Some(("a pipe", save));
+        }
+        if kind.is_socket() {
+            return Some(("a socket", save));
+        }
+    }
+    Some(("a device", save))
+}
+
+/// Reads a file of at most `limit` bytes; `what` is what it should be, such as "a scene file".
+///
+/// # Errors
+/// [`InputError`].
+pub fn read(path: &Path, what: &'static str, limit: u64) -> Result<Vec<u8>, InputError> {
+    let (file, length) = open(path)?;
+    let too_long = |bytes| InputError::TooLong { path: path.to_owned(), bytes, what, limit };
+    if length > limit {
+        return Err(too_long(length));
+    }
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(length as usize).map_err(|error| InputError::unreadable(path, error))?;
+    // Some files have a length of 0 and content all the same; others grow.
+    file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| InputError::unreadable(path, error))?;
+    if bytes.len() as u64 > limit {
+        return Err(too_long(bytes.len() as u64));
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_up_to_its_limit() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("ten");
+        fs::write(&path, [7; 10]).unwrap();
+        assert_eq!(read(&path, "a list", 10).unwrap(), [7; 10]);
+        let message = read(&path, "a list", 9).unwrap_err().to_string();
+        assert!(
+            message.ends_with(
+                "has 10 bytes, but a list of more than 9 bytes is not read; check that it is the right file"
+            ),
+            "{message}"
+        );
+        // A file that grows to no end.
+        let sparse = directory.path().join("sparse");
+        File::create(&sparse).unwrap().set_len(1 << 40).unwrap();
+        assert!(
+            matches!(read(&sparse, "a list", 1 << 20), Err(InputError::TooLong { bytes, .. }) if bytes == 1 << 40)
+        );
+    }
+
+    #[test]
+    fn what_is_no_file_is_refused_at_once() {
+        let directory = tempfile::tempdir().unwrap();
+        let kind_of = |path: &Path| match read(path, "a list", 10).unwrap_err() {
+            InputError::NotFile { kind, .. } => kind,
+            other => panic!("{other}"),
+        };
+        assert_eq!(kind_of(directory.path()), "a directory");
+        assert!(matches!(read(&directory.path().join("x"), "a list", 1), Err(InputError::Unreadable { .. })));
+        #[cfg(unix)]
+        {
+            assert_eq!(kind_of(Path::new("/dev/zero")), "a device");
+            let socket = directory.path().join("socket");
+            let _listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+            assert_eq!(kind_of(&socket), "a socket");
+            let pipe = directory.path().join("pipe");
+            let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
+            assert!(made.success());
+            assert_eq!(kind_of(&pipe), "a pipe");
+        }
+    }
+}

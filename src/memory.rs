@@ -1,0 +1,197 @@
+//! Whether something fits into memory, found out before it is asked for: a system that promises more than it has ends
+//! the program in the middle, and an allocation that fails does so, too.
+//!
+//! Whatever takes memory in proportion to a number from outside (films, pictures, scenes) asks [`check`] first, or
+//! takes it by [`filled`].
+
+use std::fs;
+
+/// Something that is too large for this machine.
+#[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
+#[error("{what} needs {} of memory, but {} are free; {remedy}", words(*needed_bytes), words(*free_bytes))]
+pub struct MemoryError {
+    /// What it is for.
+    pub what: String,
+    /// Bytes that it takes, with what the program takes besides.
+    pub needed_bytes: u64,
+    /// Bytes that can be had.
+    pub free_bytes: u64,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+/// A number of bytes in words.
+pub fn words(bytes: u64) -> String {
+    match bytes {
+        0..1_000_000 => format!("{bytes} bytes"),
+        1_000_000..1_000_000_000 => format!("{:.1} MB", bytes as f64 / 1e6),
+        _ => format!("{:.1} GB", bytes as f64 / 1e9),
+    }
+}
+
+/// What everything else takes: program, threads, files.
+const BASE_BYTES: u64 = 64 << 20;
+
+/// Less than this is not worth asking the system for, and [`filled`] notices if it cannot be had.
+const SMALL_BYTES: u64 = 16 << 20;
+
+/// Refuses what does not fit, where the system says how much there is. `what` is what takes `bytes`.
+///
+/// # Errors
+/// [`MemoryError`], with `remedy` as what to do.
+pub fn check(what: impl FnOnce() -> String, bytes: u64, remedy: &'static str) -> Result<(), MemoryError> {
+    if bytes < SMALL_BYTES {
+        return Ok(());
+    }
+    free_bytes().map_or(Ok(()), |free| check_against(what, bytes, free, remedy))
+}
+
+fn check_against(
+    what: impl FnOnce() -> String,
+    bytes: u64,
+    free_bytes: u64,
+    remedy: &'static str,
+) -> Result<(), MemoryError> {
+    let needed_bytes = bytes.saturating_add(BASE_BYTES);
+    if needed_bytes > free_bytes {
+        return Err(MemoryError { what: what(), needed_bytes, free_bytes, remedy });
+    }
+    Ok(())
+}
+
+/// `count` copies of `value`, unless they do not fit.
+///
+/// # Errors
+/// [`MemoryError`], with `remedy` as what to do.
+pub fn filled<T: Clone>(
+    count: usize,
+    value: T,
+    what: impl FnOnce() -> String,
+    remedy: &'static str,
+) -> Result<Vec<T>, MemoryError> {
+    let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
+    let free_bytes = if bytes < SMALL_BYTES { u64::MAX } else { free_bytes().unwrap_or(u64::MAX) };
+    if bytes.saturating_add(BASE_BYTES) <= free_bytes {
+        let mut items = Vec::new();
+        if items.try_reserve_exact(count).is_ok() {
+            items.resize(count, value);
+            return Ok(items);
+        }
+    }
+    Err(MemoryError {
+        what: what(),
+        needed_bytes: bytes.saturating_add(BASE_BYTES),
+        free_bytes: self::free_bytes().unwrap_or(0),
+        remedy,
+    })
+}
+
+/// Bytes that can be had: the least of what the system, the process's group and the process's own limits leave. `None`
+/// where the system does not say.
+pub fn free_bytes() -> Option<u64> {
+    let of_system =
+        fs::read_to_string("/proc/meminfo").ok().and_then(|text| kilobytes(&text, "MemAvailable:"));
+    [of_system, free_of_group(), free_of_process()].into_iter().flatten().min()
+}
+
+/// The value of a line such as `MemAvailable:  2048 kB`, in bytes.
+fn kilobytes(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
+}
+
+/// Address space that the system's allocator sets aside for a thread.
+#[cfg(target_os = "linux")]
+const ARENA_BYTES: u64 = 64 << 20;
+
+/// Threads beside one for each core: those of the program, the render and what it waits for.
+#[cfg(target_os = "linux")]
+const OTHER_THREADS: u64 = 6;
+
+/// What `ulimit -v` and `ulimit -d` leave.
+#[cfg(target_os = "linux")]
+fn free_of_process() -> Option<u64> {
+    use rustix::process::{Resource, getrlimit};
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let left = |resource, used| {
+        let limit = getrlimit(resource).current?;
+        Some(limit.saturating_sub(kilobytes(&status, used)?))
+    };
+    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
+    let arenas = (cores + OTHER_THREADS) * ARENA_BYTES;
+    let addresses = left(Resource::As, "VmSize:").map(|bytes| bytes.saturating_sub(arenas));
+    [addresses, left(Resource::Data, "VmData:")].into_iter().flatten().min()
+}
+
+#[cfg(not(target_os = "linux"))]
+fn free_of_process() -> Option<u64> {
+    None
+}
+
+/// What the limits of the process's control groups leave. Cached files do not count: they make room when need
+/// be.
+fn free_of_group() -> Option<u64> {
+    let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
+    let of_own = groups.lines().filter_map(|line| line.splitn(3, ':').nth(2));
+    // Within a container the own group is the root of what can be seen, whatever its name outside.
+    of_own.chain(["/"]).flat_map(|group| [free_of_group_v2(group), free_of_group_v1(group)]).flatten().min()
+}
+
+fn free_of_group_v2(group: &str) -> Option<u64> {
+    free_of(&format!("/sys/fs/cgroup{group}"), "memory.max", "memory.current")
+}
+
+fn free_of_group_v1(group: &str) -> Option<u64> {
+    free_of(&format!("/sys/fs/cgroup/memory{group}"), "memory.limit_in_bytes", "memory.usage_in_bytes")
+}
+
+fn free_of(directory: &str, limit: &str, used: &str) -> Option<u64> {
+    let read = |name: &str| fs::read_to_string(format!("{directory}/{name}")).ok();
+    let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
+    let cached = read("memory.stat").map_or(0, |stat| file_cache(&stat));
+    Some(number(limit)?.saturating_sub(number(used)?.saturating_sub(cached)))
+}
+
+fn file_cache(stat: &str) -> u64 {
+    let value = |name: &str| {
+        let line = stat.lines().find_map(|line| line.strip_prefix(name))?;
+        line.trim().parse::<u64>().ok()
+    };
+    let sum = |names: [&str; 2]| names.into_iter().filter_map(value).sum::<u64>();
+    // The first version of control groups has sums over subgroups besides.
+    sum(["total_inactive_file ", "total_active_file "]).max(sum(["inactive_file ", "active_file "]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_refused_with_the_numbers_and_a_remedy() {
+        let check = |bytes, free| check_against(|| "a film".to_owned(), bytes, free, "do less");
+        assert_eq!(check(8 << 30, 9 << 30), Ok(()));
+        let message = check(14_000_000_000, 8_000_000_000).unwrap_err().to_string();
+        assert_eq!(message, "a film needs 14.1 GB of memory, but 8.0 GB are free; do less");
+        assert!(check(u64::MAX, u64::MAX - 1).is_err());
+    }
+
+    #[test]
+    fn more_than_there_is_is_not_asked_for() {
+        let fill = |count: usize| filled(count, 7_u64, || "a list".to_owned(), "make it shorter");
+        assert_eq!(fill(3).unwrap(), [7; 3]);
+        for count in [1 << 50, usize::MAX] {
+            let message = fill(count).unwrap_err().to_string();
+            assert!(message.starts_with("a list needs") && message.ends_with("make it shorter"), "{message}");
+        }
+    }
+
+    #[test]
+    fn the_systems_words_are_understood() {
+        let available = |text| kilobytes(text, "MemAvailable:");
+        assert_eq!(available("MemTotal: 9 kB\nMemAvailable:    2048 kB\n"), Some(2 << 20));
+        assert_eq!(available("nothing"), None);
+        assert_eq!(file_cache("anon 5\ninactive_file 10\nactive_file 20\n"), 30);
+        assert_eq!(file_cache("active_file 1\ntotal_inactive_file 7\ntotal_active_file 2\n"), 9);
+        assert_eq!([words(999), words(2_500_000), words(3_000_000_000)], ["999 bytes", "2.5 MB", "3.0 GB"]);
+    }
+}

@@ -1,0 +1,22 @@
+//! Calls of renderers, whose panics are errors like any other, and how a renderer is left that has failed.
+
+use super::render::Backend;
+use crate::render::RenderError;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Runs `work`. A panic is the error of `backend`; the film is as it was, which renderers promise.
+pub(super) fn guarded<T>(
+    backend: &'static str,
+    work: impl FnOnce() -> Result<T, RenderError>,
+) -> Result<T, RenderError> {
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|payload| Err(RenderError::of_panic(backend, payload.as_ref())))
+}
+
+/// Closes a backend that has failed on a thread of its own: a driver that hangs keeps waiting whoever closes it.
+pub(super) fn dismiss(backend: Option<Backend>) {
+    if backend.is_some() {
+        // Without a thread, it is closed here.
+        let _ = std::thread::Builder::new().name("close".to_owned()).spawn(move || drop(backend));
+    }
+}

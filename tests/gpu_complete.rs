@@ -1,0 +1,149 @@
+//! Samples that were asked for are samples that are added: long paths, many samples, loops that a driver ends, and a
+//! device that leaves samples out.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+mod gpu_common;
+
+use glam::DVec3;
+use gpu_common::{cpu, gpu, job_of};
+use std::sync::atomic::AtomicBool;
+use weekender::film::Film;
+use weekender::render::{RenderJob, Renderer, SamplerKind};
+use weekender::render_gpu::{Drill, DrillPoint, Fault, GpuOptions, HierarchyKind, TURN_LIMIT};
+use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
+use weekender::scene::{Camera, Material, Scene, Sky};
+use weekender::stages::{Rules, Surface};
+
+fn go_on() -> AtomicBool {
+    AtomicBool::new(false)
+}
+
+fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Film {
+    let mut film = job.new_film();
+    renderer.accumulate(job, 0..samples, &mut film, &go_on()).unwrap();
+    assert_eq!(film.sample_count(), samples);
+    film
+}
+
+fn picture_mean(film: &Film) -> f64 {
+    let means = film.means();
+    means.iter().flatten().map(|x| f64::from(*x)).sum::<f64>() / (3.0 * means.len() as f64)
+}
+
+/// The turns of all loops of a thread are far beyond what llvmpipe lets them have.
+#[test]
+fn few_pixels_with_many_samples_are_whole() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [4, 4], 50, SamplerKind::Sobol, true);
+    let samples = 2 * u64::from(TURN_LIMIT);
+    let [on_gpu, on_cpu] =
+        [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, samples)));
+    assert!((on_gpu - on_cpu).abs() < 1e-4, "{on_gpu} {on_cpu}");
+}
+
+/// An eye in a closed white ball: no path ends before its last ray, and none brings light.
+fn closed(max_depth: u32) -> RenderJob {
+    let mut scene = Scene { sky: Sky { bottom: DVec3::ONE, top: DVec3::ONE }, ..Scene::default() };
+    let white = scene.add_material("white", Material::Lambertian { albedo: DVec3::ONE });
+    scene.add_sphere(DVec3::new(0.0, 0.0, -0.25), 1.0, white);
+    job_of(&scene, Camera::default(), [5, 3], max_depth, SamplerKind::Independent, false)
+}
+
+#[test]
+fn every_ray_of_the_longest_paths_is_traced() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let job = closed(10_000);
+    let mut film = job.new_film();
+    let stats = gpu.accumulate(&job, 0..8, &mut film, &go_on()).unwrap();
+    assert_eq!((stats.paths, stats.rays), (15 * 8, 15 * 8 * 10_000));
+    assert_eq!((film.rejected(), picture_mean(&film)), (0, 0.0));
+    // So is each that is recorded.
+    assert_eq!(gpu.record_path(&job, [2, 1], 3).unwrap().rays.len(), 10_000);
+}
+
+/// Whether a path is put aside on its way does not show.
+#[test]
+fn paths_that_are_put_aside_give_the_same_film() {
+    let scenes: [(Scene, Camera); 2] = [(BuiltinScene::ALL[0].build)(), (book(), BOOK_CAMERA)];
+    for hierarchy in [HierarchyKind::Bvh2, HierarchyKind::Cwbvh] {
+        let options = GpuOptions { hierarchy, ..GpuOptions::default() };
+        let Some(mut at_once) = gpu(options.clone()) else { return };
+        let mut in_turns = gpu(GpuOptions { turn_limit: Some(1), ..options }).unwrap();
+        for (scene, camera) in &scenes {
+            for (sampler, halves) in [(SamplerKind::Sobol, true), (SamplerKind::Independent, false)] {
+                let job = job_of(scene, *camera, [20, 11], 30, sampler, halves);
+                let expected = rendered(&mut at_once, &job, 5);
+                assert!(rendered(&mut in_turns, &job, 5) == expected, "{hierarchy:?} {sampler:?}");
+            }
+        }
+        assert!(in_turns.report().dispatches > 10 * at_once.report().dispatches);
+    }
+}
+
+/// A list of which a ray has more turns than a dispatch allows is traced ray by ray; one that no loop can go through is
+/// refused.
+#[test]
+fn long_lists_are_whole_or_refused() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let list = |count: u32| {
+        let (mut scene, camera) = (BuiltinScene::ALL[0].build)();
+        let far = scene.add_material("far", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        for i in 0..count {
+            scene.add_sphere(DVec3::new(f64::from(i % 100), 3.0, 40.0 + f64::from(i / 100)), 0.3, far);
+        }
+        let settings = *job_of(&scene, camera, [6, 4], 8, SamplerKind::Sobol, false).settings();
+        let rules = Rules { surface: Surface::Acne, ..Rules::default() };
+        RenderJob::new(scene, camera, settings, rules).unwrap()
+    };
+    let job = list(6000);
+    let [on_gpu, on_cpu] =
+        [&mut gpu as &mut dyn Renderer, &mut cpu()].map(|r| picture_mean(&rendered(r, &job, 4)));
+    assert!((on_gpu - on_cpu).abs() < 0.05, "{on_gpu} {on_cpu}");
+    let job = list(TURN_LIMIT);
+    let outcome = gpu.accumulate(&job, 0..1, &mut job.new_film(), &go_on());
+    if gpu.adapter().is_software {
+        let error = outcome.unwrap_err().to_string();
+        assert!(error.contains("32768") && error.contains("CPU"), "{error}");
+    }
+}
+
+#[test]
+fn samples_that_a_device_leaves_out_are_traced_again() {
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [50, 43], 12, SamplerKind::Sobol, true);
+    let Some(mut good) = gpu(GpuOptions::default()) else { return };
+    let expected = rendered(&mut good, &job, 32);
+    for after in [0, 3, 9] {
+        let drill = Some(Drill { fault: Fault::Short, point: DrillPoint::Dispatch, after });
+        let options = GpuOptions { drill, samples_per_dispatch: Some(2), ..GpuOptions::default() };
+        let mut short = gpu(options.clone()).unwrap();
+        assert!(rendered(&mut short, &job, 32) == expected, "{after}");
+        let said = short.take_messages().join("; ");
+        assert!(said.contains("traced again") && said.contains("samples the device added 0"), "{said}");
+        // From pass to pass, too, whenever it is noticed.
+        let mut short = gpu(options).unwrap();
+        let mut film = job.new_film();
+        for start in [0, 8, 16, 24] {
+            short.advance(&job, start..start + 8, &mut film, &go_on()).unwrap();
+            short.fetch().unwrap();
+        }
+        short.collect(&mut film).unwrap();
+        assert!(film == expected, "{after}");
+    }
+}
+
+#[test]
+fn a_device_that_always_leaves_samples_out_fails() {
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, false);
+    let drill = Some(Drill { fault: Fault::AlwaysShort, point: DrillPoint::Dispatch, after: 2 });
+    let Some(mut short) = gpu(GpuOptions { drill, samples_per_dispatch: Some(1), ..GpuOptions::default() })
+    else {
+        return;
+    };
+    let mut film = job.new_film();
+    let error = short.accumulate(&job, 0..8, &mut film, &go_on()).unwrap_err().to_string();
+    assert!(error.contains("of 144 samples the device added 0") && error.contains("CPU"), "{error}");
+    assert!(film == job.new_film());
+}

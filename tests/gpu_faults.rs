@@ -1,0 +1,94 @@
+//! A device that fails, in each phase of a render: the picture is whole in the end, and the user is told.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+mod gpu_common;
+
+use gpu_common::{gpu, job_of};
+use std::time::Duration;
+use weekender::backends::BackendChoice;
+use weekender::progressive::{EndReason, Phase, Plan, Progressive, Status, Work};
+use weekender::render::{RenderJob, SamplerKind};
+use weekender::render_gpu::{Drill, DrillPoint, Fault, GpuOptions};
+use weekender::scene::builtin::BuiltinScene;
+
+fn job(size: [u32; 2]) -> RenderJob {
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    job_of(&scene, camera, size, 8, SamplerKind::Sobol, true)
+}
+
+/// A backend that fails; `None` without an adapter.
+fn failing(fault: Fault, point: DrillPoint, after: u64) -> Option<BackendChoice> {
+    let adapter = gpu(GpuOptions::default())?.adapter().name.clone();
+    Some(BackendChoice::Gpu(GpuOptions {
+        drill: Some(Drill { fault, point, after }),
+        patience: Duration::from_millis(300),
+        samples_per_dispatch: Some(2),
+        ..GpuOptions::of_adapter(Some(&adapter))
+    }))
+}
+
+fn check(progressive: Progressive, status: &Status, case: &str) {
+    assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{case}: {status:?}");
+    let said = status.messages.join("; ");
+    println!("{case}: {said}");
+    assert!(said.contains("gpu failed") && said.contains("the CPU goes on"), "{case}: {said}");
+    if case.contains("Hang") {
+        assert!(said.contains("has not answered"), "{case}: {said}");
+    }
+    let by_cpu = status.contributions.iter().find(|part| part.backend.name == "cpu");
+    assert!(by_cpu.is_some_and(|part| part.samples_per_pixel > 0), "{case}: {status:?}");
+    assert_eq!(progressive.finish().unwrap().samples().to_string(), "0..64", "{case}");
+}
+
+#[test]
+fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
+    // Memory ends only where the program's does on a software adapter: see tests/gpu_program.rs.
+    for fault in [Fault::Lost, Fault::Invalid, Fault::Hang] {
+        let points = [
+            (DrillPoint::Prepare, 0),
+            (DrillPoint::Dispatch, 0),
+            (DrillPoint::Dispatch, 5),
+            (DrillPoint::Fetch, 0),
+            (DrillPoint::Fetch, 1),
+        ];
+        for (point, after) in points {
+            let Some(backend) = failing(fault, point, after) else { return };
+            let mut progressive = Progressive::spawn().unwrap();
+            progressive.start(Work::new(job([64, 36]), backend, Plan::samples(64)));
+            let status = progressive.wait_until_over();
+            check(progressive, &status, &format!("{fault:?} at {point:?} {after}"));
+        }
+    }
+}
+
+#[test]
+fn a_fault_during_a_pause_is_survived() {
+    for fault in [Fault::Lost, Fault::Hang] {
+        let Some(backend) = failing(fault, DrillPoint::Fetch, 1) else { return };
+        let mut progressive = Progressive::spawn().unwrap();
+        progressive.start(Work::new(job([64, 36]), backend, Plan::samples(64)));
+        // What is on the device is sent for at a pause.
+        for _ in 0..3 {
+            progressive.pause();
+            std::thread::sleep(Duration::from_millis(5));
+            progressive.resume();
+        }
+        let status = progressive.wait_until_over();
+        check(progressive, &status, &format!("{fault:?} in a pause"));
+    }
+}
+
+/// As when the window is resized while the device does not answer.
+#[test]
+fn a_new_job_is_begun_while_the_device_hangs() {
+    let Some(backend) = failing(Fault::Hang, DrillPoint::Dispatch, 5) else { return };
+    let mut progressive = Progressive::spawn().unwrap();
+    for (width, samples) in [(64, 100_000), (50, 100_000), (41, 100_000), (32, 64)] {
+        progressive.start(Work::new(job([width, 20]), backend.clone(), Plan::samples(samples)));
+        std::thread::sleep(Duration::from_millis(60));
+    }
+    let status = progressive.wait_until_over();
+    assert_eq!(status.phase, Phase::Done(EndReason::Samples), "{status:?}");
+    let film = progressive.finish().unwrap();
+    assert_eq!((film.width(), film.sample_count()), (32, 64));
+}

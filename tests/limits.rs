@@ -1,0 +1,197 @@
+//! What is damaged, what claims more than it holds and what does not fit into memory is refused with exit code 2 and
+//! the reason: no panic, no abort, no hang.
+#![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+const WEEKENDER: &str = env!("CARGO_BIN_EXE_weekender");
+
+/// Exit code (`None` after a signal) and what was said, with at most `kilobytes` of address space.
+fn weekender(kilobytes: Option<u64>, arguments: &[&str], directory: &Path) -> (Option<i32>, String) {
+    let limit = kilobytes.map_or_else(|| "unlimited".to_owned(), |kilobytes| kilobytes.to_string());
+    let script = format!("ulimit -v {limit}; exec timeout 60 \"$0\" \"$@\"");
+    let Output { status, stdout, stderr } = Command::new("sh")
+        .args(["-c", &script, WEEKENDER])
+        .args(arguments)
+        .current_dir(directory)
+        .env("RAYON_NUM_THREADS", "2")
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    (status.code(), String::from_utf8_lossy(&[stdout, stderr].concat()).into_owned())
+}
+
+fn render(directory: &Path, arguments: &[&str]) {
+    let usual = ["--batch", "--device", "cpu", "--progress", "off"];
+    let (code, told) = weekender(None, &[&usual[..], arguments].concat(), directory);
+    assert_eq!(code, Some(0), "{told}");
+}
+
+/// All that is refused must say `parts` and exit with 2.
+fn assert_refused(kilobytes: Option<u64>, arguments: &[&str], directory: &Path, parts: &[&str]) {
+    let (code, told) = weekender(kilobytes, arguments, directory);
+    assert_eq!(code, Some(2), "{arguments:?}: {told}");
+    for part in parts {
+        assert!(told.contains(part), "{arguments:?} should say {part:?}: {told}");
+    }
+}
+
+/// Replaces the only place of `old` by `new`, of the same length.
+fn changed(bytes: &[u8], old: &str, new: &str) -> Vec<u8> {
+    assert_eq!(old.len(), new.len());
+    let place = bytes.windows(old.len()).position(|window| window == old.as_bytes()).unwrap();
+    [&bytes[..place], new.as_bytes(), &bytes[place + old.len()..]].concat()
+}
+
+#[test]
+fn a_damaged_film_is_refused_by_all_that_read_films() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    render(at, &["--size", "16x9", "--samples", "4", "--out", "good.exr"]);
+    render(at, &["--size", "16x9", "--sample-range", "8..9", "--out", "other.exr"]);
+    let good = fs::read(at.join("good.exr")).unwrap();
+    // Each is one bit in a digit, and was taken for what it says.
+    let damages = [
+        ("[[0, 4]]", "[[2, 4]]"),
+        ("rejected = 0", "rejected = 1"),
+        ("vfov_degrees = 90.0", "vfov_degrees = 80.0"),
+        ("seed = 0", "seed = 1"),
+        ("max_depth = 24", "max_depth = 25"),
+        ("Samples: 4", "Samples: 5"),
+    ];
+    let middle = good.len() / 2;
+    let mut pixels = good.clone();
+    pixels[middle] ^= 4;
+    let mut damaged: Vec<Vec<u8>> = damages.iter().map(|(old, new)| changed(&good, old, new)).collect();
+    damaged.push(pixels);
+    for bytes in damaged {
+        fs::write(at.join("bad.exr"), bytes).unwrap();
+        let ways: [&[&str]; 6] = [
+            &["compare", "bad.exr", "good.exr"],
+            &["compare", "good.exr", "bad.exr"],
+            &["compare", "bad.exr", "cpu"],
+            &["merge", "bad.exr", "other.exr", "--out", "sum.exr"],
+            &["merge", "other.exr", "bad.exr", "--out", "sum.exr"],
+            &["--batch", "--resume", "bad.exr", "--samples", "6", "--out", "more.exr"],
+        ];
+        for way in ways {
+            assert_refused(None, way, at, &["bad.exr is damaged", "use an earlier copy"]);
+        }
+    }
+    fs::write(at.join("bad.exr"), changed(&good, "seed = 0", "seed = 1")).unwrap();
+    assert_refused(None, &["--save-scene", "a.toml", "--resume", "bad.exr"], at, &["bad.exr is damaged"]);
+    assert!(!at.join("sum.exr").exists() && !at.join("more.exr").exists() && !at.join("a.toml").exists());
+}
+
+#[test]
+fn what_is_no_file_is_refused_by_all_that_read_files() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let made = Command::new("mkfifo").arg(at.join("pipe.exr")).status().unwrap();
+    assert!(made.success());
+    std::os::unix::fs::symlink("/dev/zero", at.join("endless.exr")).unwrap();
+    fs::create_dir(at.join("folder.exr")).unwrap();
+    for (name, kind) in [("endless.exr", "a device"), ("pipe.exr", "a pipe"), ("folder.exr", "a directory")] {
+        let ways: [&[&str]; 4] = [
+            &["compare", name, "cpu"],
+            &["merge", name, "--out", "sum.exr"],
+            &["--batch", "--resume", name, "--out", "a.exr"],
+            &["--batch", "--scene", name, "--out", "a.exr"],
+        ];
+        for way in ways {
+            assert_refused(None, way, at, &[name, kind, "a file is needed"]);
+        }
+    }
+    assert_refused(
+        None,
+        &["--batch", "--scene", "/dev/zero", "--out", "a.exr"],
+        at,
+        &["/dev/zero is a device"],
+    );
+}
+
+#[test]
+fn a_picture_that_claims_more_than_its_file_holds_is_refused() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let pixels = "0".repeat(20_000);
+    fs::write(at.join("a.ppm"), format!("P6\n16000 16000\n255\n{pixels}")).unwrap();
+    fs::write(at.join("b.ppm"), format!("P3\n16000 16000\n255\n{pixels}")).unwrap();
+    fs::write(at.join("a.pfm"), format!("PF\n16000 16000\n-1\n{pixels}")).unwrap();
+    let mut encoder = png::Encoder::new(fs::File::create(at.join("a.png")).unwrap(), 16_000, 16_000);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.write_header().unwrap().write_chunk(png::chunk::IDAT, pixels.as_bytes()).unwrap();
+    exr::prelude::write_rgb_file(at.join("small.exr"), 64, 48, |_, _| (0.1_f32, 0.2_f32, 0.3_f32)).unwrap();
+    let mut bytes = fs::read(at.join("small.exr")).unwrap();
+    let window = b"dataWindow\0box2i\0";
+    let place = bytes.windows(window.len()).position(|found| found == window).unwrap() + window.len() + 4;
+    for corner in [8, 12] {
+        bytes[place + corner..place + corner + 4].copy_from_slice(&15_999_i32.to_le_bytes());
+    }
+    fs::write(at.join("a.exr"), bytes).unwrap();
+    for name in ["a.ppm", "b.ppm", "a.pfm", "a.png", "a.exr"] {
+        // With so little memory, an attempt to make room would fail.
+        let parts = [name, "bytes, but", "16000"];
+        assert_refused(
+            Some(900_000),
+            &["compare", name, "small.exr"],
+            at,
+            &parts[..if name == "a.pfm" { 2 } else { 3 }],
+        );
+    }
+}
+
+#[test]
+fn what_does_not_fit_into_memory_is_refused_before_it_is_asked_for() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    render(at, &["--size", "1600x1000", "--samples", "1", "--scene", "two-spheres", "--out", "film.exr"]);
+    fs::copy(at.join("film.exr"), at.join("copy.exr")).unwrap();
+    let scene = "[camera]\nlook_from = [0,0,3]\nlook_at = [0,0,0]\nvfov_degrees = 40\n";
+    let sphere = "[[spheres]]\ncenter = [0,0,0]\nradius = 1\nmaterial = \"m\"\n";
+    let materials = "[materials]\nm = { kind = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n";
+    fs::write(at.join("many.toml"), format!("{scene}{materials}{}", sphere.repeat(400_000))).unwrap();
+    let batch = ["--batch", "--device", "cpu", "--progress", "off", "--samples", "1", "--out", "a.png"];
+    let words = ["needs", "of memory, but", "are free"];
+    let large = ["--size", "16384x16384"];
+    assert_refused(Some(4_000_000), &[&batch[..], &large].concat(), at, &words);
+    for scene in ["field:3000000", "field:10000000", "many.toml"] {
+        let arguments = [&batch[..], &["--size", "16x9", "--scene", scene]].concat();
+        assert_refused(Some(450_000), &arguments, at, &[&words[..], &[scene]].concat());
+    }
+    assert_refused(Some(4_000_000), &[&["compare", "cpu", "cpu"][..], &large].concat(), at, &words);
+    for way in [
+        &["compare", "film.exr", "copy.exr"][..],
+        &["compare", "film.exr", "cpu"],
+        &["merge", "film.exr", "copy.exr", "--out", "sum.exr"],
+        &["--batch", "--resume", "film.exr", "--samples", "2", "--out", "b.exr"],
+    ] {
+        assert_refused(Some(200_000), way, at, &words);
+    }
+}
+
+#[test]
+fn with_any_limit_of_memory_the_program_ends_in_an_orderly_way() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    render(at, &["--size", "800x500", "--samples", "1", "--scene", "two-spheres", "--out", "film.exr"]);
+    let batch = ["--batch", "--device", "cpu", "--threads", "2", "--progress", "off", "--samples", "1"];
+    let field = [&batch[..], &["--size", "160x90", "--scene", "field:100000", "--out", "a.exr"]].concat();
+    let compare = ["compare", "film.exr", "film.exr"];
+    let mut refused = 0;
+    for kilobytes in (200_000..=1_400_000).step_by(200_000) {
+        for arguments in [&field[..], &compare] {
+            let (code, told) = weekender(Some(kilobytes), arguments, at);
+            assert!(matches!(code, Some(0..=2)), "{code:?} at {kilobytes} kB: {told}");
+            assert!(!told.contains("panicked"), "at {kilobytes} kB: {told}");
+            refused += usize::from(code == Some(2));
+        }
+    }
+    let (code, told) = weekender(None, &field, at);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(refused > 0);
+}
