@@ -25,6 +25,7 @@ pub struct Backend {
 }
 
 /// A picture and what it took.
+#[derive(Clone)]
 pub struct Traced {
     /// The film, with all samples that were asked for.
     pub film: Film,

@@ -1,7 +1,7 @@
 //! Spheres within spheres: shells and coats.
 
 use super::build::{
-    Ball, WHITE_SKY, deep, eye, glass, in_front, matte, of_scene, one_ball, picture, scene, sized,
+    Ball, WHITE_SKY, deep, eye, glass, in_front, matte, named, of_scene, picture, scene, sized,
 };
 use crate::scene::Sky;
 use crate::stress::case::{Case, Expected, Family};
@@ -46,7 +46,8 @@ pub fn shells() -> Vec<Case> {
             balls.push((DVec3::ZERO, outer, glass(1.5)));
             balls.push((DVec3::ZERO, outer - 0.45 / f64::from(pairs), glass(1.0 / 1.5)));
         }
-        let recipe = deep(of_scene(scene(balls, WHITE_SKY), in_front()), 10_000);
+        let size = if pairs < 50 { [24, 16] } else { [12, 8] };
+        let recipe = sized(deep(of_scene(scene(balls, WHITE_SKY), in_front()), 10_000), size, 16);
         let stiff =
             format!("{pairs} bubbles of glass, one within the other: long paths of nothing but reflections");
         let why = "glass absorbs nothing, and of 10,000 rays all but none find out: a sky of 1";
@@ -72,7 +73,7 @@ pub fn coats() -> Vec<Case> {
             let recipe = coat(10.0_f64.powi(-exponent), DVec3::ZERO);
             Case::new(&COATS, format!("1e-{exponent}"), stiff, recipe)
                 .expect(Expected::Reference { why }, 2e-6)
-                .beside(one_ball())
+                .beside(named(coat(0.1, DVec3::ZERO), "a coat of .1"))
         })
         .collect();
     for (exponent, distance) in [(3, 4), (3, 5), (4, 4), (4, 5)] {

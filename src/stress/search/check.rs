@@ -3,12 +3,13 @@
 use crate::film::Film;
 use crate::recipe::Recipe;
 use crate::scene::{Material, Scene};
-use crate::stress::backend::Backend;
+use crate::stress::backend::{Backend, Traced};
 use crate::stress::families::build::moved;
 use crate::stress::far::with_far_spheres;
 use crate::stress::figures::{Level, Paired};
 use crate::stress::verdict::{Against, judge};
 use glam::DVec3;
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -53,12 +54,14 @@ impl Check {
 pub struct Checker {
     backends: Vec<Backend>,
     reference: Backend,
+    /// What the last scene gave, unchanged, by the backend's index (`None`: the reference): all checks begin with it.
+    last: Option<(Recipe, HashMap<Option<usize>, Result<Traced, String>>)>,
 }
 
 impl Checker {
     /// Of these.
     pub fn new(backends: Vec<Backend>, reference: Backend) -> Self {
-        Checker { backends, reference }
+        Checker { backends, reference, last: None }
     }
 
     /// The first check that fails, and how.
@@ -93,21 +96,45 @@ impl Checker {
         changed: Option<&Recipe>,
         interrupt: &AtomicBool,
     ) -> Result<(), String> {
-        let backend = &mut self.backends[index];
-        let traced = backend.trace(recipe, interrupt)?;
+        let traced = self.unchanged(Some(index), recipe, interrupt)?;
         if !traced.warnings.is_empty() {
             // What f32 cannot hold was said.
             return Ok(());
         }
         let film = traced.film;
         let other = match (check, changed) {
-            (Check::Rounding, _) => self.reference.trace(recipe, interrupt)?.film,
-            (_, Some(changed)) => backend.trace(changed, interrupt)?.film,
+            (Check::Rounding, _) => self.unchanged(None, recipe, interrupt)?.film,
+            (_, Some(changed)) => self.backends[index].trace(changed, interrupt)?.film,
             (_, None) => return has_no_more_light(recipe, &film),
         };
         let against = Against::Picture(Paired::of(&other, &film));
         let verdict = judge(&Level::of(&film), against, TOLERANCE, film.rejected() + other.rejected());
         if verdict.is_right() { Ok(()) } else { Err(verdict.reason().to_owned()) }
+    }
+}
+
+impl Checker {
+    /// A scene as it is, traced once for all checks.
+    fn unchanged(
+        &mut self,
+        backend: Option<usize>,
+        recipe: &Recipe,
+        interrupt: &AtomicBool,
+    ) -> Result<Traced, String> {
+        if self.last.as_ref().is_none_or(|(last, _)| last != recipe) {
+            self.last = None;
+        }
+        let (_, known) = self.last.get_or_insert_with(|| (recipe.clone(), HashMap::new()));
+        if let Some(traced) = known.get(&backend) {
+            return traced.clone();
+        }
+        let tracer = match backend {
+            Some(index) => &mut self.backends[index],
+            None => &mut self.reference,
+        };
+        let traced = tracer.trace(recipe, interrupt);
+        known.insert(backend, traced.clone());
+        traced
     }
 }
 
