@@ -39,7 +39,7 @@ pub struct Parser {
     /// Bytes of memory that a byte of input may ask for.
     pub bytes_per_byte: usize,
     /// Makes checksums right, so that what lies behind them is reached.
-    pub seal: Option<fn(&mut Vec<u8>)>,
+    pub seal: Option<fn(&mut [u8])>,
 }
 
 pub fn all() -> Vec<Parser> {
@@ -264,7 +264,7 @@ fn flags(input: &[u8]) -> Outcome {
 }
 
 /// Makes the checksum of a film's head right, if there is one.
-fn seal(input: &mut Vec<u8>) {
+fn seal(input: &mut [u8]) {
     let _ = try_seal(input);
 }
 
