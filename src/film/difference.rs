@@ -61,6 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(clippy::single_range_in_vec_init, reason = "a list of one range is meant")]
     fn ranges_are_taken_from_ranges() {
         let cases = [
             (vec![0..10], vec![], vec![0..10]),

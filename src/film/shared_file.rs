@@ -285,6 +285,7 @@ fn lock_directory(path: &Path) -> Option<File> {
 }
 
 #[cfg(test)]
+#[expect(clippy::single_range_in_vec_init, reason = "lists of one range are meant")]
 mod tests {
     use super::*;
     use crate::film::fixed_point;

@@ -233,7 +233,7 @@ impl Renderer for CpuRenderer {
         self.prepared = Some(match (self.packets, self.prepared.take()) {
             (Some((isa, lanes)), old) => {
                 let old = if let Some(Prepared::Single(wide, _)) = old { Some(wide.tables) } else { None };
-                let tables = Tables::renewed(old.zip(before), job);
+                let tables = self.threads.install(|| Tables::renewed(old.zip(before), job));
                 self.messages = tables.warnings().to_vec();
                 let needed = kernels::needs_of(&job.features(), &tables);
                 let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
@@ -244,7 +244,7 @@ impl Renderer for CpuRenderer {
             }
             (None, old) => {
                 let old = if let Some(Prepared::Double(wide, _)) = old { Some(wide.tables) } else { None };
-                let tables = Tables::renewed(old.zip(before), job);
+                let tables = self.threads.install(|| Tables::renewed(old.zip(before), job));
                 Prepared::Double(Box::new(WideTables::new(tables)), kernels::reference_kernel())
             }
         });

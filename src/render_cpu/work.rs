@@ -89,15 +89,7 @@ impl Default for LaneBlocks {
         let zero = WideU::default();
         let mut slot = WideU::default();
         slot.0.fill(NOWHERE);
-        LaneBlocks {
-            start: zero.clone(),
-            step: zero.clone(),
-            end: zero.clone(),
-            key: zero.clone(),
-            pixel: zero.clone(),
-            sums: [zero.clone(), zero.clone(), zero],
-            slot,
-        }
+        LaneBlocks { start: zero, step: zero, end: zero, key: zero, pixel: zero, sums: [zero; 3], slot }
     }
 }
 

@@ -134,10 +134,6 @@ impl Suite {
     }
 
     /// `backend`: `None` is the reference.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "all of it is needed once, and a struct would only be unpacked"
-    )]
     fn measure(
         &mut self,
         case: &Case,

@@ -37,7 +37,7 @@ impl Facts {
         facts.compare_neighbours(&scene.spheres);
         facts.covered.sort_unstable();
         facts.covered.dedup();
-        facts.layers.sort_by(|a, b| a.spheres.cmp(&b.spheres));
+        facts.layers.sort_by_key(|layer| layer.spheres);
         facts.layers.dedup();
         let covered = std::mem::take(&mut facts.covered);
         let is_seen = |index: &u32| covered.binary_search(index).is_err();

@@ -104,11 +104,7 @@ pub(super) fn build(spheres: &[impl Boundable], leaf_size: usize, halved: bool) 
         open.push(Open { node: children, first, count: left, depth });
         open.push(Open { node: children + 1, first: first + left, count: count - left, depth });
     }
-    let mut tree = Bvh2::default();
-    tree.nodes = nodes;
-    tree.primitive_indices = order;
-    tree.children_are_ordered_after_parents = true;
-    tree
+    Bvh2 { nodes, primitive_indices: order, children_are_ordered_after_parents: true, ..Bvh2::default() }
 }
 
 /// What boxes are parted by: where their middle lies along each axis, and their size.

@@ -50,12 +50,15 @@ impl Check {
     }
 }
 
+/// What a scene gave, by the backend's index (`None`: the reference).
+type Outcomes = HashMap<Option<usize>, Result<Traced, String>>;
+
 /// Backends that are checked, and the reference.
 pub struct Checker {
     backends: Vec<Backend>,
     reference: Backend,
-    /// What the last scene gave, unchanged, by the backend's index (`None`: the reference): all checks begin with it.
-    last: Option<(Recipe, HashMap<Option<usize>, Result<Traced, String>>)>,
+    /// What the last scene gave, unchanged: all checks begin with it.
+    last: Option<(Recipe, Outcomes)>,
 }
 
 impl Checker {
