@@ -54,7 +54,7 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
     path.remaining = 1u;
     var traced: Traced;
     var next_block = 0u;
-    if order.resumes > 0u {
+    if ASIDE && order.resumes > 0u {
         next_block = take_up(&path, aside);
     }
     let list_turns = turns_over_lists();
@@ -119,7 +119,9 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
         send(&path, ended, nearest.sphere, row, point);
     }
     if !is_done {
-        put_aside(path, next_block, aside);
+        if ASIDE {
+            put_aside(path, next_block, aside);
+        }
         traced.unfinished = 1u;
         traced.stuck = select(0u, 1u, ray_is_cut && traced.rays == 0u);
     }

@@ -98,6 +98,57 @@ fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
     assert!(text.contains("float") && text.contains("verdict"), "{text}");
 }
 
+/// A PFM of 64x16 pixels, of which the first 60 columns are `value`.
+fn pfm(at: &Path, name: &str, value: f32) {
+    let pixel = |i: usize| if i % 64 < 60 { value } else { 0.25 + i as f32 / 4096.0 };
+    let pixels = (0..64 * 16).flat_map(|i| [pixel(i); 3]).flat_map(f32::to_le_bytes);
+    fs::write(at.join(name), b"PF\n64 16\n-1\n".iter().copied().chain(pixels).collect::<Vec<u8>>()).unwrap();
+}
+
+#[test]
+fn pixels_that_are_no_numbers_in_one_picture_alone_are_differences() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    for (name, value) in [
+        ("number.pfm", 0.5),
+        ("nan.pfm", f32::NAN),
+        ("inf.pfm", f32::INFINITY),
+        ("minus.pfm", -f32::INFINITY),
+    ] {
+        pfm(at, name, value);
+    }
+    let names = ["number.pfm", "nan.pfm", "inf.pfm", "minus.pfm"];
+    for (first, second) in names.iter().flat_map(|a| names.iter().map(move |b| (*a, *b))) {
+        let (code, found) = json(&[first, second], at);
+        let (text_code, text, _) = compare(&[first, second, "--heat-map", "map.png"], at);
+        assert_eq!(code, text_code);
+        let is_number = first == "number.pfm";
+        if first == second {
+            assert!(code == 0 && text.contains("equal to the bit"), "{first}: {text}");
+            assert_eq!(found["non_finite"]["alike"], if is_number { 0 } else { 3 * 60 * 16 }, "{found}");
+            assert!(is_number || text.contains("are NaN in both pictures"), "{text}");
+        } else {
+            assert!(code == 1 && text.contains("different") && !text.contains("to the bit"), "{text}");
+            assert!(
+                text.contains("2880 channels of 960 pixels are NaN or infinite in one picture alone"),
+                "{text}"
+            );
+            assert_eq!(found["non_finite"]["differing"], 2880, "{found}");
+            assert_eq!(found["non_finite"]["first"], serde_json::json!([0, 0]), "{found}");
+            assert_eq!(found["is_same"], false);
+        }
+        let map = image::open(at.join("map.png")).unwrap().to_rgb8();
+        let is_bright = map.get_pixel(30, 12).0 == [252, 255, 164];
+        assert_eq!(is_bright, first != second, "{first} and {second}");
+    }
+    // Against whole numbers, too.
+    let grey = image::RgbImage::from_pixel(64, 16, image::Rgb([128; 3]));
+    grey.save(at.join("grey.png")).unwrap();
+    for name in &names[1..] {
+        assert_eq!(compare(&[name, "grey.png"], at).0, 1);
+    }
+}
+
 #[test]
 fn backends_agree_on_the_same_samples() {
     let at = TempDir::new().unwrap();

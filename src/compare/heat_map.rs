@@ -1,6 +1,7 @@
 //! Where two pictures differ, as a picture.
 
 use super::side::Side;
+use super::verdict::differs_in_kind;
 use crate::heat::HeatScale;
 use crate::statistics::blocks::BlockTest;
 use image::{ImageFormat, RgbImage};
@@ -13,8 +14,8 @@ const FRAMED: usize = 5;
 const FRAME: [u8; 3] = [0, 220, 255];
 
 /// Writes a PNG: each pixel's difference, root of the mean square of its channels, from dark (1e-4) to bright (1),
-/// with frames around the blocks that are farthest off. Pixels that are a number in one picture alone are as bright as
-/// any; others that could not be compared are black.
+/// with frames around the blocks that are farthest off. Pixels that are a number in one picture alone, or
+/// another kind of none, are as bright as any; others that could not be compared are black.
 pub(super) fn write(
     a: &Side,
     b: &Side,
@@ -24,13 +25,10 @@ pub(super) fn write(
     let mut image = RgbImage::from_fn(a.width, a.height, |x, y| {
         let pixel = (y * a.width + x) as usize;
         let squares: f64 = (0..3).map(|i| (b.pixels[pixel][i] - a.pixels[pixel][i]).powi(2)).sum();
-        let is_number = |side: &Side| side.pixels[pixel].iter().all(|x| x.is_finite());
-        let are_floats = a.steps.is_none() && b.steps.is_none();
-        let difference = match (is_number(a), is_number(b)) {
-            (true, true) => (squares / 3.0).sqrt(),
-            (false, false) => 0.0,
-            _ if are_floats => f64::INFINITY,
-            _ => 0.0,
+        let difference = match differs_in_kind(a, b, pixel) {
+            true => f64::INFINITY,
+            false if squares.is_nan() => 0.0,
+            false => (squares / 3.0).sqrt(),
         };
         image::Rgb(HeatScale::ERROR.colour(difference))
     });

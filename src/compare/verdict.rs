@@ -121,20 +121,33 @@ fn relation(a: Option<f64>, b: Option<f64>) -> Relation {
     }
 }
 
+/// How many channels of a pixel are numbers in one picture alone, or another kind of none, and how many are none alike.
+fn non_finite_channels(a: &Side, b: &Side, pixel: usize) -> [usize; 2] {
+    let told = |side: &Side, value: f64| (side.steps.is_none() || !value.is_nan()).then_some(value);
+    let mut counts = [0; 2];
+    for (mine, theirs) in a.pixels[pixel].iter().zip(&b.pixels[pixel]) {
+        match relation(told(a, *mine), told(b, *theirs)) {
+            Relation::Numbers => {}
+            Relation::Differing => counts[0] += 1,
+            Relation::Alike => counts[1] += 1,
+        }
+    }
+    counts
+}
+
+/// Whether a channel of a pixel is a number in one picture alone, or another kind of none.
+pub(super) fn differs_in_kind(a: &Side, b: &Side, pixel: usize) -> bool {
+    non_finite_channels(a, b, pixel)[0] > 0
+}
+
 impl NonFinite {
     fn of(a: &Side, b: &Side) -> Self {
-        let told = |side: &Side, value: f64| (side.steps.is_none() || !value.is_nan()).then_some(value);
         let mut found = NonFinite::default();
-        for (pixel, (mine, theirs)) in a.pixels.iter().zip(&b.pixels).enumerate() {
-            let before = found.differing;
-            for (mine, theirs) in mine.iter().zip(theirs) {
-                match relation(told(a, *mine), told(b, *theirs)) {
-                    Relation::Numbers => {}
-                    Relation::Alike => found.alike += 1,
-                    Relation::Differing => found.differing += 1,
-                }
-            }
-            if found.differing > before {
+        for pixel in 0..a.pixels.len() {
+            let [differing, alike] = non_finite_channels(a, b, pixel);
+            found.differing += differing;
+            found.alike += alike;
+            if differing > 0 {
                 found.differing_pixels += 1;
                 let width = a.width.max(1) as usize;
                 found.first.get_or_insert([(pixel % width) as u32, (pixel / width) as u32]);

@@ -8,6 +8,7 @@
 pub mod checkpoint;
 mod checksum;
 mod description;
+mod difference;
 mod identity;
 mod leftovers;
 mod merge;

@@ -4,12 +4,13 @@
 use super::device::Gpu;
 use super::layout::{ASIDE_STRIDE, GpuBlock, GpuDispatch, WORKGROUP_SIZE, tile_size};
 use super::options::DrillPoint;
-use super::prepared::Prepared;
+use super::prepared::{Prepared, turns_over_lists};
 use super::readback::{Receipt, Told};
 use super::schedule::{Blocks, Budget};
 use super::{Fault, GpuRenderer, Overrides, failed};
 use crate::film::Film;
 use crate::render::{RenderError, Stats};
+use crate::tables::Tables;
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
 use std::sync::Arc;
@@ -161,8 +162,18 @@ impl Dispatches {
     }
 
     /// Turns of a thread in one dispatch.
-    fn turn_limit(&self) -> u32 {
-        (self.turn_limit >> (CAUTION_SHIFT * self.caution)).max(1)
+    fn turn_limit(&self, kernel: &Overrides) -> u32 {
+        let shift = if kernel.aside { CAUTION_SHIFT * self.caution } else { 0 };
+        (self.turn_limit >> shift).max(1)
+    }
+
+    /// Samples of a pixel that fit one dispatch however long their paths are, so that none need be put aside; `None` where
+    /// that is not known, or not even one does.
+    pub(super) fn whole_samples(&self, kernel: &Overrides, tables: &Tables<f32>) -> Option<u64> {
+        // A path may have a turn without a ray at its end, and there is one before the first.
+        let turns = u64::from(tables.settings.max_depth) * (1 + turns_over_lists(kernel, tables)) + 1;
+        let samples = u64::from(self.turn_limit - 1) / turns;
+        (!kernel.hierarchy && samples > 0).then_some(samples)
     }
 
     /// Has room for the paths of a picture of so many threads, or of as many as a dispatch may have.
@@ -248,7 +259,7 @@ impl Dispatches {
         if told.counters.stuck > 0 {
             return Err(failed(stuck(told.counters.stuck)).into());
         }
-        if told.counters.unfinished > 0 {
+        if told.counters.unfinished > 0 && done.work.kernel.aside {
             done.work.order.resumes = 1;
             self.submit(gpu, done.slot, done.work, done.finished).map_err(failed)?;
         } else if done.finished != done.work.samples {
@@ -331,12 +342,14 @@ impl GpuRenderer {
                 (slab.first_row, slab.row_count)
             };
             let area = [settings.width, row_count];
+            let most = self.dispatches.whole_samples(&prepared.overrides, &prepared.scene.tables);
+            let most = most.filter(|_| !prepared.overrides.aside).unwrap_or(u64::MAX);
             let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
             let mut left = Blocks::of_range(range.clone(), &settings, prepared.scene.tables.block_limit);
             loop {
                 let affordable = self.dispatches.budget(&prepared.overrides).paths();
                 let pixels = u64::from(tiles) * tile_pixels;
-                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / pixels);
+                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / pixels).min(most);
                 let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
                 if blocks.is_empty() {
                     break;
@@ -356,7 +369,7 @@ impl GpuRenderer {
                         first_tile,
                         tile_count,
                         block_count: blocks.len() as u32,
-                        turn_limit: self.dispatches.turn_limit(),
+                        turn_limit: self.dispatches.turn_limit(&prepared.overrides),
                         first_row,
                         row_count,
                         ..GpuDispatch::default()

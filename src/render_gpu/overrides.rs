@@ -57,6 +57,8 @@ pub struct Overrides {
     pub hemisphere: bool,
     /// The reflectance is that of the picture's strip.
     pub reflectance_strips: bool,
+    /// Paths can be too long for one dispatch: see [`super::TURN_LIMIT`].
+    pub aside: bool,
     /// What a ray brings back.
     pub shading: Shading,
     /// The laws of glass.
@@ -113,6 +115,7 @@ impl Default for Overrides {
             surface: Surface::Exact,
             hemisphere: false,
             reflectance_strips: false,
+            aside: true,
             shading: Shading::Path,
             dielectric_laws: DielectricLaws::Schlick,
         }
@@ -152,6 +155,7 @@ impl Overrides {
             surface: rules.surface,
             hemisphere: rules.diffuse == Diffuse::Hemisphere,
             reflectance_strips: rules.reflectance_strips,
+            aside: true,
             shading: rules.shading,
             dielectric_laws: rules.dielectric,
         }
@@ -206,6 +210,7 @@ impl Overrides {
             ("BOOK_T_MIN", Real(self.surface.smallest_distance().unwrap_or(0.0))),
             ("HEMISPHERE", Flag(self.hemisphere)),
             ("REFLECTANCE_STRIPS", Flag(self.reflectance_strips)),
+            ("ASIDE", Flag(self.aside)),
             ("SHADING", Number(shading_tag(self.shading))),
             ("DIELECTRIC_LAWS", Number(laws_tag(self.dielectric_laws))),
         ]

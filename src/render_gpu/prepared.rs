@@ -119,15 +119,14 @@ impl GpuRenderer {
             Overrides::general(job, tables)
         };
         let cwbvh = overrides.hierarchy && self.options.hierarchy == HierarchyKind::Cwbvh;
-        Overrides { cwbvh, ..overrides }
+        let overrides = Overrides { cwbvh, ..overrides };
+        Overrides { aside: self.dispatches.whole_samples(&overrides, tables).is_none(), ..overrides }
     }
 
     /// Refuses lists that are longer than a driver's loops.
     fn check_lists(&self, overrides: &Overrides, tables: &Tables<f32>) -> Result<(), String> {
-        let listed = tables.opaque.len() + tables.two_root.len();
-        let turns = tables.anchored.len()
-            + if overrides.hierarchy && overrides.surface == Surface::Exact { 0 } else { listed };
-        if self.gpu.adapter.threads_in_step() > 1 && turns as u64 >= u64::from(TURN_LIMIT) {
+        let turns = turns_over_lists(overrides, tables);
+        if self.gpu.adapter.threads_in_step() > 1 && turns >= u64::from(TURN_LIMIT) {
             return Err(format!(
                 "each ray is tested against {turns} spheres, but loops of {} end after {TURN_LIMIT} turns; render this scene on the CPU",
                 self.gpu.adapter.name
@@ -209,6 +208,13 @@ impl GpuRenderer {
             }
         }
     }
+}
+
+/// Turns of one ray's loops over lists. Twin: `turns_over_lists` in shaders/path.wgsl.
+pub(super) fn turns_over_lists(overrides: &Overrides, tables: &Tables<f32>) -> u64 {
+    let is_in_hierarchy = overrides.hierarchy && overrides.surface == Surface::Exact;
+    let listed = if is_in_hierarchy { 0 } else { tables.opaque.len() + tables.two_root.len() };
+    (tables.anchored.len() + listed) as u64
 }
 
 fn at_least_one<T: bytemuck::Zeroable>(mut items: Vec<T>) -> Vec<T> {

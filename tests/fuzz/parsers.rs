@@ -39,7 +39,7 @@ pub struct Parser {
     /// Bytes of memory that a byte of input may ask for.
     pub bytes_per_byte: usize,
     /// Makes checksums right, so that what lies behind them is reached.
-    pub seal: Option<fn(&mut Vec<u8>)>,
+    pub seal: Option<fn(&mut [u8])>,
 }
 
 pub fn all() -> Vec<Parser> {
@@ -169,8 +169,16 @@ const FLAG_WORDS: &[&str] = &[
     "x",
 ];
 
+/// Fields may have ten million spheres, which take time and memory of their own.
+fn names_large_field(text: &str) -> bool {
+    text.split("field:").skip(1).any(|count| count.bytes().take_while(u8::is_ascii_digit).count() > 4)
+}
+
 fn scene(input: &[u8]) -> Outcome {
     let Ok(text) = std::str::from_utf8(input) else { return Outcome::refused("not UTF-8") };
+    if names_large_field(text) {
+        return Outcome::refused("a large field");
+    }
     match file::parse(text, "a.toml") {
         Ok(recipe) => {
             let again = file::parse(&file::to_toml(&recipe), "a.toml").unwrap();
@@ -245,8 +253,7 @@ fn report_json(input: &[u8]) -> Outcome {
 /// One argument a line.
 fn flags(input: &[u8]) -> Outcome {
     let text = String::from_utf8_lossy(input);
-    // Fields may have ten million spheres, which take their time.
-    if text.split("field:").skip(1).any(|count| count.bytes().take_while(u8::is_ascii_digit).count() > 4) {
+    if names_large_field(&text) {
         return Outcome::refused("a large field");
     }
     let words = ["weekender"].into_iter().chain(text.split('\n')).map(OsString::from);
@@ -257,7 +264,7 @@ fn flags(input: &[u8]) -> Outcome {
 }
 
 /// Makes the checksum of a film's head right, if there is one.
-fn seal(input: &mut Vec<u8>) {
+fn seal(input: &mut [u8]) {
     let _ = try_seal(input);
 }
 

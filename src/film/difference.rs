@@ -1,0 +1,77 @@
+//! What one film, or one set of samples, has beyond another.
+
+use super::{Film, PixelSum, SampleRanges};
+use std::ops::Range;
+
+/// The ranges of `all` without those of `taken`: sorted and disjoint, as both are.
+pub(super) fn minus(all: &SampleRanges, taken: &SampleRanges) -> Vec<Range<u64>> {
+    let mut left = Vec::new();
+    let mut taken = taken.iter().peekable();
+    for range in all.iter() {
+        let mut start = range.start;
+        while let Some(other) = taken.peek() {
+            if other.start >= range.end {
+                break;
+            }
+            if other.start > start {
+                left.push(start..other.start);
+            }
+            start = start.max(other.end);
+            if other.end > range.end {
+                break;
+            }
+            taken.next();
+        }
+        if start < range.end {
+            left.push(start..range.end);
+        }
+    }
+    left
+}
+
+pub(super) fn ranges_of(ranges: &[Range<u64>]) -> SampleRanges {
+    let mut set = SampleRanges::default();
+    for range in ranges {
+        // Disjoint as they are, nothing overlaps.
+        let _ = set.insert(range.clone());
+    }
+    set
+}
+
+/// What `film` holds beyond `base`, all of whose samples it has; `None` if its sums are not those of `base` and more.
+pub(super) fn difference(film: Film, base: &Film) -> Option<Film> {
+    let samples = ranges_of(&minus(film.samples(), base.samples()));
+    let rejected = film.rejected().checked_sub(base.rejected())?;
+    let (width, height) = (film.width(), film.height());
+    let mut halves = film.halves().to_vec();
+    for (half, base_half) in halves.iter_mut().zip(base.halves()) {
+        for (sum, base_sum) in half.iter_mut().zip(base_half) {
+            let mut left = [0; 3];
+            for (left, (sum, base)) in left.iter_mut().zip(sum.0.iter().zip(base_sum.0)) {
+                *left = sum.checked_sub(base)?;
+            }
+            *sum = PixelSum(left);
+        }
+    }
+    Film::from_parts(width, height, halves, samples, rejected).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_taken_from_ranges() {
+        let cases = [
+            (vec![0..10], vec![], vec![0..10]),
+            (vec![0..10], vec![0..10], vec![]),
+            (vec![0..10], vec![3..5], vec![0..3, 5..10]),
+            (vec![0..10, 20..30], vec![5..25], vec![0..5, 25..30]),
+            (vec![0..10, 20..30, 40..50], vec![8..12, 22..24, 28..45], vec![0..8, 20..22, 24..28, 45..50]),
+            (vec![5..6], vec![0..100], vec![]),
+        ];
+        for (all, taken, left) in cases {
+            assert_eq!(minus(&ranges_of(&all), &ranges_of(&taken)), left, "{all:?} - {taken:?}");
+        }
+    }
+}
