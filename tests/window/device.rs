@@ -63,11 +63,11 @@ fn a_pause_outlasts_a_move_of_the_camera() {
 
 #[test]
 fn what_changes_with_the_estimate_moves_no_button() {
-    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000 --noise-target 0.000001");
+    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000 --noise-target 0.0001");
     let places = |harness: &Harness<'_, Window>| {
         Device::ALL.map(|device| harness.get_by_label(&Command::Device(device).name()).rect())
     };
     let before = places(&harness);
-    until_seen(&mut harness, "RMSE 0.000001 in");
+    until_seen(&mut harness, "RMSE 0.0001 in");
     assert_eq!(places(&harness), before);
 }
