@@ -8,6 +8,8 @@ pub use together::Together;
 use crate::render::Renderer;
 use crate::render_cpu::{CpuError, CpuOptions, CpuRenderer, Isa};
 use crate::render_gpu::{AdapterInfo, GpuError, GpuOptions, GpuRenderer, adapters};
+use std::sync::mpsc;
+use std::time::Duration;
 use thiserror::Error;
 
 /// Which backend renders, and with what.
@@ -179,6 +181,24 @@ pub fn list() -> Vec<BackendListing> {
         is_auto: false,
     };
     cpu.chain(gpu).chain([reference]).collect()
+}
+
+/// How long the closing of a backend is waited for.
+const CLOSING_PATIENCE: Duration = Duration::from_secs(1);
+
+/// Closes a backend that has failed, on a thread of its own: a driver that hangs keeps waiting whoever closes it. Others
+/// are waited for, since a driver may crash that is still at it when the program ends.
+pub fn close<T: Send + 'static>(backend: T) {
+    let (closed, is_closed) = mpsc::channel();
+    let work = move || {
+        drop(backend);
+        // Whoever waits may have given up.
+        let _ = closed.send(());
+    };
+    // Without a thread, it is closed here.
+    if std::thread::Builder::new().name("close".to_owned()).spawn(work).is_ok() {
+        let _ = is_closed.recv_timeout(CLOSING_PATIENCE);
+    }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! Several renderers at once on one film: each takes samples as it finishes, the faster ones more.
 
+use super::close;
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use std::any::Any;
@@ -106,8 +107,7 @@ impl Together {
             }
             last = Some(error);
             self.messages.extend(member.renderer.take_messages());
-            // A driver that hangs keeps waiting whoever closes it. Without a thread, it is closed here.
-            let _ = std::thread::Builder::new().name("close".to_owned()).spawn(move || drop(member));
+            close(member);
         }
         match last {
             Some(error) if self.members.is_empty() => Err(error),

@@ -1,6 +1,7 @@
 //! Calls of renderers, whose panics are errors like any other, and how a renderer is left that has failed.
 
 use super::render::Backend;
+use crate::backends::close;
 use crate::render::RenderError;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -13,10 +14,9 @@ pub(super) fn guarded<T>(
         .unwrap_or_else(|payload| Err(RenderError::of_panic(backend, payload.as_ref())))
 }
 
-/// Closes a backend that has failed on a thread of its own: a driver that hangs keeps waiting whoever closes it.
+/// Closes a backend that has failed.
 pub(super) fn dismiss(backend: Option<Backend>) {
     if backend.is_some() {
-        // Without a thread, it is closed here.
-        let _ = std::thread::Builder::new().name("close".to_owned()).spawn(move || drop(backend));
+        close(backend);
     }
 }

@@ -2,12 +2,16 @@
 //! may show.
 
 use super::groups::{Groups, UNIT};
-use crate::scene::{Scene, Sphere};
+use crate::scene::{Material, Scene, Sphere};
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// Two spheres whose surfaces are everywhere closer than this share of their radius are a layer.
 const LAYER_SHARE: f64 = 1e-2;
+
+/// A layer that is closed somewhere, since its surfaces touch or cross, is wrong about there: it is told of while its
+/// thickest place is not so many times as thick as a layer must be.
+const CLOSING_RATIO: f64 = 100.0;
 
 /// A layer is right while it is thicker than this many units of rounding of the coordinates that it lies at.
 const LAYER_UNITS: f64 = 16.0;
@@ -29,6 +33,8 @@ struct Layer {
     spheres: [u32; 2],
     /// Most distance between the surfaces.
     thickness: f64,
+    /// Least distance, 0 where they cross.
+    opening: f64,
 }
 
 impl Facts {
@@ -60,7 +66,18 @@ impl Facts {
             });
             LAYER_UNITS * UNIT * sizes[0].max(sizes[1])
         };
-        let too_thin = self.layers.iter().filter(|layer| layer.thickness < resolved(layer));
+        // Of two opaque spheres of one material it does not matter which is met.
+        let shows = |layer: &Layer| {
+            let [a, b] = layer.spheres.map(|index| &scene.spheres[index as usize]);
+            a.material != b.material || matches!(scene.material_of(a), Material::Dielectric { .. })
+        };
+        let is_told = |layer: &&Layer| {
+            let least = resolved(layer);
+            let is_thin = layer.thickness < least;
+            let closes = layer.opening < least && layer.thickness < CLOSING_RATIO * least;
+            (is_thin || closes) && shows(layer)
+        };
+        let too_thin = self.layers.iter().filter(is_told);
         let count = too_thin.clone().count();
         let worst =
             too_thin.min_by(|a, b| (a.thickness / resolved(a)).total_cmp(&(b.thickness / resolved(b))));
@@ -68,8 +85,8 @@ impl Facts {
         let [a, b] = worst.spheres;
         let others = if count > 1 { format!(" ({} such layers in all)", count) } else { String::new() };
         vec![format!(
-            "the surfaces of spheres {a} and {b} are at most {:.1e} apart, but single precision is right there only \
-             from {:.1e} on{others}; make the layer thicker, or render with --device reference",
+            "the surfaces of spheres {a} and {b} are at most {:.1e} apart, and single precision cannot tell them apart \
+             where that is less than {:.1e}{others}; make the layer thicker, or render with --device reference",
             worst.thickness,
             resolved(worst),
         )]
@@ -135,7 +152,8 @@ impl Facts {
         let thickness = apart + (first.radius - second.radius).abs();
         // Surfaces that cross differ by no more where they do.
         if thickness < LAYER_SHARE * first.radius.min(second.radius) {
-            self.layers.push(Layer { spheres, thickness });
+            let opening = ((first.radius - second.radius).abs() - apart).max(0.0);
+            self.layers.push(Layer { spheres, thickness, opening });
         }
     }
 }
@@ -228,7 +246,6 @@ fn cells_near(number: f64) -> [Option<f64>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Material;
 
     fn scene(spheres: impl IntoIterator<Item = (DVec3, f64)>) -> Scene {
         let mut scene = Scene::default();

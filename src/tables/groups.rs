@@ -120,7 +120,7 @@ impl Groups {
         let mut groups = Groups::default();
         if is_exact {
             groups.origin = origin(shown().map(|(_, sphere)| sphere), &eye);
-            groups.anchored = anchored(shown, &eye, job.camera(), is_opaque);
+            groups.anchored = anchored(shown, &eye, is_opaque);
         }
         for (index, sphere) in shown() {
             let index = index as u32;
@@ -187,9 +187,8 @@ fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> D
 /// Spheres that are seen from a point of their surface, by rising index: those that all rays start in or on, and those
 /// so large beside what is near their surface that rounding at their radius would show.
 fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
-    shown: impl Fn() -> I,
+    shown: impl Fn() -> I + Copy,
     eye: &Eye,
-    camera: &Camera,
     is_opaque: impl Fn(&Sphere) -> bool,
 ) -> Vec<Anchored> {
     let needs_anchor = |radius: f64, length: f64| UNIT * radius > ANCHOR_SHARE * length;
@@ -207,8 +206,9 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         .into_iter()
         .filter_map(|(index, sphere)| {
             let height = positive(eye.height(sphere).abs());
-            let detail = smallest_near(shown(), sphere, height);
-            if !is_special(sphere) && !needs_anchor(sphere.radius, detail.min(height)) {
+            let detail = Detail::near(shown, sphere);
+            let length = detail.map_or(f64::INFINITY, |detail| detail.length);
+            if !is_special(sphere) && !needs_anchor(sphere.radius, length.min(height)) {
                 return None;
             }
             let under_eye = eye.height(sphere) == 0.0 && eye.lens_radius == 0.0;
@@ -218,55 +218,52 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
                 (true, false, false) => Roots::Nearer,
                 _ => Roots::Both,
             };
-            let is_at_eye = under_eye || height < detail;
-            let near = if is_at_eye { eye.position } else { DVec3::NAN };
-            Some((gain(sphere, detail), Anchored { index: index as u32, roots, under_eye, near }))
+            let near = detail.filter(|detail| !under_eye && detail.length <= height);
+            let near = near.map_or(eye.position, |detail| detail.place);
+            Some((gain(sphere, length), Anchored { index: index as u32, roots, under_eye, near }))
         })
         .collect();
     chosen.sort_by(|a, b| b.0.total_cmp(&a.0));
     chosen.truncate(ANCHORED_LIMIT);
     let mut chosen: Vec<Anchored> = chosen.into_iter().map(|(_, anchored)| anchored).collect();
     chosen.sort_by_key(|anchored| anchored.index);
-    let middle = middle_of_the_rest(shown(), &chosen).unwrap_or(camera.look_at);
-    for anchored in chosen.iter_mut().filter(|anchored| anchored.near.is_nan()) {
-        anchored.near = middle;
-    }
     chosen
 }
 
-/// The smallest length near a sphere's surface that rounding at its radius could show in, or `height`: the radius of
-/// a sphere there, or its distance from the surface where that is larger.
-fn smallest_near<'a>(
-    spheres: impl Iterator<Item = (usize, &'a Sphere)>,
-    sphere: &Sphere,
-    height: f64,
-) -> f64 {
-    // A length above this leaves the sphere as it is.
-    let relevant = UNIT / ANCHOR_SHARE * sphere.radius;
-    let mut smallest = f64::INFINITY;
-    for (_, other) in spheres.filter(|(_, other)| other.radius < relevant) {
-        let away = (other.center.distance(sphere.center) - sphere.radius).abs();
-        smallest = smallest.min(other.radius.max(away));
+/// What rounding at a sphere's radius could show in.
+#[derive(Clone, Copy, Debug)]
+struct Detail {
+    /// The smallest length near the surface: the radius of a sphere there, or its distance from the surface where that
+    /// is larger.
+    length: f64,
+    /// The middle of the spheres whose lengths are hardly larger.
+    place: DVec3,
+}
+
+impl Detail {
+    /// `None` where all lengths are so large that they leave the sphere as it is.
+    fn near<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
+        shown: impl Fn() -> I,
+        sphere: &Sphere,
+    ) -> Option<Self> {
+        let relevant = UNIT / ANCHOR_SHARE * sphere.radius;
+        let lengths = || {
+            shown().filter(|(_, other)| other.radius < relevant).map(|(_, other)| {
+                let away = (other.center.distance(sphere.center) - sphere.radius).abs();
+                (other.radius.max(away), other.center)
+            })
+        };
+        let length = lengths().map(|(length, _)| length).fold(relevant, f64::min);
+        let (mut sum, mut count) = (DVec3::ZERO, 0.0);
+        for (_, center) in lengths().filter(|(other, _)| length < relevant && *other <= 2.0 * length) {
+            sum += center;
+            count += 1.0;
+        }
+        (count > 0.0).then(|| Detail { length, place: sum / count })
     }
-    if smallest.is_finite() { smallest } else { relevant.max(height) }
 }
 
 /// Infinity in place of 0.
 fn positive(length: f64) -> f64 {
     if length > 0.0 { length } else { f64::INFINITY }
-}
-
-/// The mean centre of the spheres that are not anchored.
-fn middle_of_the_rest<'a>(
-    spheres: impl Iterator<Item = (usize, &'a Sphere)>,
-    anchored: &[Anchored],
-) -> Option<DVec3> {
-    let (mut sum, mut count) = (DVec3::ZERO, 0.0);
-    for (index, sphere) in spheres {
-        if anchored.binary_search_by_key(&(index as u32), |a| a.index).is_err() {
-            sum += sphere.center;
-            count += 1.0;
-        }
-    }
-    (count > 0.0).then(|| sum / count)
 }

@@ -230,6 +230,18 @@ fn a_scene_is_the_same_wherever_it_is() {
     }
 }
 
+/// A ground is seen from where the detail is, whatever lies far away.
+#[test]
+fn far_spheres_do_not_move_the_anchor() {
+    let detail =
+        [(DVec3::new(2e-4, -2e-4, 2e-4), 6e-4, glass(0.015)), (DVec3::Y * -1.4e6, 1.4e6, lambertian(0.5))];
+    let eye = DVec3::new(0.0, 2e-4, 0.0);
+    let camera = Camera { look_from: eye, look_at: eye - DVec3::new(-0.02, 1.0, 0.05), ..AT_BALL };
+    let anchor =
+        |balls: &[Ball]| Tables::<f32>::new(&job(&scene(balls), camera, size(2, 2))).anchored[0].anchor;
+    assert_eq!(anchor(&detail), anchor(&among_many(&detail)));
+}
+
 /// One odd sphere, distance or eye does not make a list of all spheres.
 #[test]
 fn oddities_anchor_few_spheres() {
@@ -357,6 +369,15 @@ fn layers_too_thin_for_single_precision_are_told() {
         Tables::<f32>::new(&job(&scene, camera, size(2, 2))).warnings().to_vec()
     };
     assert!(warnings(1e-4).is_empty(), "{:?}", warnings(1e-4));
+    let crossing = |by: f64, second: Material| {
+        let balls = [(DVec3::ZERO, 1.0, glass(1.5)), (DVec3::X * by, 1.0, second)];
+        !Tables::<f32>::new(&job(&scene(&balls), AT_BALL, size(2, 2))).warnings().is_empty()
+    };
+    assert!(crossing(1e-5, lambertian(0.5)) && !crossing(1e-3, lambertian(0.5)));
+    let opaque = vec![(DVec3::ZERO, 1.0, lambertian(0.5)), (DVec3::X * 1e-5, 1.0, lambertian(0.5))];
+    let mut opaque = scene(&opaque);
+    opaque.spheres[1].material = 0;
+    assert!(Tables::<f32>::new(&job(&opaque, AT_BALL, size(2, 2))).warnings().is_empty());
     let thin = warnings(1e-7);
     assert!(
         thin.len() == 1 && thin[0].contains("--device reference") && thin[0].contains("1.0e-7"),
