@@ -2,7 +2,7 @@
 //! may show.
 
 use super::groups::{Groups, UNIT};
-use crate::scene::{Material, Scene, Sphere};
+use crate::scene::{Scene, Sphere};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -66,16 +66,11 @@ impl Facts {
             });
             LAYER_UNITS * UNIT * sizes[0].max(sizes[1])
         };
-        // Of two opaque spheres of one material it does not matter which is met.
-        let shows = |layer: &Layer| {
-            let [a, b] = layer.spheres.map(|index| &scene.spheres[index as usize]);
-            a.material != b.material || matches!(scene.material_of(a), Material::Dielectric { .. })
-        };
         let is_told = |layer: &&Layer| {
             let least = resolved(layer);
             let is_thin = layer.thickness < least;
             let closes = layer.opening < least && layer.thickness < CLOSING_RATIO * least;
-            (is_thin || closes) && shows(layer)
+            is_thin || closes
         };
         let too_thin = self.layers.iter().filter(is_told);
         let count = too_thin.clone().count();
@@ -246,6 +241,7 @@ fn cells_near(number: f64) -> [Option<f64>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Material;
 
     fn scene(spheres: impl IntoIterator<Item = (DVec3, f64)>) -> Scene {
         let mut scene = Scene::default();
