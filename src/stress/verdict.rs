@@ -17,6 +17,9 @@ const PARTED_SHARE: f64 = 1.6;
 /// What rounding may move pixels by where there is no noise.
 const PAIRED_FLOOR: f64 = 1e-4;
 
+/// The same where paths may part: some of the few hundred thousand of a picture.
+const PARTED_FLOOR: f64 = 3e-4;
+
 /// Times the tame twin's time that count as slow, once it is more than [`SLOW_SECONDS`].
 const SLOW_RATIO: f64 = 8.0;
 
@@ -120,11 +123,11 @@ pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> 
     }
     let pairs = match against {
         Against::Every(_) | Against::Mean(_) => None,
-        Against::Picture(paired) => Some((paired, PAIRED_SHARE)),
-        Against::Estimate(paired) => Some((paired, PARTED_SHARE)),
+        Against::Picture(paired) => Some((paired, PAIRED_SHARE, PAIRED_FLOOR)),
+        Against::Estimate(paired) => Some((paired, PARTED_SHARE, PARTED_FLOOR)),
     };
-    if let Some((paired, share)) = pairs {
-        let allowed = (share * level.noise).max(PAIRED_FLOOR);
+    if let Some((paired, share, floor)) = pairs {
+        let allowed = (share * level.noise).max(floor);
         if paired.rms > allowed {
             return Verdict::Wrong(format!(
                 "pixels are off by {:.1e} RMS, where {allowed:.1e} are allowed",

@@ -420,6 +420,38 @@ fn coats_seen_from_afar_are_told_or_right() {
     }
 }
 
+/// Where glass touches a ball hundreds of times larger, a ray that leaves the glass may start below the ball's surface: it
+/// meets it all the same. With two rays the ground is black from within, and what is bright has leaked.
+#[test]
+fn nothing_leaks_where_glass_touches_the_ground() {
+    let (eye, radius, ground) = (DVec3::new(0.3, 0.2, -0.1), 10.3, 4073.8);
+    let down = DVec3::new(-0.1, -1.0, -0.2).normalize();
+    for overlap in [0.0, 1e-4, 3e-3, 0.1] {
+        let below = eye + down * (radius + ground - overlap);
+        let balls = [(eye, radius, glass(1.000_001)), (below, ground, lambertian(0.5))];
+        let camera = Camera { look_from: eye, look_at: below, vfov_degrees: 10.0, ..Camera::BOOK };
+        let settings = RenderSettings { max_depth: 2, ..size(16, 12) };
+        let found =
+            paired(&job(&under_white_sky(&balls), camera, settings), 64, &mut widest(), &mut reference());
+        assert!(found.bias.abs() < 1e-5, "{overlap}: {found:?}");
+    }
+}
+
+/// A picture of something small is as sharp as its single precision allows, wherever the origin of the world is.
+#[test]
+fn small_balls_near_the_origin_are_where_they_are() {
+    let center = DVec3::new(-0.000_118, 0.001_18, 0.002_05);
+    let scene = Scene {
+        sky: Sky { bottom: DVec3::ZERO, top: DVec3::new(0.5, 1.0, 2.0) },
+        ..scene(&[(center, 4e-6, mirror(1.0))])
+    };
+    let look_from = DVec3::new(-0.000_11, 0.0012, 0.002);
+    let camera = Camera { look_from, look_at: center, vfov_degrees: 3.0, ..Camera::BOOK };
+    let settings = RenderSettings { max_depth: 2, ..size(16, 12) };
+    let found = paired(&job(&scene, camera, settings), 256, &mut widest(), &mut reference());
+    assert!(found.bias.abs() < 4e-6, "{found:?}");
+}
+
 /// Far balls: the normal at a hit has length 1, however coarsely the distance is rounded.
 #[test]
 fn specks_are_shaded_as_balls_are() {

@@ -12,13 +12,17 @@ use glam::DVec3;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// What a mean may be off by besides noise, linear radiance.
 const TOLERANCE: f64 = 1e-5;
 
 /// Times the samples with which a difference is looked at again. Chaotic paths part by chance wherever rounding differs,
 /// a few of a thousand in glass; a wrong picture stays wrong, whatever the seed.
-const SECOND_LOOK: u64 = 64;
+const SECOND_LOOK: f64 = 64.0;
+
+/// What a second look may take about, seconds: with fewer samples if need be.
+const SECOND_LOOK_TIME: f64 = 5.0;
 
 /// Seeds of second looks, added to the scene's. A few pixels may have most of the noise, so that one look is not enough.
 const SEEDS: [u32; 2] = [0, 1];
@@ -95,13 +99,15 @@ impl Checker {
     }
 
     fn on(&mut self, index: usize, pair: &Pair, interrupt: &AtomicBool) -> Result<(), String> {
+        let begin = Instant::now();
         let first_look = self.compare(index, pair, Against::Picture, interrupt);
         if first_look.is_ok() || pair.check == Check::Energy {
             return first_look;
         }
+        let factor = (SECOND_LOOK_TIME / begin.elapsed().as_secs_f64()).clamp(4.0, SECOND_LOOK) as u64;
         let mut last_look = Ok(());
         for seed in SEEDS {
-            last_look = self.compare(index, &pair.second_look(seed), Against::Estimate, interrupt);
+            last_look = self.compare(index, &pair.second_look(factor, seed), Against::Estimate, interrupt);
             if last_look.is_ok() {
                 break;
             }
@@ -162,10 +168,10 @@ impl Pair {
         Some(Pair { check, one, other: Some(other) })
     }
 
-    fn second_look(&self, seed: u32) -> Self {
+    fn second_look(&self, factor: u64, seed: u32) -> Self {
         let more = |recipe: &Recipe| {
             let mut more = recipe.clone();
-            more.samples_per_pixel *= SECOND_LOOK;
+            more.samples_per_pixel *= factor;
             more.settings.seed = more.settings.seed.wrapping_add(seed);
             more
         };
