@@ -18,6 +18,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("heat", &[]),
     ("recipe", &["memory", "input", "scene", "stages", "film", "render"]),
     ("output", &["memory", "input", "stages", "film"]),
+    ("saved", &["stages", "film", "render", "recipe", "output"]),
     ("chart", &["film"]),
     ("sampling", &["render"]),
     ("tables", &["scene", "stages", "film", "render"]),

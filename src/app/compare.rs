@@ -242,8 +242,8 @@ impl Compare {
             settings.max_depth = theirs.settings.max_depth;
         }
         let mut stop = mine.stop;
-        if super::document::Stop::for_recipe(theirs) != super::document::Stop::for_recipe(base) {
-            stop = super::document::Stop::for_recipe(theirs);
+        if origin.usual_stop() != mine.origin.usual_stop() {
+            stop = origin.usual_stop();
         }
         let camera = if differ_in_camera(base, theirs) {
             camera_of(&mine.camera, &base.camera, &theirs.camera)

@@ -1,15 +1,14 @@
 //! What the user edits and undo brings back: where a picture comes from and what was changed in it.
 
-use crate::progressive::Plan;
+use crate::progressive::Stop;
 use crate::recipe::Recipe;
-use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT};
+use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
 use crate::stages::{Rules, Shading, Stage, Surface};
 use crate::stress::{Case, by_the_book};
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
-use std::time::Duration;
 
 /// Where a picture comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -80,6 +79,18 @@ impl Origin {
         }
     }
 
+    /// When its render ends, unless someone says otherwise: pictures without chance are done with their samples,
+    /// others when they are clean.
+    pub fn usual_stop(&self) -> Stop {
+        let Recipe { rules, settings, samples_per_pixel, .. } = &self.recipe;
+        let is_noisy = rules.antialiasing && rules.shading == Shading::Path;
+        if is_noisy && settings.estimate_error {
+            Stop { noise: Some(Stop::NOISE), ..Stop::default() }
+        } else {
+            Stop::at_samples(*samples_per_pixel)
+        }
+    }
+
     /// The stage.
     pub fn stage(&self) -> Option<&'static Stage> {
         match self.source {
@@ -95,51 +106,6 @@ impl Origin {
             RenderJob::new(scene, Camera::BOOK, RenderSettings::default(), rules)
         };
         self.base.get_or_init(checked).clone()?.seen_by(camera, settings)
-    }
-}
-
-/// When the window's render ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
-    /// Samples per pixel; `None`: no limit.
-    pub samples: Option<u64>,
-    /// Seconds of tracing.
-    pub seconds: Option<f64>,
-    /// RMSE, linear radiance.
-    pub noise: Option<f64>,
-}
-
-impl Stop {
-    /// The error at which a picture on a screen no longer changes to the eye.
-    pub const NOISE: f64 = 0.002;
-
-    /// What suits a recipe: pictures without chance are done with their samples, others when they are clean.
-    pub fn for_recipe(recipe: &Recipe) -> Self {
-        let is_noisy = recipe.rules.antialiasing && recipe.rules.shading == Shading::Path;
-        if is_noisy && recipe.settings.estimate_error {
-            Stop { samples: None, seconds: None, noise: Some(Stop::NOISE) }
-        } else {
-            Stop { samples: Some(recipe.samples_per_pixel), seconds: None, noise: None }
-        }
-    }
-
-    /// What flags asked for.
-    pub fn of_plan(plan: &Plan) -> Self {
-        Stop {
-            samples: Some(plan.samples.end).filter(|end| *end < SAMPLE_LIMIT),
-            seconds: plan.time_limit.map(|limit| limit.as_secs_f64()),
-            noise: plan.noise_target,
-        }
-    }
-
-    /// As the tracer takes it.
-    pub fn plan(&self, pass_target: Duration) -> Plan {
-        Plan {
-            samples: 0..self.samples.unwrap_or(SAMPLE_LIMIT),
-            time_limit: self.seconds.map(Duration::from_secs_f64),
-            noise_target: self.noise,
-            pass_target,
-        }
     }
 }
 
@@ -167,7 +133,7 @@ impl Document {
     /// The origin with nothing changed.
     pub fn new(origin: Origin) -> Self {
         let Recipe { camera, settings, .. } = origin.recipe;
-        Document { stop: Stop::for_recipe(&origin.recipe), camera, settings, origin: Arc::new(origin) }
+        Document { stop: origin.usual_stop(), camera, settings, origin: Arc::new(origin) }
     }
 
     /// The scene, which is the origin's.

@@ -2,16 +2,17 @@
 //! and reading on a thread of its own.
 
 use super::dialogs::{Chosen, Dialog, PathBox, Purpose};
-use super::document::{Document, Origin, Source, Stop};
+use super::document::{Document, Origin, Source};
 use super::inspector::Pixel;
 use super::paths::Listed;
 use super::window::Window;
 use crate::describe::describe;
-use crate::film::{checkpoint, key, replace_file};
-use crate::output::{OutputFormat, read_description, write_image};
-use crate::progressive::Reference;
-use crate::recipe::{Recipe, file};
-use crate::stages::Stage;
+use crate::film::replace_file;
+use crate::output::{OutputFormat, write_image};
+use crate::progressive::{Reference, Stop};
+use crate::recipe::file;
+use crate::render::RenderJob;
+use crate::saved::{self, Content, Opened, SavedFilm};
 use eframe::egui;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,6 +24,8 @@ pub enum Message {
     Saved(Result<PathBuf, String>),
     /// A file was read, or why not.
     Opened(Result<Box<Opened>, String>),
+    /// The film of the picture with which the window began was read, or why not.
+    Resumed(PathBuf, Box<Document>, Result<SavedFilm, String>),
     /// A film to compare with was read, or why not.
     Reference(Result<(PathBuf, Reference), String>),
     /// The other stage's film, for the difference.
@@ -35,17 +38,6 @@ pub enum Message {
     Chosen(Purpose, Chosen),
 }
 
-/// What was in a file.
-pub struct Opened {
-    path: PathBuf,
-    recipe: Recipe,
-    source: Option<Source>,
-    stage: Option<&'static Stage>,
-    /// A film and the seconds that it took, if it says so.
-    film: Option<(crate::film::Film, Option<f64>)>,
-    samples: Option<u64>,
-}
-
 impl Window {
     /// Does with a path what it was asked for.
     pub(super) fn use_path(&mut self, purpose: Purpose, path: PathBuf, context: &egui::Context) {
@@ -53,7 +45,7 @@ impl Window {
             self.remembered.directory = Some(directory.to_owned());
         }
         match purpose {
-            Purpose::Open => self.open(path, Some(context)),
+            Purpose::Open => self.open(path, context),
             Purpose::Save(format) => self.pending_save = Some((format, path)),
             Purpose::SaveScene => self.save_text(&path, &file::to_toml(&self.document.recipe())),
             Purpose::SavePlot => self.save_text(&path, &super::plot::csv(&self.main.status().history)),
@@ -93,21 +85,29 @@ impl Window {
     }
 
     /// Opens a scene file, or restores what a picture shows.
-    pub(super) fn open(&mut self, path: PathBuf, context: Option<&egui::Context>) {
-        let (sender, context) = (self.messages.0.clone(), context.cloned());
+    pub(super) fn open(&mut self, path: PathBuf, context: &egui::Context) {
+        let (sender, context) = (self.messages.0.clone(), context.clone());
         self.in_background(move || {
-            let _ = sender.send(Message::Opened(read(&path).map(Box::new)));
-            if let Some(context) = context {
-                context.request_repaint();
-            }
+            let opened = saved::open(&path).map(Box::new).map_err(|error| error.to_string());
+            let _ = sender.send(Message::Opened(opened));
+            context.request_repaint();
+        });
+    }
+
+    /// Goes on with the film of `job`, which is what the window begins with.
+    pub(super) fn resume(&mut self, path: PathBuf, job: RenderJob) {
+        let (sender, begun) = (self.messages.0.clone(), Box::new(self.document.clone()));
+        self.in_background(move || {
+            let outcome = saved::resume(&path, &job).map_err(|error| error.to_string());
+            let _ = sender.send(Message::Resumed(path, begun, outcome));
         });
     }
 
     fn load_reference(&mut self, path: PathBuf, context: &egui::Context) {
         let (sender, context) = (self.messages.0.clone(), context.clone());
         self.in_background(move || {
-            let outcome = checkpoint::load(&path)
-                .map(|read| (path, Reference::of(&read.film)))
+            let outcome = saved::open_film(&path)
+                .map(|(_, read)| (path, Reference::of(&read.film)))
                 .map_err(|error| error.to_string());
             let _ = sender.send(Message::Reference(outcome));
             context.request_repaint();
@@ -128,6 +128,8 @@ impl Window {
                 Message::Saved(Err(reason)) => self.toasts.bad(format!("Not saved: {reason}")),
                 Message::Opened(Ok(opened)) => self.show_opened(*opened),
                 Message::Opened(Err(reason)) => self.toasts.bad(format!("Not opened: {reason}")),
+                Message::Resumed(path, begun, Ok(film)) => self.go_on(&path, &begun, film),
+                Message::Resumed(_, _, Err(reason)) => self.toasts.bad(format!("Not resumed: {reason}")),
                 Message::Reference(outcome) => self.take_reference(outcome),
                 Message::Measured(reference) => self.compare.measured(&self.main, reference),
                 Message::Pixel(pixel) => self.inspector.learn(pixel),
@@ -173,62 +175,36 @@ impl Window {
     }
 
     fn show_opened(&mut self, opened: Opened) {
-        let Opened { path, recipe, source, stage, film, samples } = opened;
-        let origin = match source {
-            Some(source) => Origin::new(recipe.clone(), source),
-            None => Origin::guess(&recipe, stage),
+        let Opened { path, recipe, stage, content, .. } = opened;
+        let origin = match content {
+            Content::Scene => Origin::new(recipe.clone(), Source::File(path.clone())),
+            _ => Origin::guess(&recipe, stage),
         };
         let mut document = Document::new(origin);
         document.camera = recipe.camera;
         document.settings = recipe.settings;
-        document.stop = match samples {
+        if let Content::Picture { samples: Some(samples) } = content {
             // A picture is restored as it was; a film goes on.
-            Some(samples) if film.is_none() => Stop { samples: Some(samples), seconds: None, noise: None },
-            _ => Stop::for_recipe(&recipe),
-        };
+            document.stop = Stop::at_samples(samples);
+        }
         self.document = document;
         self.inspector.forget();
         self.paths.forget();
         self.toasts.good(format!("Opened {}", path.display()));
-        if let Some((film, seconds)) = film {
-            self.adopt(film, seconds);
+        if let Content::Film(film) = content {
+            self.adopt(film);
         }
     }
-}
 
-/// Reads a file of any kind that can be opened.
-fn read(path: &Path) -> Result<Opened, String> {
-    let is_scene = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-    if is_scene {
-        let recipe = file::load(path).map_err(|error| error.to_string())?;
-        let source = Some(Source::File(path.to_owned()));
-        return Ok(Opened { path: path.to_owned(), recipe, source, stage: None, film: None, samples: None });
+    fn go_on(&mut self, path: &Path, begun: &Document, film: SavedFilm) {
+        if self.document.has_same_film(begun) {
+            self.toasts.good(format!("Goes on with {}", path.display()));
+            self.adopt(film);
+        } else {
+            self.toasts.bad(format!(
+                "Not resumed: the picture was changed before {} had been read; open the file to go on with it",
+                path.display()
+            ));
+        }
     }
-    let is_film = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr"));
-    let (description, film) = if is_film {
-        let read = checkpoint::load(path).map_err(|error| error.to_string())?;
-        (read.description, Some(read.film))
-    } else {
-        (read_description(path).map_err(|error| error.to_string())?, None)
-    };
-    let label = path.display().to_string();
-    let mut recipe = file::parse(description.recipe(), &label).map_err(|error| error.to_string())?;
-    let job = recipe.job().map_err(|error| error.to_string())?;
-    if let Some(film) = &film
-        && (film.width(), film.height(), film.halves().len())
-            != (job.settings().width, job.settings().height, job.settings().half_count())
-    {
-        return Err(format!("{label} holds a film of another shape than its recipe says"));
-    }
-    let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
-    recipe.name = description.get(key::SCENE).map_or(stem, str::to_owned);
-    let number = |key| description.get(key).and_then(|value| value.parse::<f64>().ok());
-    Ok(Opened {
-        path: path.to_owned(),
-        source: None,
-        stage: description.get(key::STAGE).and_then(|id| Stage::find(id).ok()),
-        film: film.map(|film| (film, number(key::SECONDS))),
-        samples: description.get(key::SAMPLES).and_then(|value| value.parse().ok()).filter(|n| *n > 0),
-        recipe,
-    })
 }

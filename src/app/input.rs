@@ -84,7 +84,7 @@ impl Window {
     fn take_dropped(&mut self, context: &egui::Context) {
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         for file in dropped {
-            self.open(file.path().to_owned(), Some(context));
+            self.open(file.path().to_owned(), context);
         }
     }
 }

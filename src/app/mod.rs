@@ -32,7 +32,7 @@ mod window;
 
 pub use command::{Command, Group};
 pub use device::Device;
-pub use document::{Document, Origin, Source, Stop};
+pub use document::{Document, Origin, Source};
 pub use remembered::Theme;
 pub use viewport::Show;
 pub use window::Window;

@@ -143,7 +143,7 @@ impl Window {
             Command::Home => self.document.camera = self.document.origin.recipe.camera,
             Command::ResetAll => {
                 let origin = std::sync::Arc::clone(&self.document.origin);
-                let stop = super::document::Stop::for_recipe(&origin.recipe);
+                let stop = origin.usual_stop();
                 let recipe = &origin.recipe;
                 self.document = Document { camera: recipe.camera, settings: recipe.settings, stop, origin };
             }

@@ -2,11 +2,10 @@
 //! the last restart, how it should go on, and the target, which can be typed or dragged.
 
 use super::command::Command;
-use super::document::Stop;
 use super::theme;
 use super::widgets::compact;
 use super::window::Window;
-use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
+use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status, Stop};
 use crate::statistics::fit::{Point, Prediction, predict};
 use eframe::egui::{
     self, Align2, Color32, CursorIcon, DragValue, Rangef, Rect, RichText, Sense, Ui, WidgetInfo,

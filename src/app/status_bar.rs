@@ -1,11 +1,10 @@
 //! The bar at the bottom: how far, how fast, how good, and by whom. Each figure has a place of its own, so that
 //! nothing jumps.
 
-use super::document::Stop;
 use super::plot;
 use super::theme;
 use super::window::Window;
-use crate::progressive::{Contribution, Phase, Status};
+use crate::progressive::{Contribution, Phase, Status, Stop};
 use crate::render::BackendInfo;
 use eframe::egui::{self, Align, Layout, RichText, Ui};
 use std::borrow::Cow;

@@ -1,10 +1,10 @@
 //! The window's side of a progressive render: what is wanted, what runs, and the newest picture as a texture.
 
-use super::document::{Document, Stop};
+use super::document::Document;
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::progressive::{Phase, Plan, Progressive, Status, View, Work};
+use crate::progressive::{Phase, Plan, Progressive, Status, Stop, View, Work};
 use eframe::egui;
 use std::io;
 use std::time::{Duration, Instant};
@@ -44,11 +44,11 @@ pub struct Want<'a> {
 impl Want<'_> {
     fn plan(&self, is_held: bool) -> Plan {
         let pass_target = if self.is_moving { MOVING_PASS } else { STILL_PASS };
-        let mut plan = self.stop.plan(pass_target);
+        let mut stop = self.stop;
         if is_held {
-            plan.samples.end = plan.samples.end.min(PAUSED_SAMPLES);
+            stop.samples = Some(stop.samples.map_or(PAUSED_SAMPLES, |samples| samples.min(PAUSED_SAMPLES)));
         }
-        plan
+        Plan { pass_target, ..Plan::until(stop) }
     }
 }
 

@@ -4,7 +4,7 @@ use super::command::Command;
 use super::compare::Compare;
 use super::device::{Device, DeviceOptions};
 use super::dialogs::Dialog;
-use super::document::{Document, Origin, Source, Stop};
+use super::document::{Document, Origin, Source};
 use super::files::Message;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::inspector::Inspector;
@@ -20,6 +20,7 @@ use crate::cli::WindowOptions;
 use crate::output::OutputFormat;
 use crate::progressive::{Phase, Status};
 use crate::recipe::Recipe;
+use crate::saved::SavedFilm;
 use anyhow::{Context as _, Result};
 use eframe::egui::{self, util::undoer::Undoer};
 use std::path::PathBuf;
@@ -135,7 +136,7 @@ impl Window {
             document,
         };
         if let Some(path) = options.resume {
-            window.open(path, None);
+            window.resume(path, options.recipe.job()?);
         }
         Ok(window)
     }
@@ -228,7 +229,7 @@ impl Window {
     /// Shows another picture.
     pub(super) fn show_origin(&mut self, origin: Origin) {
         let stop = self.document.stop;
-        let is_usual = stop == Stop::for_recipe(&self.document.origin.recipe);
+        let is_usual = stop == self.document.origin.usual_stop();
         self.document = Document::new(origin);
         // Stop conditions that the user has chosen are his for all stages, where they make sense.
         if !is_usual && self.document.stop.samples.is_none() {
@@ -240,9 +241,9 @@ impl Window {
     }
 
     /// Goes on with a film of the document that is shown now.
-    pub(super) fn adopt(&mut self, film: crate::film::Film, seconds: Option<f64>) {
-        self.pending_film = Some(film);
-        self.seconds_before = seconds;
+    pub(super) fn adopt(&mut self, film: SavedFilm) {
+        self.pending_film = Some(film.film);
+        self.seconds_before = film.seconds;
         self.last_document = self.document.clone();
     }
 
@@ -455,8 +456,10 @@ fn fitting(inner: egui::Vec2, outer: egui::Vec2, screen: egui::Vec2) -> Option<e
 }
 
 fn document_of(options: &WindowOptions) -> Document {
-    let WindowOptions { recipe, stage, file, plan, .. } = options;
+    let WindowOptions { recipe, stage, file, stop, .. } = options;
     let origin = match (stage, file, Recipe::builtin(&recipe.name)) {
+        // A film's scene may have been changed since it was that of its stage or name.
+        (_, None, _) if options.resume.is_some() => Origin::guess(recipe, *stage),
         (Some(stage), _, _) => Origin::of_stage(stage),
         (None, Some(path), _) => {
             // The file as it is, so that the flags are changes that can be reset.
@@ -475,7 +478,7 @@ fn document_of(options: &WindowOptions) -> Document {
     let mut document = Document::new(origin);
     document.camera = recipe.camera;
     document.settings = recipe.settings;
-    document.stop = plan.as_ref().map_or_else(|| Stop::for_recipe(recipe), Stop::of_plan);
+    document.stop = stop.unwrap_or(document.origin.usual_stop());
     document
 }
 

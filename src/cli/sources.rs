@@ -1,11 +1,11 @@
 //! Where a picture comes from: a built-in scene, a stage, a scene file or a film; and what flags change in it.
 
 use super::raw::{RawPicture, RawSwitch};
-use crate::film::key;
 use crate::memory::MemoryError;
-use crate::output::{OutputError, read_description};
+use crate::output::OutputError;
 use crate::recipe::{Recipe, SceneNameError, file};
 use crate::render::JobError;
+use crate::saved::{OpenError, Saved};
 use crate::stages::{Stage, UnknownStage};
 use std::path::{Path, PathBuf};
 
@@ -27,6 +27,9 @@ pub enum CliError {
     /// A picture or a scene that does not fit into memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),
+    /// A film that cannot go on.
+    #[error(transparent)]
+    Open(#[from] OpenError),
     /// The file's name or what it says of itself.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -198,12 +201,8 @@ pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
 }
 
 fn of_film(path: &Path) -> Result<Source, CliError> {
-    let description = read_description(path)?;
-    let name = description.get(key::SCENE).unwrap_or("film");
-    let mut recipe = file::parse(description.recipe(), &path.display().to_string())?;
-    recipe.name = name.to_owned();
-    let stage = description.get(key::STAGE).and_then(|id| Stage::find(id).ok());
-    Ok(Source { recipe, stage })
+    let saved = Saved::describe(path)?;
+    Ok(Source { recipe: saved.recipe()?, stage: saved.stage() })
 }
 
 /// Puts the flags' values in place of the recipe's.

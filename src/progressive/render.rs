@@ -101,7 +101,7 @@ impl Render {
     /// Samples per pixel that the film will hold.
     fn planned_count(&self) -> u64 {
         let mut samples = self.film.samples().clone();
-        while let Some(gap) = samples.first_gap(self.plan.samples.clone(), u64::MAX) {
+        while let Some(gap) = samples.first_gap(self.plan.range(), u64::MAX) {
             // A gap does not overlap what is there.
             if samples.insert(gap).is_err() {
                 break;
@@ -122,7 +122,7 @@ impl Render {
 
     /// Ends because no pass is left: all samples are there, or the time is over.
     fn end_of_plan(&mut self) {
-        let is_whole = self.dealt.first_gap(self.plan.samples.clone(), 1).is_none();
+        let is_whole = self.dealt.first_gap(self.plan.range(), 1).is_none();
         self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
     }
 
@@ -272,12 +272,12 @@ impl Render {
 
     /// The samples that are next; `None` when none are missing or there is no time left for them.
     fn next_pass(&self) -> Option<std::ops::Range<u64>> {
-        let time_left = match self.plan.time_limit {
+        let time_left = match self.plan.stop.time_limit() {
             // A picture without a sample is of no use to anyone.
             Some(limit) if self.dealt.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
             _ => None,
         };
-        self.sizer.next(&self.dealt, self.plan.samples.clone(), time_left)
+        self.sizer.next(&self.dealt, self.plan.range(), time_left)
     }
 
     fn pass(
@@ -286,7 +286,7 @@ impl Render {
         is_picture_wanted: bool,
         begin: Instant,
     ) -> Result<(), RenderError> {
-        if self.plan.noise_reached(self.film.sample_count(), self.status.error) {
+        if self.plan.stop.noise_reached(self.film.sample_count(), self.status.error) {
             self.collect(renderer)?;
             self.end(EndReason::NoiseTarget);
             return Ok(());

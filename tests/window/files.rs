@@ -1,6 +1,6 @@
 //! What is saved, opened, dropped and copied.
 
-use crate::common::{SMALL, has_samples, open, send, until};
+use crate::common::{SMALL, has_samples, open, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -11,19 +11,6 @@ use weekender::output::{OutputFormat, read_description};
 use weekender::progressive::{Plan, Progressive, Work};
 use weekender::recipe::file;
 use weekender::stages::Stage;
-
-/// Saves through the path box and waits for the file.
-fn save(harness: &mut Harness<'_, Window>, format: OutputFormat, path: &Path) {
-    send(harness, Command::Save(format));
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    harness.get_by_label("File name").type_text(path.to_str().unwrap());
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    let saved = format!("Saved {}", path.display());
-    until(harness, &saved, |window| window.messages().contains(&saved));
-}
 
 /// The bytes of the picture that a file's recipe gives with as many samples as it says.
 fn rendered_again(path: &Path) -> Vec<u8> {

@@ -9,6 +9,7 @@ mod files;
 mod panels;
 mod plot;
 mod remembered;
+mod resuming;
 mod snapshots;
 mod stages;
 mod viewport;

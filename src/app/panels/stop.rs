@@ -1,20 +1,20 @@
 //! When the render ends: the first condition that is met.
 
 use super::{Group, Reset};
-use crate::app::document::Stop;
 use crate::app::widgets::{About, check, limit};
 use crate::app::window::Window;
+use crate::progressive::Stop;
 use crate::render::SAMPLE_LIMIT;
 use eframe::egui::{DragValue, Ui};
 
 pub(super) const GROUP: Group = Group { name: "Stop", ui, reset: Some(Reset { is_changed, reset }) };
 
 fn is_changed(window: &Window) -> bool {
-    window.document().stop != Stop::for_recipe(&window.document().origin.recipe)
+    window.document().stop != window.document().origin.usual_stop()
 }
 
 fn reset(window: &mut Window) {
-    window.document_mut().stop = Stop::for_recipe(&window.document().origin.recipe);
+    window.document_mut().stop = window.document().origin.usual_stop();
 }
 
 fn ui(window: &mut Window, ui: &mut Ui) {
