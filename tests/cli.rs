@@ -12,7 +12,9 @@ const PATIENCE: Duration = Duration::from_secs(120);
 fn weekender(directory: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
     // Whatever should have been refused opens no window.
-    ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].map(|display| command.env_remove(display));
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(display);
+    }
     command.current_dir(directory).args(arguments).stdin(Stdio::null());
     command
 }

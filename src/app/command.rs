@@ -1,8 +1,8 @@
 //! Everything that the user can ask for. Menus, buttons, shortcuts, palette and help read it from here.
 
-use super::Device;
-use super::remembered::Theme;
-use super::viewport::Show;
+use super::model::device::Device;
+use super::model::remembered::Theme;
+use super::model::show::Show;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
@@ -139,6 +139,19 @@ const fn ctrl_shift(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
 }
 
+/// The key that stands for a view, with Ctrl.
+const fn key_of(show: Show) -> Key {
+    match show {
+        Show::Picture => Key::Num1,
+        Show::Normals => Key::Num2,
+        Show::Albedo => Key::Num3,
+        Show::Bounces => Key::Num4,
+        Show::Error => Key::Num5,
+        Show::Occupancy => Key::Num6,
+        Show::Difference => Key::Num7,
+    }
+}
+
 impl Command {
     /// All of them, in the menus' order.
     pub fn all() -> Vec<Command> {
@@ -146,12 +159,12 @@ impl Command {
         let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
         all.extend([SaveScene, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
-        all.extend(super::viewport::Show::ALL.map(Show));
+        all.extend(self::Show::ALL.map(Show));
         all.extend([Wipe, WipeDifference, Fit, ActualSize, ZoomIn, ZoomOut]);
         all.extend([Panels, Controls, Info, Plot, FullScreen]);
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Pause, Restart, SwitchDevice]);
-        all.extend(super::Device::ALL.map(Device));
+        all.extend(self::Device::ALL.map(Device));
         all.extend([PreviousStage, NextStage, Book]);
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
         all.push(BookArithmetic);
@@ -312,7 +325,7 @@ impl Command {
             Command::Redo => ctrl_shift(Key::Z),
             Command::Home => key(Key::Home),
             Command::AddBookmark => ctrl(Key::B),
-            Command::Show(show) => ctrl(show.key()),
+            Command::Show(show) => ctrl(key_of(show)),
             Command::Wipe => key(Key::C),
             Command::WipeDifference => key(Key::X),
             Command::Fit => key(Key::F),

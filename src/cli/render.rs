@@ -1,9 +1,10 @@
 //! What the flags of rendering mean together, for the window and for files.
 
 use super::Request;
+use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{DrawWith, ProgressChoice, RawDevice, RawRender};
-use super::sources::{self, CliError, Source};
+use super::sources::{self, Source};
 use super::values::{JsonTarget, Level, Simd};
 use crate::backends::BackendChoice;
 use crate::output::OutputFormat;

@@ -1,6 +1,6 @@
 //! The render at hand: a film, who adds to it, and what it says of itself.
 
-use super::guard::{dismiss, guarded};
+use super::guard::{Backend, dismiss, guarded};
 use super::shared::{Picture, Shared};
 use super::upcoming::Upcoming;
 use super::{EndReason, Factory, HistoryPoint, PassSizer, Phase, Plan, Status, View};
@@ -11,9 +11,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::TryRecvError;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-
-/// A renderer and what it was made from.
-pub(super) type Backend = (BackendChoice, Box<dyn Renderer>);
 
 /// Estimating the error may take at most one part in this of the time.
 const ERROR_ESTIMATE_SHARE: u32 = 20;

@@ -1,6 +1,5 @@
 //! The pictures that errors are measured against, and the errors.
 
-use super::contender::film_means;
 use super::data::ReferenceUsed;
 use crate::backends::{self, BackendChoice};
 use crate::film::{Description, Film, checkpoint, key};
@@ -85,6 +84,11 @@ impl Reference {
             flip: self.appearance.difference(&shown),
         }
     }
+}
+
+/// The means of a film's pixels, linear RGB, row by row from the top.
+pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
+    (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
 }
 
 /// As a screen shows it.

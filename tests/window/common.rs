@@ -67,8 +67,21 @@ pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
     }
 }
 
+/// Whether the picture on the screen is the document's, at its full size, with so many samples per pixel.
 pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
-    move |window| window.shown().is_some_and(|(samples, divisor)| samples >= at_least && divisor == 1)
+    move |window| {
+        let is_enough = |(samples, divisor)| samples >= at_least && divisor == 1;
+        window.is_up_to_date() && window.shown().is_some_and(is_enough)
+    }
+}
+
+/// Presses the primary button there, or lets it go.
+pub fn hold(harness: &mut Harness<'_, Window>, pos: Pos2, pressed: bool) {
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+    harness.event(egui::Event::PointerMoved(pos));
+    harness.step();
+    harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+    harness.step();
 }
 
 /// Saves through the path box and waits for the file.
@@ -99,6 +112,16 @@ pub fn control<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> 
 
 pub fn middle(harness: &Harness<'_, Window>) -> Pos2 {
     harness.get_by_label("Picture").rect().center()
+}
+
+/// Drags with the primary button, in small steps.
+pub fn drag_from(harness: &mut Harness<'_, Window>, from: Pos2, by: egui::Vec2) {
+    hold(harness, from, true);
+    for step in 1..=10 {
+        harness.event(egui::Event::PointerMoved(from + by * (step as f32 / 10.0)));
+        harness.step();
+    }
+    hold(harness, from + by, false);
 }
 
 pub fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, modifiers: Modifiers) {

@@ -2,11 +2,10 @@
 
 use crate::common::{SMALL, has_samples, open, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use weekender::app::{Command, Window};
+use weekender::app::Command;
 use weekender::output::{OutputFormat, read_description};
 use weekender::progressive::{Plan, Progressive, Work};
 use weekender::recipe::file;
@@ -50,6 +49,11 @@ fn what_is_saved_is_the_film_and_can_be_opened_again() {
         until(&mut harness, "forty samples", |window| {
             has_samples(40)(window) && window.status().samples_per_pixel >= 40
         });
+        // A film goes on with the samples that it has; of a picture they are traced again.
+        let held = if format == OutputFormat::Exr { 40 } else { 0 };
+        let status = harness.state().status();
+        let traced: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
+        assert_eq!(status.samples_per_pixel - traced, held, "{format:?}");
     }
 }
 
