@@ -275,16 +275,13 @@ impl Window {
 }
 
 fn document_of(options: &WindowOptions) -> Document {
-    let WindowOptions { recipe, stage, file, stop, .. } = options;
+    let WindowOptions { recipe, unchanged, stage, file, stop, .. } = options;
+    // Without what flags have changed, so that these are changes that can be reset.
     let origin = match (stage, file, Recipe::builtin(&recipe.name)) {
         // A film's scene may have been changed since it was that of its stage or name.
-        (_, None, _) if options.resume.is_some() => Origin::guess(recipe, *stage),
+        (_, None, _) if options.resume.is_some() => Origin::guess(unchanged, *stage),
         (Some(stage), _, _) => Origin::of_stage(stage),
-        (None, Some(path), _) => {
-            // The file as it is, so that the flags are changes that can be reset.
-            let recipe = crate::recipe::file::load(path).unwrap_or_else(|_| recipe.clone());
-            Origin::new(recipe, Source::File(path.clone()))
-        }
+        (None, Some(path), _) => Origin::new(unchanged.clone(), Source::File(path.clone())),
         (None, None, Some(builtin)) => {
             // A built-in scene that a stage shows is opened as that stage.
             match crate::stages::Stage::find(&builtin.name) {
@@ -292,7 +289,7 @@ fn document_of(options: &WindowOptions) -> Document {
                 _ => Origin::new(builtin, Source::Builtin),
             }
         }
-        (None, None, None) => Origin::guess(recipe, None),
+        (None, None, None) => Origin::guess(unchanged, None),
     };
     let mut document = Document::new(origin);
     document.camera = recipe.camera;

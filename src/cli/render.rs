@@ -43,6 +43,8 @@ pub struct BatchOptions {
 pub struct WindowOptions {
     /// What is rendered.
     pub recipe: Recipe,
+    /// The same without the changes that flags make.
+    pub unchanged: Recipe,
     /// The stage that it is from.
     pub stage: Option<&'static Stage>,
     /// The scene file that it is from.
@@ -153,6 +155,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         }
     }
     let mut source = sources::find(&raw.picture, raw.resume.as_deref())?;
+    let unchanged = source.recipe.clone();
     sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
     source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
     let job = source.recipe.job()?;
@@ -169,6 +172,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
     Ok(WindowOptions {
         stop: ends.then(|| plan(raw, &source.recipe).stop),
         recipe: source.recipe,
+        unchanged,
         stage: source.stage,
         file: file.map(PathBuf::from),
         backend,

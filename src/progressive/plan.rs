@@ -30,7 +30,7 @@ impl Stop {
 
     /// The most wall time.
     pub fn time_limit(&self) -> Option<Duration> {
-        // What is no time is too long to be one.
+        // Seconds that a duration cannot hold are as good as no limit.
         self.seconds.map(|seconds| Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(Duration::MAX))
     }
 

@@ -235,3 +235,27 @@ impl Mark {
         true
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+
+    #[test]
+    fn each_side_of_a_wipe_has_its_own_title() {
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 400.0));
+        let titles = ["mine", "theirs"].map(str::to_owned);
+        let harness = Harness::builder().with_size(rect.size()).build_ui(|ui| {
+            let painter = ui.painter().with_clip_rect(rect);
+            paint_wipe(ui, &painter, rect, 0.25, egui::TextureId::default(), &titles);
+        });
+        let left_of = |title: &str| {
+            let place = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) if text.galley.text() == title => Some(text.pos.x),
+                _ => None,
+            });
+            place.unwrap() < 200.0
+        };
+        assert_eq!([left_of("mine"), left_of("theirs")], [true, false]);
+    }
+}
