@@ -219,7 +219,7 @@ impl<R: Real> Tables<R> {
         }
         self.has_specks = groups.has_specks;
         self.warnings = if job.rules().surface == Surface::Exact {
-            self.facts.warnings(scene, &groups)
+            self.facts.warnings(job, &groups)
         } else {
             Vec::new()
         };
