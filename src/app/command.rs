@@ -139,18 +139,9 @@ const fn ctrl_shift(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
 }
 
-/// The key that stands for a view, with Ctrl.
-const fn key_of(show: Show) -> Key {
-    match show {
-        Show::Picture => Key::Num1,
-        Show::Normals => Key::Num2,
-        Show::Albedo => Key::Num3,
-        Show::Bounces => Key::Num4,
-        Show::Error => Key::Num5,
-        Show::Occupancy => Key::Num6,
-        Show::Difference => Key::Num7,
-    }
-}
+/// With Ctrl, these stand for the views in their order.
+const VIEW_KEYS: [Key; 9] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 impl Command {
     /// All of them, in the menus' order.
@@ -325,7 +316,10 @@ impl Command {
             Command::Redo => ctrl_shift(Key::Z),
             Command::Home => key(Key::Home),
             Command::AddBookmark => ctrl(Key::B),
-            Command::Show(show) => ctrl(key_of(show)),
+            Command::Show(show) => {
+                let place = Show::ALL.iter().position(|other| *other == show)?;
+                ctrl(*VIEW_KEYS.get(place)?)
+            }
             Command::Wipe => key(Key::C),
             Command::WipeDifference => key(Key::X),
             Command::Fit => key(Key::F),

@@ -33,7 +33,7 @@ pub enum OpenError {
         /// The file.
         path: PathBuf,
         /// What is wrong with the recipe.
-        reason: file::FileError,
+        reason: Box<file::FileError>,
     },
     /// What it says that it was made from is no picture.
     #[error("the recipe in {} cannot be rendered: {reason}", path.display())]
@@ -41,7 +41,7 @@ pub enum OpenError {
         /// The file.
         path: PathBuf,
         /// What is wrong with the recipe.
-        reason: JobError,
+        reason: Box<JobError>,
     },
     /// The film does not belong to its recipe.
     #[error("{} holds a film of another shape than its recipe says; render it again", path.display())]
@@ -113,7 +113,7 @@ impl Saved {
     pub fn recipe(&self) -> Result<Recipe, OpenError> {
         let label = self.path.display().to_string();
         let recipe = file::parse(self.description.recipe(), &label)
-            .map_err(|reason| OpenError::Recipe { path: self.path.clone(), reason })?;
+            .map_err(|reason| OpenError::Recipe { path: self.path.clone(), reason: Box::new(reason) })?;
         let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
         let name = self.description.get(key::SCENE).map(str::to_owned).or(stem).unwrap_or(label);
         Ok(Recipe { name, ..recipe })
@@ -241,7 +241,7 @@ pub fn check_resume(path: &Path, job: &RenderJob) -> Result<(), OpenError> {
 }
 
 fn job_of(path: &Path, recipe: &Recipe) -> Result<RenderJob, OpenError> {
-    recipe.job().map_err(|reason| OpenError::Job { path: path.to_owned(), reason })
+    recipe.job().map_err(|reason| OpenError::Job { path: path.to_owned(), reason: Box::new(reason) })
 }
 
 fn check_same(path: &Path, mine: &RenderJob, theirs: &RenderJob) -> Result<(), OpenError> {
