@@ -64,6 +64,45 @@ fn the_scene_follows_a_drag_and_the_eye_follows_a_right_drag() {
 }
 
 #[test]
+fn keys_fly_where_they_say() {
+    let mut harness = open("--stage view-distant --size 64x36");
+    until(&mut harness, "a picture", has_samples(1));
+    for (key, expected) in [
+        (Key::D, [1, 0, 0]),
+        (Key::A, [-1, 0, 0]),
+        (Key::E, [0, 1, 0]),
+        (Key::Q, [0, -1, 0]),
+        (Key::W, [0, 0, 1]),
+        (Key::S, [0, 0, -1]),
+    ] {
+        let before = harness.state().document().camera;
+        harness.key_down(key);
+        harness.run_steps(3);
+        harness.key_up(key);
+        harness.run_steps(2);
+        let after = harness.state().document().camera;
+        let (basis, moved) = (before.basis(), after.look_from - before.look_from);
+        let [right, up, ahead] = [moved.dot(basis.u), moved.dot(basis.v), -moved.dot(basis.w)];
+        let sign = |along: f64| if along.abs() < 1e-9 { 0 } else { along.signum() as i32 };
+        assert_eq!([right, up, ahead].map(sign), expected, "{key:?}");
+        assert!((after.look_at - before.look_at).distance(moved) < 1e-9, "{key:?} looks the same way");
+    }
+}
+
+#[test]
+fn the_picture_follows_a_shift_drag() {
+    let mut harness = open("--stage view-distant --size 64x36");
+    until(&mut harness, "a picture", has_samples(1));
+    let before = harness.state().picture_rect();
+    drag(&mut harness, PointerButton::Primary, Modifiers::SHIFT);
+    let moved = harness.state().picture_rect().min - before.min;
+    assert!((moved - egui::vec2(60.0, 30.0)).length() < 12.0, "{moved}");
+    drag(&mut harness, PointerButton::Middle, Modifiers::NONE);
+    let moved = harness.state().picture_rect().min - before.min;
+    assert!((moved - egui::vec2(120.0, 60.0)).length() < 20.0, "{moved}");
+}
+
+#[test]
 fn ctrl_and_the_wheel_zoom_at_the_pointer() {
     let mut harness = open("--stage view-distant --size 64x36");
     until(&mut harness, "a picture", has_samples(1));
