@@ -6,6 +6,7 @@ use super::facts::neighbour;
 use super::model::device::{self, Device};
 use super::model::origin::{Origin, Source};
 use super::model::remembered::Bookmark;
+use super::model::show::Show;
 use super::model::view::Mode;
 use super::plot;
 use super::theme;
@@ -119,6 +120,10 @@ impl Window {
     /// Goes back to the picture if what is shown cannot be shown any more, and says why.
     pub(super) fn leave_useless_show(&mut self) {
         let show = self.show();
+        // The picture itself can always be shown, and is in most frames.
+        if show == Show::Picture {
+            return;
+        }
         if let Some(reason) = self.facts().useless_show(show) {
             self.toasts.good(format!("No {} here: {}", show.name(), lower_first(&reason)));
             self.model.view.leave_show();
