@@ -5,7 +5,7 @@ use super::answers::Answers;
 use super::model::document::Document;
 use super::tracer::Tracer;
 use crate::describe::describe;
-use crate::film::replace_file;
+use crate::files::replace_file;
 use crate::output::{OutputFormat, write_image};
 use crate::progressive::Reference;
 use crate::render::RenderJob;

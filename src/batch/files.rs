@@ -3,7 +3,8 @@
 use super::rescue;
 use crate::cli::RenderOptions;
 use crate::describe::describe;
-use crate::film::{FileIdentity, Film, Saved, SharedFile};
+use crate::files::FileIdentity;
+use crate::film::{Film, Saved, SharedFile};
 use crate::output::{OutputFormat, write_image};
 use crate::progressive::Status;
 use crate::saved::same_job;

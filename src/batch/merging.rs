@@ -2,7 +2,8 @@
 
 use crate::cli::MergeOptions;
 use crate::failure::Failure;
-use crate::film::{SampleRanges, check_writable, merge_files};
+use crate::files::check_writable;
+use crate::film::{SampleRanges, merge_files};
 use crate::output::{OutputFormat, write_image};
 use crate::recipe::file;
 use crate::saved::same_job;

@@ -15,7 +15,8 @@ use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
 use crate::console;
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::{Film, check_film_writable, check_writable, write_text};
+use crate::files::{check_replaceable, check_writable, write_text};
+use crate::film::Film;
 use crate::interrupt::Interrupt;
 use crate::progressive::{Phase, Progressive, Status, Work};
 use crate::recipe::{Recipe, file};
@@ -116,7 +117,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     };
     let scene = options.save_scene.as_ref().map(|save| &save.path);
     for path in pictures.chain([json, scene]).flatten() {
-        let check = if files::is_film(path) { check_film_writable } else { check_writable };
+        let check = if files::is_film(path) { check_replaceable } else { check_writable };
         check(path).map_err(Failure::input)?;
     }
     for render in &options.renders {

@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::values::JsonTarget;
-use crate::film::FileIdentity;
+use crate::files::FileIdentity;
 use std::path::{Path, PathBuf};
 
 /// The files that a command reads and writes, each with the flag that names it.

@@ -9,10 +9,10 @@ mod read;
 
 pub use read::{Encoding, ReadPicture, decode_picture, read_picture};
 
-pub use crate::film::{Description, RECIPE_KEY, WriteError, check_writable, key, replace_file};
+pub use crate::film::{Description, RECIPE_KEY, key};
 
+use crate::files::{self, InputError, WriteError, replace_file};
 use crate::film::{CheckpointError, Film, checkpoint};
-use crate::input::{self, InputError};
 use crate::stages::Transfer;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -119,7 +119,7 @@ pub fn write_image(
 /// # Errors
 /// [`OutputError::Input`], [`OutputError::Read`], [`OutputError::Film`] or [`OutputError::NoDescription`].
 pub fn read_description(path: &Path) -> Result<Description, OutputError> {
-    let (file, _) = input::open(path)?;
+    let (file, _) = files::open(path)?;
     decode_description(BufReader::new(file), path)
 }
 

@@ -3,8 +3,8 @@
 use super::OutputError;
 use super::limits::{PIXEL_LIMIT, check_memory, pixel_count};
 use super::pfm;
+use crate::files;
 use crate::film::checkpoint;
-use crate::input;
 use crate::stages::Transfer;
 use image::ImageDecoder;
 use std::io::{self, BufRead, BufReader, Seek};
@@ -40,7 +40,7 @@ pub struct ReadPicture {
 /// # Errors
 /// [`OutputError::Input`] or [`OutputError::Read`].
 pub fn read_picture(path: &Path, encoding: Encoding) -> Result<ReadPicture, OutputError> {
-    let (file, length) = input::open(path)?;
+    let (file, length) = files::open(path)?;
     decode_picture(BufReader::new(file), length, encoding)
         .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
 }

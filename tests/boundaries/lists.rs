@@ -3,15 +3,16 @@
 /// A room and the rooms that it may use. Lower layers first.
 pub const ROOMS: &[(&str, &[&str])] = &[
     ("memory", &[]),
-    ("input", &["memory"]),
+    ("files", &["memory"]),
     ("scene", &[]),
     ("stages", &["scene"]),
-    ("film", &["memory", "input", "stages"]),
+    ("film", &["memory", "files", "stages"]),
     ("render", &["memory", "scene", "stages", "film"]),
+    ("suggest", &[]),
     ("record", &[]),
     ("heat", &[]),
-    ("recipe", &["memory", "input", "scene", "stages", "film", "render"]),
-    ("output", &["memory", "input", "stages", "film"]),
+    ("recipe", &["memory", "files", "scene", "stages", "film", "render"]),
+    ("output", &["memory", "files", "stages", "film"]),
     ("saved", &["stages", "film", "render", "recipe", "output"]),
     ("chart", &["film"]),
     ("sampling", &["render"]),
@@ -91,7 +92,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "report",
         &[
-            "input",
+            "files",
             "stages",
             "film",
             "render",
