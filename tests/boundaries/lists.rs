@@ -4,17 +4,17 @@
 pub const ROOMS: &[(&str, &[&str])] = &[
     ("memory", &[]),
     ("files", &["memory"]),
+    ("suggest", &[]),
     ("scene", &[]),
-    ("stages", &["scene"]),
+    ("stages", &["scene", "suggest"]),
     ("film", &["memory", "files", "stages"]),
     ("render", &["memory", "scene", "stages", "film"]),
-    ("suggest", &[]),
     ("record", &[]),
     ("heat", &[]),
-    ("recipe", &["memory", "files", "scene", "stages", "film", "render"]),
+    ("recipe", &["memory", "files", "scene", "stages", "film", "render", "suggest"]),
     ("output", &["memory", "files", "stages", "film"]),
     ("saved", &["stages", "film", "render", "recipe", "output"]),
-    ("chart", &["film"]),
+    ("chart", &["files"]),
     ("sampling", &["render"]),
     ("tables", &["scene", "stages", "film", "render"]),
     ("render_cpu", &["stages", "film", "render", "record", "sampling", "tables"]),
@@ -34,7 +34,6 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "memory",
             "scene",
             "stages",
-            "film",
             "render",
             "recipe",
             "output",
@@ -45,9 +44,10 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "backends",
             "progressive",
             "failure",
+            "files",
         ],
     ),
-    ("terminal", &["film", "console", "failure", "cli"]),
+    ("terminal", &["console", "failure", "cli", "files"]),
     (
         "batch",
         &[
@@ -67,13 +67,13 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "interrupt",
             "cli",
             "terminal",
+            "files",
         ],
     ),
     (
         "bench",
         &[
             "scene",
-            "film",
             "render",
             "recipe",
             "chart",
@@ -87,6 +87,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "statistics",
             "cli",
             "terminal",
+            "files",
         ],
     ),
     (
@@ -126,6 +127,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "statistics",
             "cli",
             "terminal",
+            "files",
         ],
     ),
     (
@@ -142,6 +144,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "failure",
             "cli",
             "terminal",
+            "files",
         ],
     ),
     (
@@ -160,6 +163,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "interrupt",
             "cli",
             "terminal",
+            "files",
         ],
     ),
     (
@@ -183,6 +187,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "statistics",
             "cli",
             "stress",
+            "files",
         ],
     ),
 ];
