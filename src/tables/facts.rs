@@ -1,7 +1,8 @@
 //! What follows from a scene alone, whoever looks at it: spheres that others cover, and layers so thin that rounding
 //! may show.
 
-use super::groups::{Groups, UNIT};
+use super::groups::Groups;
+use crate::kernel::HALF_EPSILON;
 use crate::scene::{Scene, Sphere};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -64,7 +65,7 @@ impl Facts {
                 let Sphere { center, radius, .. } = scene.spheres[index as usize];
                 (center - groups.origin).abs().max_element() + radius
             });
-            LAYER_UNITS * UNIT * sizes[0].max(sizes[1])
+            LAYER_UNITS * HALF_EPSILON * sizes[0].max(sizes[1])
         };
         let is_told = |layer: &&Layer| {
             let least = resolved(layer);

@@ -1,38 +1,42 @@
 //! Each small function of the shaders against its twin: integers to the bit, floats in units of the last place.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
+mod boxes;
+#[path = "../gpu_common/mod.rs"]
 mod gpu_common;
+mod names;
+mod surfaces;
 
 use glam::DVec3;
 use gpu_common::gpu;
 use std::num::Wrapping;
 use weekender::film::FIXED_POINT_MAX;
+use weekender::kernel::{AnchoredSphere, CameraTable, PROBE_STRIDE};
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
-use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
+use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, V3, Wide};
-use weekender::render_cpu::material::{Incidence, Surface, reflectance, refracted, scatter};
+use weekender::render_cpu::material::{Surface, incidence_of, reflectance, refracted, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, anchored_root, anchored_surface_point, book_root, near_root, nearest_root,
     speck_surface_point, surface_point,
 };
-use weekender::render_gpu::shader_source::{PROBE_STRIDE, Probe};
+use weekender::render_gpu::shader_source::Probe;
 use weekender::render_gpu::{GpuOptions, GpuRenderer};
 use weekender::sampling::{
     GOLDEN_RATIO, LENS_BLOCK, laine_karras, mix32, pascal, pcg4d, pixel_key, sin_cos_turns, unit_float,
 };
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{DielectricLaws, Rules};
-use weekender::tables::{AnchoredSphere, CameraTable, Roots};
 
 /// The CPU's arithmetic, one lane, fused.
-type L = Scalar<true>;
-const L: L = Scalar::<true>;
+pub type L = Scalar<true>;
+pub const L: L = Scalar::<true>;
 
 const COUNT: usize = 4096;
 
-type Words = [u32; PROBE_STRIDE];
+pub type Words = [u32; PROBE_STRIDE];
 
-fn job(laws: DielectricLaws) -> RenderJob {
+pub fn job(laws: DielectricLaws) -> RenderJob {
     let settings = RenderSettings {
         width: 640,
         height: 360,
@@ -53,7 +57,7 @@ fn job(laws: DielectricLaws) -> RenderJob {
 }
 
 /// Runs a probe on `COUNT` inputs.
-fn run(
+pub fn run(
     gpu: &mut GpuRenderer,
     laws: DielectricLaws,
     probe: Probe,
@@ -65,17 +69,17 @@ fn run(
 }
 
 /// Numbers in `[0, 1)` that depend on `i` and `stream`.
-fn uniform(i: u32, stream: u32) -> [f32; 4] {
+pub fn uniform(i: u32, stream: u32) -> [f32; 4] {
     pcg4d([i, stream, 7, 11]).map(unit_float)
 }
 
-fn unit_vector(i: u32, stream: u32) -> [f32; 3] {
+pub fn unit_vector(i: u32, stream: u32) -> [f32; 3] {
     let [a, b, ..] = uniform(i, stream);
     weekender::sampling::unit_sphere(a, b)
 }
 
 /// Bits of floats, then zeros.
-fn words(floats: &[f32]) -> Words {
+pub fn words(floats: &[f32]) -> Words {
     let mut words = [0; PROBE_STRIDE];
     for (to, from) in words.iter_mut().zip(floats) {
         *to = from.to_bits();
@@ -83,24 +87,24 @@ fn words(floats: &[f32]) -> Words {
     words
 }
 
-fn float(words: &Words, i: usize) -> f32 {
+pub fn float(words: &Words, i: usize) -> f32 {
     f32::from_bits(words[i])
 }
 
-fn vector(words: &Words, i: usize) -> V3<f32> {
+pub fn vector(words: &Words, i: usize) -> V3<f32> {
     V3 { x: float(words, i), y: float(words, i + 1), z: float(words, i + 2) }
 }
 
-fn list(v: V3<f32>) -> [f32; 3] {
+pub fn list(v: V3<f32>) -> [f32; 3] {
     [v.x, v.y, v.z]
 }
 
 /// The largest difference, in units of the last place of numbers as large as `scale`.
 #[derive(Default)]
-struct Ulps(f64);
+pub struct Ulps(f64);
 
 impl Ulps {
-    fn compare(&mut self, got: &[f32], expected: &[f32], scale: f32) {
+    pub fn compare(&mut self, got: &[f32], expected: &[f32], scale: f32) {
         let unit = f64::from(scale.next_up()) - f64::from(scale);
         for (a, b) in got.iter().zip(expected) {
             let difference = (f64::from(*a) - f64::from(*b)).abs() / unit;
@@ -109,7 +113,7 @@ impl Ulps {
         }
     }
 
-    fn within(&self, what: &str, limit: f64) {
+    pub fn within(&self, what: &str, limit: f64) {
         println!("{what}: {:.1} units of the last place", self.0);
         assert!(self.0 <= limit, "{what}: {} > {limit}", self.0);
     }
@@ -202,7 +206,7 @@ fn ray_words(i: u32) -> Words {
     words
 }
 
-fn rays(words: &Words) -> Rays<L> {
+pub fn rays(words: &Words) -> Rays<L> {
     Rays {
         origin: vector(words, 0),
         direction: vector(words, 3),
@@ -296,8 +300,7 @@ fn anchored_spheres() {
             anchor: list(vector(&input, 8)),
             inward: list(vector(&input, 12)),
             curvature: float(&input, 11),
-            roots: [Roots::Nearer, Roots::Both, Roots::Farther][input[3] as usize % 3],
-            under_eye: false,
+            flags: input[3] % 3,
         };
         let rays = rays(&input);
         compare_keys(&mut roots, output[0], anchored_root(L, &rays, &sphere, Wrapping(1)), &input);
@@ -338,13 +341,13 @@ fn scattering() {
             words[14] = u32::from(front < 0.5);
             words
         }) {
-            let [weight, index, inverse_index, normal_share] = [0, 1, 2, 3].map(|i| float(&input, i));
-            let surface: Surface<L> = Surface { weight, index, inverse_index, normal_share };
+            let [weight, refraction_index, inverse_index, f0] = [0, 1, 2, 3].map(|i| float(&input, i));
+            let surface: Surface<L> = Surface { weight, refraction_index, inverse_index, f0 };
             let (cosine, coin) = (float(&input, 13), float(&input, 15));
             let (d, n, unit) = (vector(&input, 4), vector(&input, 7), vector(&input, 10));
             let front = input[14] != 0;
             let sent =
-                scatter::<L, true>(L, &surface, laws, d, n, &Incidence::of(L, cosine), front, unit, coin);
+                scatter::<L, true>(L, &surface, laws, d, n, &incidence_of(L, cosine), front, unit, coin);
             let flags = u32::from(sent.refracts) | u32::from(sent.is_metal) << 1;
             if output[3] != flags {
                 // A coin within rounding of the reflectance.
@@ -352,8 +355,8 @@ fn scattering() {
                 continue;
             }
             ulps.compare(&list(vector(&output, 0)), &list(sent.direction), 2.0);
-            ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, normal_share)], 1.0);
-            let sine2 = Incidence::of(L, cosine).sine2;
+            ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, f0)], 1.0);
+            let sine2 = incidence_of(L, cosine).sine2;
             ulps.compare(&list(vector(&output, 5)), &list(refracted(L, d, n, sent.ratio, sine2)), 2.0);
         }
         assert!(parted <= 2, "{parted} parted");
@@ -377,8 +380,8 @@ fn camera_rays() {
     }) {
         let [x, y, a, b, c, d] = [0, 1, 2, 3, 4, 5].map(|i| float(&input, i));
         let corner = screen(L, &camera, x, y);
-        let pinhole = pinhole_rays(L, &camera, corner, [a, b]);
-        let lens = lens_rays(L, &camera, corner, [a, b], [c, d]);
+        let pinhole = pinhole_ray(L, &camera, corner, [a, b]);
+        let lens = lens_ray(L, &camera, corner, [a, b], [c, d]);
         for (at, v) in [(0, pinhole.origin), (3, pinhole.direction), (6, lens.origin), (9, lens.direction)] {
             ulps.compare(&list(vector(&output, at)), &list(v), 4.0);
         }
