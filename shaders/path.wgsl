@@ -57,6 +57,7 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
     if ASIDE && order.resumes > 0u {
         next_block = take_up(&path, aside);
     }
+    let first_block = max(next_block, 1u) - 1u;
     let list_turns = turns_over_lists();
     var is_done = path.remaining == 0u;
     turns = 0u;
@@ -85,7 +86,6 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
         if ended && path.remaining == 0u {
             if next_block > 0u {
                 add_to_film(path.half, slot, path.sums);
-                traced.finished += blocks[next_block - 1u].count;
             }
             if next_block == order.block_count {
                 is_done = true;
@@ -96,6 +96,11 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
             next_block++;
         }
         send_on(&path, ended, nearest.sphere, record, point);
+    }
+    // Counted here, since some drivers go through a branch whether it is taken or not.
+    let end_block = select(max(next_block, 1u) - 1u, next_block, is_done);
+    for (var i = first_block; i < end_block; i++) {
+        traced.finished += blocks[i].count;
     }
     if !is_done {
         if ASIDE {

@@ -349,8 +349,8 @@ impl GpuRenderer {
             let mut left = Blocks::of_range(range.clone(), &settings, prepared.scene.tables.block_limit);
             loop {
                 let affordable = self.dispatches.budget(&prepared.features).paths();
-                let pixels = u64::from(tiles) * tile_pixels;
-                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / pixels).min(most);
+                let threads = (u64::from(tiles) * tile_pixels).min(self.gpu.adapter.busy_threads());
+                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / threads).min(most);
                 let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
                 if blocks.is_empty() {
                     break;

@@ -10,8 +10,15 @@ const DEVIATIONS: f64 = 4.0;
 /// 1.4 of it.
 const PAIRED_SHARE: f64 = 0.5;
 
+/// Pictures whose paths have parted differ by less than this times their noise: by 1.4 if all have, and noise is only
+/// known to a tenth.
+const PARTED_SHARE: f64 = 1.6;
+
 /// What rounding may move pixels by where there is no noise.
 const PAIRED_FLOOR: f64 = 1e-4;
+
+/// The same where paths may part: some of the few hundred thousand of a picture.
+const PARTED_FLOOR: f64 = 3e-4;
 
 /// Times the tame twin's time that count as slow, once it is more than [`SLOW_SECONDS`].
 const SLOW_RATIO: f64 = 8.0;
@@ -82,6 +89,8 @@ pub enum Against {
     Mean(f64),
     /// The same samples of another picture, and how far off they are.
     Picture(Paired),
+    /// Another picture of the same light, whatever its paths.
+    Estimate(Paired),
 }
 
 /// How far the mean is off, linear radiance: of the worst channel where each is known.
@@ -92,7 +101,7 @@ pub fn offset(level: &Level, against: Against) -> f64 {
             .max_by(|a, b| a.abs().total_cmp(&b.abs()))
             .unwrap_or(0.0),
         Against::Mean(value) => level.grey() - value,
-        Against::Picture(paired) => paired.bias,
+        Against::Picture(paired) | Against::Estimate(paired) => paired.bias,
     }
 }
 
@@ -102,7 +111,9 @@ pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> 
     let allowed = match against {
         Against::Every(_) => tolerance,
         Against::Mean(_) => tolerance + DEVIATIONS * level.deviation,
-        Against::Picture(paired) => tolerance + DEVIATIONS * paired.bias_deviation,
+        Against::Picture(paired) | Against::Estimate(paired) => {
+            tolerance + DEVIATIONS * paired.bias_deviation
+        }
     };
     if rejected > 0 {
         return Verdict::Wrong(format!("{rejected} samples were no numbers"));
@@ -110,8 +121,13 @@ pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> 
     if off.is_nan() || off.abs() > allowed {
         return Verdict::Wrong(format!("off by {off:+.1e}, where {allowed:.1e} are allowed"));
     }
-    if let Against::Picture(paired) = against {
-        let allowed = (PAIRED_SHARE * level.noise).max(PAIRED_FLOOR);
+    let pairs = match against {
+        Against::Every(_) | Against::Mean(_) => None,
+        Against::Picture(paired) => Some((paired, PAIRED_SHARE, PAIRED_FLOOR)),
+        Against::Estimate(paired) => Some((paired, PARTED_SHARE, PARTED_FLOOR)),
+    };
+    if let Some((paired, share, floor)) = pairs {
+        let allowed = (share * level.noise).max(floor);
         if paired.rms > allowed {
             return Verdict::Wrong(format!(
                 "pixels are off by {:.1e} RMS, where {allowed:.1e} are allowed",
@@ -169,6 +185,10 @@ mod tests {
         // Another picture of the same mean.
         let verdict = judge(&noisy, paired(0.0, 0.06), 2e-6, 0);
         assert!(verdict.reason().starts_with("pixels are off by 6.0e-2"), "{verdict:?}");
+        // As far apart as chance takes two estimates, and farther.
+        let estimate = |rms| Against::Estimate(Paired { bias: 0.0, bias_deviation: 1e-3, rms });
+        assert!(judge(&noisy, estimate(0.07), 2e-6, 0).is_right());
+        assert!(!judge(&noisy, estimate(0.1), 2e-6, 0).is_right());
     }
 
     #[test]

@@ -3,19 +3,26 @@
 
 use super::groups::Groups;
 use crate::kernel::HALF_EPSILON;
-use crate::scene::{Scene, Sphere};
+use crate::render::RenderJob;
+use crate::scene::{Material, Scene, Sphere};
 use glam::DVec3;
 use rayon::prelude::*;
 
 /// Two spheres whose surfaces are everywhere closer than this share of their radius are a layer.
 const LAYER_SHARE: f64 = 1e-2;
 
-/// A layer that is closed somewhere, since its surfaces touch or cross, is wrong about there: it is told of while its
-/// thickest place is not so many times as thick as a layer must be.
+/// A layer is right while it is thicker than this many units of rounding of the coordinates that it lies at ...
+const LAYER_UNITS: f64 = 16.0;
+
+/// ... and than this many of the distance from which the eye sees it: nearer surfaces have one distance.
+const DISTANCE_UNITS: f64 = 4.0;
+
+/// A layer whose surfaces touch or cross is too thin somewhere, whatever its thickest place. It is told of where that is
+/// so many times as thick as a layer must be, or less: a path that meets the wrong surface first is hardly longer.
 const CLOSING_RATIO: f64 = 100.0;
 
-/// A layer is right while it is thicker than this many units of rounding of the coordinates that it lies at.
-const LAYER_UNITS: f64 = 16.0;
+/// The same where one side is glass: a path that misses its way out of glass is another path.
+const GLASS_CLOSING_RATIO: f64 = 1e4;
 
 /// So many spheres are compared with each other in a cell; in a fuller one each with the next larger.
 const CELL_LIMIT: usize = 64;
@@ -38,6 +45,14 @@ struct Layer {
     opening: f64,
 }
 
+/// A layer that shows rounding.
+#[derive(Clone, Copy, Debug)]
+struct Unresolved {
+    layer: Layer,
+    /// How thick it would have to be.
+    limit: f64,
+}
+
 impl Facts {
     pub fn of(scene: &Scene) -> Self {
         let mut facts = Facts::default();
@@ -58,34 +73,33 @@ impl Facts {
         self.covered.binary_search(&index).is_ok()
     }
 
-    /// What single precision does not hold of a scene that is seen as `groups` say.
-    pub fn warnings(&self, scene: &Scene, groups: &Groups) -> Vec<String> {
-        let resolved = |layer: &Layer| {
-            let sizes = layer.spheres.map(|index| {
-                let Sphere { center, radius, .. } = scene.spheres[index as usize];
-                (center - groups.origin).abs().max_element() + radius
-            });
-            LAYER_UNITS * HALF_EPSILON * sizes[0].max(sizes[1])
-        };
-        let is_told = |layer: &&Layer| {
-            let least = resolved(layer);
-            let is_thin = layer.thickness < least;
-            let closes = layer.opening < least && layer.thickness < CLOSING_RATIO * least;
-            is_thin || closes
-        };
-        let too_thin = self.layers.iter().filter(is_told);
-        let count = too_thin.clone().count();
-        let worst =
-            too_thin.min_by(|a, b| (a.thickness / resolved(a)).total_cmp(&(b.thickness / resolved(b))));
-        let Some(worst) = worst else { return Vec::new() };
-        let [a, b] = worst.spheres;
-        let others = if count > 1 { format!(" ({} such layers in all)", count) } else { String::new() };
-        vec![format!(
-            "the surfaces of spheres {a} and {b} are at most {:.1e} apart, and single precision cannot tell them apart \
-             where that is less than {:.1e}{others}; make the layer thicker, or render with --device reference",
-            worst.thickness,
-            resolved(worst),
-        )]
+    /// What single precision does not hold of a job whose spheres are seen as `groups` say.
+    pub fn warnings(&self, job: &RenderJob, groups: &Groups) -> Vec<String> {
+        let unresolved: Vec<Unresolved> =
+            self.layers.iter().filter_map(|layer| unresolved(*layer, job, groups)).collect();
+        let (thin, closing): (Vec<_>, Vec<_>) =
+            unresolved.into_iter().partition(|found| found.layer.thickness < found.limit);
+        let others =
+            |count: usize| if count > 1 { format!(" ({count} such layers in all)") } else { String::new() };
+        let thin_ones = worst(&thin).map(|Unresolved { layer, limit }| {
+            let ([a, b], others) = (layer.spheres, others(thin.len()));
+            format!(
+                "the surfaces of spheres {a} and {b} are at most {:.1e} apart, and single precision cannot tell them apart \
+                 where that is less than {limit:.1e}{others}; make the layer thicker, or render with --device reference",
+                layer.thickness,
+            )
+        });
+        let closing_ones = worst(&closing).map(|Unresolved { layer, limit }| {
+            let ([a, b], others) = (layer.spheres, others(closing.len()));
+            format!(
+                "the surfaces of spheres {a} and {b} touch or cross and are nowhere more than {:.1e} apart; up to {:.1e} \
+                 of them is closer than {limit:.1e}, where single precision cannot tell them apart{others}; move the \
+                 spheres apart, or render with --device reference",
+                layer.thickness,
+                limit / layer.thickness,
+            )
+        });
+        thin_ones.into_iter().chain(closing_ones).collect()
     }
 
     /// Compares spheres of about one size and place: those of one cell, and those beyond its border where one lies close
@@ -152,6 +166,28 @@ impl Facts {
             self.layers.push(Layer { spheres, thickness, opening });
         }
     }
+}
+
+/// `None` if the layer is right.
+fn unresolved(layer: Layer, job: &RenderJob, groups: &Groups) -> Option<Unresolved> {
+    let spheres = layer.spheres.map(|index| job.scene().spheres[index as usize]);
+    let limits = spheres.map(|Sphere { center, radius, .. }| {
+        let coordinate = (center - groups.origin).abs().max_element() + radius;
+        let distance = center.distance(job.camera().look_from);
+        HALF_EPSILON * (LAYER_UNITS * coordinate).max(DISTANCE_UNITS * distance)
+    });
+    let limit = limits[0].max(limits[1]);
+    let is_glass = |sphere: &Sphere| matches!(job.scene().material_of(sphere), Material::Dielectric { .. });
+    let ratio = if spheres.iter().any(is_glass) { GLASS_CLOSING_RATIO } else { CLOSING_RATIO };
+    let is_thin = layer.thickness < limit;
+    let closes = layer.opening < limit && layer.thickness < ratio * limit;
+    (is_thin || closes).then_some(Unresolved { layer, limit })
+}
+
+/// The one that is worst beside how thick it would have to be.
+fn worst(all: &[Unresolved]) -> Option<Unresolved> {
+    let share = |found: &Unresolved| found.layer.thickness / found.limit;
+    all.iter().copied().min_by(|a, b| share(a).total_cmp(&share(b)))
 }
 
 /// At most [`CELL_LIMIT`] spheres of the cell with this mark.
@@ -242,7 +278,6 @@ fn cells_near(number: f64) -> [Option<f64>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Material;
 
     fn scene(spheres: impl IntoIterator<Item = (DVec3, f64)>) -> Scene {
         let mut scene = Scene::default();

@@ -12,6 +12,14 @@ use glam::DVec3;
 /// that point the perpendicular form's distances are off by some `1e-4` of that length.
 const ANCHOR_SHARE: f64 = 5e-5;
 
+/// Glass that touches a sphere counts as so many times smaller than it is. A ray that leaves the glass near there may
+/// start inside an opaque sphere by as much as rounding moves its surface, and then passes through it: where the other
+/// forms miss what lies behind a ray's start, the anchored one does not.
+const TOUCHING_SHARE: f64 = 5.0;
+
+/// Spheres touch where they cross, or where so many units of rounding part them.
+const TOUCHING_UNITS: f64 = 16.0;
+
 /// Most spheres that are anchored for the sake of small lengths. Every ray tests them all, so they cost what a list
 /// costs; those that gain most come first.
 const ANCHORED_LIMIT: usize = 16;
@@ -20,8 +28,8 @@ const ANCHORED_LIMIT: usize = 16;
 const CANDIDATE_LIMIT: usize = 64;
 
 /// Coordinates are measured from a point near the eye where the eye is farther from the world's origin than this
-/// many times the smallest length about it: there they would be rounded to `6e-5` of that length.
-const SHIFT_RATIO: f64 = 1024.0;
+/// many times the smallest length about it: there they would be rounded to `8e-6` of that length.
+const SHIFT_RATIO: f64 = 128.0;
 
 /// That point lies on a grid as coarse as this many times the length, so that it stays while the eye moves a little.
 const GRID_RATIO: f64 = 256.0;
@@ -105,7 +113,7 @@ impl Groups {
         let mut groups = Groups::default();
         if is_exact {
             groups.origin = origin(shown().map(|(_, sphere)| sphere), &eye);
-            groups.anchored = anchored(shown, &eye, is_opaque);
+            groups.anchored = anchored(shown, &eye, &is_opaque);
         }
         for (index, sphere) in shown() {
             let index = index as u32;
@@ -141,6 +149,13 @@ fn reaches_into(sphere: &Sphere, cavity: &Sphere) -> bool {
     sphere == cavity || (apart < sphere.radius + cavity.radius && apart + cavity.radius > sphere.radius)
 }
 
+/// Whether the surfaces cross, or are closer than rounding tells.
+fn touch(a: &Sphere, b: &Sphere) -> bool {
+    let apart = a.center.distance(b.center);
+    let margin = TOUCHING_UNITS * HALF_EPSILON * a.radius.max(b.radius);
+    apart <= a.radius + b.radius + margin && apart >= (a.radius - b.radius).abs() - margin
+}
+
 /// Whether rounding moves a hit by more than a share of the sphere that shows.
 fn is_speck(sphere: &Sphere, eye: &Eye) -> bool {
     HALF_EPSILON * eye.position.distance(sphere.center) > 5e-4 * sphere.radius
@@ -174,11 +189,12 @@ fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> D
 fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
     shown: impl Fn() -> I + Copy,
     eye: &Eye,
-    is_opaque: impl Fn(&Sphere) -> bool,
+    is_opaque: &impl Fn(&Sphere) -> bool,
 ) -> Vec<Anchored> {
     let needs_anchor = |radius: f64, length: f64| HALF_EPSILON * radius > ANCHOR_SHARE * length;
     let is_special = |s: &Sphere| (is_opaque(s) && eye.is_inside(s)) || eye.height(s) == 0.0;
-    let smallest = shown().map(|(_, s)| s.radius).fold(f64::INFINITY, f64::min);
+    let counted = |s: &Sphere| if is_opaque(s) { s.radius } else { s.radius / TOUCHING_SHARE };
+    let smallest = shown().map(|(_, s)| counted(s)).fold(f64::INFINITY, f64::min);
     let mut candidates: Vec<(usize, &Sphere)> = shown()
         .filter(|(_, s)| is_special(s) || needs_anchor(s.radius, smallest.min(positive(eye.height(s).abs()))))
         .collect();
@@ -191,7 +207,7 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         .into_iter()
         .filter_map(|(index, sphere)| {
             let height = positive(eye.height(sphere).abs());
-            let detail = Detail::near(shown, sphere);
+            let detail = Detail::near(shown, sphere, is_opaque);
             let length = detail.map_or(f64::INFINITY, |detail| detail.length);
             if !is_special(sphere) && !needs_anchor(sphere.radius, length.min(height)) {
                 return None;
@@ -230,12 +246,15 @@ impl Detail {
     fn near<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         shown: impl Fn() -> I,
         sphere: &Sphere,
+        is_opaque: &impl Fn(&Sphere) -> bool,
     ) -> Option<Self> {
         let relevant = HALF_EPSILON / ANCHOR_SHARE * sphere.radius;
         let lengths = || {
-            shown().filter(|(_, other)| other.radius < relevant).map(|(_, other)| {
+            shown().filter(|(_, other)| other.radius < TOUCHING_SHARE * relevant).map(|(_, other)| {
                 let away = (other.center.distance(sphere.center) - sphere.radius).abs();
-                (other.radius.max(away), other.center)
+                let size = other.radius.max(away);
+                let leaks = !is_opaque(other) && is_opaque(sphere) && touch(sphere, other);
+                (if leaks { size / TOUCHING_SHARE } else { size }, other.center)
             })
         };
         let length = lengths().map(|(length, _)| length).fold(relevant, f64::min);

@@ -176,7 +176,7 @@ impl<R: Real> Tables<R> {
             self.rows.push(Row::default());
         }
         self.warnings = if job.rules().surface == Surface::Exact {
-            self.facts.warnings(scene, &groups)
+            self.facts.warnings(job, &groups)
         } else {
             Vec::new()
         };

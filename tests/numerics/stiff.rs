@@ -374,8 +374,14 @@ fn layers_too_thin_for_single_precision_are_told() {
         let balls = [(DVec3::ZERO, 1.0, glass(1.5)), (DVec3::X * by, 1.0, second)];
         !Tables::<f32>::new(&job(&scene(&balls), AT_BALL, size(2, 2))).warnings().is_empty()
     };
-    assert!(crossing(1e-5, lambertian(0.5)) && !crossing(1e-3, lambertian(0.5)));
+    assert!(crossing(1e-5, lambertian(0.5)) && crossing(2e-3, lambertian(0.5)));
+    assert!(!crossing(0.1, lambertian(0.5)));
     assert!(crossing(1e-8, glass(1.5)));
+    let matte_crossing = |by: f64| {
+        let balls = [(DVec3::ZERO, 1.0, lambertian(0.5)), (DVec3::X * by, 1.0, lambertian(0.8))];
+        !Tables::<f32>::new(&job(&scene(&balls), AT_BALL, size(2, 2))).warnings().is_empty()
+    };
+    assert!(matte_crossing(1e-5) && !matte_crossing(1e-3));
     let thin = warnings(1e-7);
     assert!(
         thin.len() == 1 && thin[0].contains("--device reference") && thin[0].contains("1.0e-7"),
@@ -394,6 +400,57 @@ fn layers_without_a_warning_are_right() {
         println!("{thickness:e} ({is_told}): {found:?}");
         assert!(is_told || found.bias.abs() < 1e-4, "{thickness:e}: {found:?}");
     }
+}
+
+/// From afar a coat and what it coats have one distance, though both are small and their coordinates have digits to spare.
+#[test]
+fn coats_seen_from_afar_are_told_or_right() {
+    let center = DVec3::new(0.188, 1.469, 2.204);
+    let coated = |thickness: f64| {
+        let balls = [(center, 0.003, glass(20.0)), (center, 0.003 - thickness, lambertian(0.5))];
+        let camera = Camera { look_from: DVec3::ZERO, look_at: center, vfov_degrees: 0.2, ..Camera::BOOK };
+        let job = job(&under_white_sky(&balls), camera, size(16, 12));
+        let is_told = !Tables::<f32>::new(&job).warnings().is_empty();
+        (is_told, paired(&job, 64, &mut widest(), &mut reference()).bias.abs())
+    };
+    for units in [1.0, 2.0, 4.5, 8.0, 32.0] {
+        let (is_told, bias) = coated(units * center.length() * f64::from(f32::EPSILON) / 2.0);
+        println!("{units} ({is_told}): {bias:e}");
+        assert!(is_told || bias < 1e-4, "{units}: {bias:e}");
+        assert_eq!(is_told, units < 4.0, "{units}");
+    }
+}
+
+/// Where glass touches a ball hundreds of times larger, a ray that leaves the glass may start below the ball's surface: it
+/// meets it all the same. With two rays the ground is black from within, and what is bright has leaked.
+#[test]
+fn nothing_leaks_where_glass_touches_the_ground() {
+    let (eye, radius, ground) = (DVec3::new(0.3, 0.2, -0.1), 10.3, 4073.8);
+    let down = DVec3::new(-0.1, -1.0, -0.2).normalize();
+    for overlap in [0.0, 1e-4, 3e-3, 0.1] {
+        let below = eye + down * (radius + ground - overlap);
+        let balls = [(eye, radius, glass(1.000_001)), (below, ground, lambertian(0.5))];
+        let camera = Camera { look_from: eye, look_at: below, vfov_degrees: 10.0, ..Camera::BOOK };
+        let settings = RenderSettings { max_depth: 2, ..size(16, 12) };
+        let found =
+            paired(&job(&under_white_sky(&balls), camera, settings), 64, &mut widest(), &mut reference());
+        assert!(found.bias.abs() < 1e-5, "{overlap}: {found:?}");
+    }
+}
+
+/// A picture of something small is as sharp as its single precision allows, wherever the origin of the world is.
+#[test]
+fn small_balls_near_the_origin_are_where_they_are() {
+    let center = DVec3::new(-0.000_118, 0.001_18, 0.002_05);
+    let scene = Scene {
+        sky: Sky { bottom: DVec3::ZERO, top: DVec3::new(0.5, 1.0, 2.0) },
+        ..scene(&[(center, 4e-6, mirror(1.0))])
+    };
+    let look_from = DVec3::new(-0.000_11, 0.0012, 0.002);
+    let camera = Camera { look_from, look_at: center, vfov_degrees: 3.0, ..Camera::BOOK };
+    let settings = RenderSettings { max_depth: 2, ..size(16, 12) };
+    let found = paired(&job(&scene, camera, settings), 256, &mut widest(), &mut reference());
+    assert!(found.bias.abs() < 4e-6, "{found:?}");
 }
 
 /// Far balls: the normal at a hit has length 1, however coarsely the distance is rounded.
