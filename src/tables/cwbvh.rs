@@ -197,7 +197,7 @@ mod tests {
         let whole = Cwbvh::build(&spheres, DVec3::ZERO);
         let damages: [(&str, fn(&mut Cwbvh)); 6] = [
             ("two leaves", |tree| tree.order[0] = tree.order[1]),
-            ("names sphere", |tree| tree.order[0] = 500),
+            ("names sphere", |tree| tree.order[0] = 1 << 20),
             ("reaches out of", |tree| tree.nodes[0].p.x += 1.0),
             ("not behind it", |tree| tree.nodes[0].child_base_idx = 0),
             ("but there are", |tree| tree.nodes[0].child_base_idx = 5000),

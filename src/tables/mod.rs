@@ -14,7 +14,7 @@ use crate::kernel::{
 };
 use crate::render::{RenderJob, RenderSettings};
 use crate::scene::{Material, Scene, Sphere};
-use crate::stages::{Rules, Surface};
+use crate::stages::Surface;
 use facts::Facts;
 use glam::DVec3;
 use groups::{Anchored, Groups};
@@ -56,8 +56,6 @@ pub struct Tables<R> {
     pub block_limit: u32,
     /// Size, depth, sampler, seed, halves.
     pub settings: RenderSettings,
-    /// The rules in force.
-    pub rules: Rules,
     /// What the job needs of a kernel.
     pub features: Features,
     /// What coordinates are measured from, in the scene's.
@@ -120,7 +118,6 @@ impl<R: Real> Tables<R> {
             sky_slope: rounded((top - bottom) / 2.0),
             block_limit: block_limit(scene.sky.bottom.max(scene.sky.top).max_element()),
             settings,
-            rules: *job.rules(),
             features: Features::default(),
             origin: groups.origin,
             groups: Groups::default(),

@@ -18,7 +18,7 @@ fn ray_and_box(i: u32) -> Words {
     let high = [low[0] + size + a, low[1] + size + b, low[2] + size + c];
     let origin = unit_vector(i, 72).map(|x| 8.0 * reach * x);
     let [u, v, w, limit] = uniform(i, 73);
-    let target = [u, v, w].map(|x| 6.0 * x - 3.0);
+    let target = [0, 1, 2].map(|k| low[k] + (1.8 * [u, v, w][k] - 0.4) * (high[k] - low[k]));
     let mut d = DVec3::from_array([0, 1, 2].map(|k| f64::from(target[k] - origin[k])));
     // Along an axis, too, where one component's inverse is not finite.
     match i % 8 {
