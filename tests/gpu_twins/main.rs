@@ -29,14 +29,14 @@ use weekender::scene::{Camera, Scene};
 use weekender::stages::{DielectricLaws, Rules};
 
 /// The CPU's arithmetic, one lane, fused.
-pub type L = Scalar<true>;
-pub const L: L = Scalar::<true>;
+type L = Scalar<true>;
+const L: L = Scalar::<true>;
 
 const COUNT: usize = 4096;
 
-pub type Words = [u32; PROBE_STRIDE];
+type Words = [u32; PROBE_STRIDE];
 
-pub fn job(laws: DielectricLaws) -> RenderJob {
+fn job(laws: DielectricLaws) -> RenderJob {
     let settings = RenderSettings {
         width: 640,
         height: 360,
@@ -57,7 +57,7 @@ pub fn job(laws: DielectricLaws) -> RenderJob {
 }
 
 /// Runs a probe on `COUNT` inputs.
-pub fn run(
+fn run(
     gpu: &mut GpuRenderer,
     laws: DielectricLaws,
     probe: Probe,
@@ -69,17 +69,17 @@ pub fn run(
 }
 
 /// Numbers in `[0, 1)` that depend on `i` and `stream`.
-pub fn uniform(i: u32, stream: u32) -> [f32; 4] {
+fn uniform(i: u32, stream: u32) -> [f32; 4] {
     pcg4d([i, stream, 7, 11]).map(unit_float)
 }
 
-pub fn unit_vector(i: u32, stream: u32) -> [f32; 3] {
+fn unit_vector(i: u32, stream: u32) -> [f32; 3] {
     let [a, b, ..] = uniform(i, stream);
     weekender::sampling::unit_sphere(a, b)
 }
 
 /// Bits of floats, then zeros.
-pub fn words(floats: &[f32]) -> Words {
+fn words(floats: &[f32]) -> Words {
     let mut words = [0; PROBE_STRIDE];
     for (to, from) in words.iter_mut().zip(floats) {
         *to = from.to_bits();
@@ -87,24 +87,24 @@ pub fn words(floats: &[f32]) -> Words {
     words
 }
 
-pub fn float(words: &Words, i: usize) -> f32 {
+fn float(words: &Words, i: usize) -> f32 {
     f32::from_bits(words[i])
 }
 
-pub fn vector(words: &Words, i: usize) -> V3<f32> {
+fn vector(words: &Words, i: usize) -> V3<f32> {
     V3 { x: float(words, i), y: float(words, i + 1), z: float(words, i + 2) }
 }
 
-pub fn list(v: V3<f32>) -> [f32; 3] {
+fn list(v: V3<f32>) -> [f32; 3] {
     [v.x, v.y, v.z]
 }
 
 /// The largest difference, in units of the last place of numbers as large as `scale`.
 #[derive(Default)]
-pub struct Ulps(f64);
+struct Ulps(f64);
 
 impl Ulps {
-    pub fn compare(&mut self, got: &[f32], expected: &[f32], scale: f32) {
+    fn compare(&mut self, got: &[f32], expected: &[f32], scale: f32) {
         let unit = f64::from(scale.next_up()) - f64::from(scale);
         for (a, b) in got.iter().zip(expected) {
             let difference = (f64::from(*a) - f64::from(*b)).abs() / unit;
@@ -113,7 +113,7 @@ impl Ulps {
         }
     }
 
-    pub fn within(&self, what: &str, limit: f64) {
+    fn within(&self, what: &str, limit: f64) {
         println!("{what}: {:.1} units of the last place", self.0);
         assert!(self.0 <= limit, "{what}: {} > {limit}", self.0);
     }
@@ -206,7 +206,7 @@ fn ray_words(i: u32) -> Words {
     words
 }
 
-pub fn rays(words: &Words) -> Rays<L> {
+fn rays(words: &Words) -> Rays<L> {
     Rays {
         origin: vector(words, 0),
         direction: vector(words, 3),
