@@ -12,9 +12,8 @@ use glam::DVec3;
 /// that point the perpendicular form's distances are off by some `1e-4` of that length.
 const ANCHOR_SHARE: f64 = 5e-5;
 
-/// Glass that touches a sphere counts as so many times smaller than it is. A ray that leaves the glass near there may
-/// start inside an opaque sphere by as much as rounding moves its surface, and then passes through it: where the other
-/// forms miss what lies behind a ray's start, the anchored one does not.
+/// What touches a much larger sphere counts as so many times smaller than it is where one of the two is glass. A ray that
+/// leaves the one near there may start beyond the other's surface by as much as rounding moves it, and then misses it.
 const TOUCHING_SHARE: f64 = 5.0;
 
 /// Spheres touch where they cross, or where so many units of rounding part them.
@@ -193,8 +192,9 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
 ) -> Vec<Anchored> {
     let needs_anchor = |radius: f64, length: f64| HALF_EPSILON * radius > ANCHOR_SHARE * length;
     let is_special = |s: &Sphere| (is_opaque(s) && eye.is_inside(s)) || eye.height(s) == 0.0;
-    let counted = |s: &Sphere| if is_opaque(s) { s.radius } else { s.radius / TOUCHING_SHARE };
-    let smallest = shown().map(|(_, s)| counted(s)).fold(f64::INFINITY, f64::min);
+    let has_glass = shown().any(|(_, s)| !is_opaque(s));
+    let share = if has_glass { TOUCHING_SHARE } else { 1.0 };
+    let smallest = shown().map(|(_, s)| s.radius / share).fold(f64::INFINITY, f64::min);
     let mut candidates: Vec<(usize, &Sphere)> = shown()
         .filter(|(_, s)| is_special(s) || needs_anchor(s.radius, smallest.min(positive(eye.height(s).abs()))))
         .collect();
@@ -253,7 +253,7 @@ impl Detail {
             shown().filter(|(_, other)| other.radius < TOUCHING_SHARE * relevant).map(|(_, other)| {
                 let away = (other.center.distance(sphere.center) - sphere.radius).abs();
                 let size = other.radius.max(away);
-                let leaks = !is_opaque(other) && is_opaque(sphere) && touch(sphere, other);
+                let leaks = !(is_opaque(other) && is_opaque(sphere)) && touch(sphere, other);
                 (if leaks { size / TOUCHING_SHARE } else { size }, other.center)
             })
         };
