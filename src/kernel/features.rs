@@ -257,7 +257,7 @@ impl Features {
     /// What a kernel for just this contains, for reports: `lambertian, metal, glass, 5 spheres in constants`.
     pub fn describe(&self) -> String {
         let is_told =
-            |(name, words): &(&str, &str)| !words.is_empty() && !(self.cwbvh && *name == "hierarchy");
+            |(name, words): &(&str, &str)| !(words.is_empty() || self.cwbvh && *name == "hierarchy");
         let words = self.words().into_iter().filter(is_told).map(|(_, words)| words.to_owned());
         let count = self.opaque_count + self.two_root_count;
         let few = self.few_spheres.then(|| format!("{count} spheres in constants"));

@@ -11,7 +11,9 @@ use crate::render::RenderJob;
 /// Returns from the function with a message unless a condition holds.
 macro_rules! ensure {
     ($condition:expr, $($message:tt)+) => {
-        if !$condition {
+        // A comparison with NaN does not hold.
+        let holds: bool = $condition;
+        if !holds {
             return Err(format!($($message)+));
         }
     };
@@ -251,6 +253,16 @@ mod tests {
             assert_eq!(Tables::<f32>::new(&job).validate(&job), Ok(()), "{name}");
             assert_eq!(Tables::<f64>::new(&job).validate(&job), Ok(()), "{name}");
             assert_eq!(Tables::<f32>::as_list(&job).validate(&job), Ok(()), "{name}");
+        }
+    }
+
+    #[test]
+    fn tables_of_extreme_scenes_are_valid() {
+        let cases = crate::stress::cases().iter().filter(|case| case.recipe.scene.spheres.len() < 5000);
+        for (case, form) in cases.flat_map(|case| case.forms().iter().map(move |form| (case, *form))) {
+            let job = case.recipe_in(form).job().expect("valid");
+            assert_eq!(Tables::<f32>::new(&job).validate(&job), Ok(()), "{} {form:?}", case.id);
+            assert_eq!(Tables::<f64>::new(&job).validate(&job), Ok(()), "{} {form:?}", case.id);
         }
     }
 

@@ -99,7 +99,7 @@ fn four_hits(words: &Words) -> u32 {
     let [step, near, far] = [0, 3, 6].map(|i| list(vector(words, i)));
     let (marks, octant, limit) = (words[15].to_le_bytes(), words[16], float(words, 17));
     let mut hits = 0;
-    for child in 0..4 {
+    for (child, mark) in marks.into_iter().enumerate() {
         let (mut enter, mut leave) = (0.0_f32, limit);
         for axis in 0..3 {
             let bound = |word: u32| f32::from(word.to_le_bytes()[child]);
@@ -107,7 +107,7 @@ fn four_hits(words: &Words) -> u32 {
             enter = enter.max(first.mul_add(step[axis], near[axis]));
             leave = leave.min(last.mul_add(step[axis], far[axis]));
         }
-        let mark = u32::from(marks[child]);
+        let mark = u32::from(mark);
         let place = mark & 31;
         let place = if place >= 24 { place ^ octant } else { place };
         if leave * BOX_WIDENING as f32 >= enter {

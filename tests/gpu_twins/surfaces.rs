@@ -18,7 +18,7 @@ fn incidence_and_stage_rules() {
         let (normal, unit) = (unit_vector(i, 61), unit_vector(i, 62));
         let [cosine, sine2] = [2.2 * cosine - 1.1, 1.1 * sine2];
         let mut words = words(&[cosine, sine2, normal[0], normal[1], normal[2], unit[0], unit[1], unit[2]]);
-        words[8] = i % width | (i / width) << 16;
+        words[8] = (i % width) | ((i / width) << 16);
         words
     }) {
         let (cosine, sine2) = (float(&input, 0), float(&input, 1));

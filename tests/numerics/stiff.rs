@@ -34,6 +34,7 @@ fn as_list_and_hierarchy(job: &RenderJob, samples: u64) -> Film {
     let tables = Tables::<f32>::new(job);
     let [mut listed, mut boxed] = [job.new_film(), job.new_film()];
     assert!(tables.hierarchy.is_some(), "there is a hierarchy");
+    assert_eq!(tables.validate(job), Ok(()));
     trace_tables(&tables, &mut boxed, 0..samples);
     trace_tables(&Tables::as_list(job), &mut listed, 0..samples);
     assert_eq!(listed, boxed, "list and hierarchy");
