@@ -190,12 +190,15 @@ mod tests {
         check(&[field(1).0.spheres[0]; 40]);
     }
 
+    /// What is done to a tree, and a part of what the check must say.
+    type Damage = (&'static str, fn(&mut Cwbvh));
+
     #[test]
     fn damaged_nodes_are_refused() {
         let spheres = field(500).0.spheres;
         let bounded = Bounded::all(&spheres, &DVec3::ZERO);
         let whole = Cwbvh::build(&spheres, DVec3::ZERO);
-        let damages: [(&str, fn(&mut Cwbvh)); 6] = [
+        let damages: [Damage; 6] = [
             ("two leaves", |tree| tree.order[0] = tree.order[1]),
             ("names sphere", |tree| tree.order[0] = 1 << 20),
             ("reaches out of", |tree| tree.nodes[0].p.x += 1.0),
