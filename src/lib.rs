@@ -31,6 +31,7 @@ pub mod render_cpu;
 pub mod render_gpu;
 pub mod report;
 pub mod sampling;
+pub mod saved;
 pub mod scene;
 pub mod stages;
 pub mod statistics;

@@ -1,8 +1,9 @@
 //! The flags of `weekender bench`, and what they mean together.
 
+use super::error::CliError;
 use super::paths::Paths;
 use super::raw::ProgressChoice;
-use super::sources::{self, CliError};
+use super::sources;
 use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size};
 use crate::backends::BackendError;
 use crate::chart::ChartFormat;

@@ -1,6 +1,6 @@
 //! Whether the files of a command get in each other's way, found out before any is written.
 
-use super::sources::CliError;
+use super::error::CliError;
 use super::values::JsonTarget;
 use crate::film::FileIdentity;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,9 @@
 //! The flags of `weekender report`, and what they mean together.
 
+use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{ProgressChoice, RawSwitch};
-use super::sources::{self, CliError};
+use super::sources;
 use super::values::{parse_rmse, parse_seconds, parse_size};
 use crate::backends::BackendChoice;
 use crate::recipe::Recipe;

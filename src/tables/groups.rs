@@ -14,7 +14,7 @@ const ANCHOR_SHARE: f64 = 5e-5;
 
 /// What touches a much larger sphere counts as so many times smaller than it is where one of the two is glass. A ray that
 /// leaves the one near there may start beyond the other's surface by as much as rounding moves it, and then misses it.
-const TOUCHING_SHARE: f64 = 5.0;
+const TOUCHING_SHARE: f64 = 50.0;
 
 /// Spheres touch where they cross, or where so many units of rounding part them.
 const TOUCHING_UNITS: f64 = 16.0;
@@ -207,8 +207,14 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         .into_iter()
         .filter_map(|(index, sphere)| {
             let height = positive(eye.height(sphere).abs());
-            let detail = Detail::near(shown, sphere, is_opaque);
-            let length = detail.map_or(f64::INFINITY, |detail| detail.length);
+            let detail = Detail::near(shown, sphere, |_, size| size);
+            let contact = Detail::near(shown, sphere, |other, size| {
+                let leaks = !(is_opaque(other) && is_opaque(sphere)) && touch(sphere, other);
+                if leaks { size / TOUCHING_SHARE } else { f64::INFINITY }
+            });
+            let lengths = [detail, contact].into_iter().flatten().map(|detail| detail.length);
+            let length = lengths.fold(f64::INFINITY, f64::min);
+            let detail = detail.or(contact);
             if !is_special(sphere) && !needs_anchor(sphere.radius, length.min(height)) {
                 return None;
             }
@@ -242,19 +248,18 @@ struct Detail {
 }
 
 impl Detail {
-    /// `None` where all lengths are so large that they leave the sphere as it is.
+    /// `None` where all lengths are so large that they leave the sphere as it is. `counted` says what a sphere's length
+    /// counts as.
     fn near<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         shown: impl Fn() -> I,
         sphere: &Sphere,
-        is_opaque: &impl Fn(&Sphere) -> bool,
+        counted: impl Fn(&Sphere, f64) -> f64,
     ) -> Option<Self> {
         let relevant = HALF_EPSILON / ANCHOR_SHARE * sphere.radius;
         let lengths = || {
             shown().filter(|(_, other)| other.radius < TOUCHING_SHARE * relevant).map(|(_, other)| {
                 let away = (other.center.distance(sphere.center) - sphere.radius).abs();
-                let size = other.radius.max(away);
-                let leaks = !(is_opaque(other) && is_opaque(sphere)) && touch(sphere, other);
-                (if leaks { size / TOUCHING_SHARE } else { size }, other.center)
+                (counted(other, other.radius.max(away)), other.center)
             })
         };
         let length = lengths().map(|(length, _)| length).fold(relevant, f64::min);

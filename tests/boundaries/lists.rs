@@ -1,13 +1,7 @@
-//! Who knows whom: each room may use only the rooms listed for it. The layers are in ARCHITECTURE.md.
-
-#![allow(clippy::expect_used, reason = "a test that cannot read the sources has failed")]
-
-use std::collections::BTreeSet;
-use std::fs;
-use std::path::{Path, PathBuf};
+//! Who may use whom.
 
 /// A room and the rooms that it may use. Lower layers first.
-const ROOMS: &[(&str, &[&str])] = &[
+pub const ROOMS: &[(&str, &[&str])] = &[
     ("memory", &[]),
     ("input", &["memory"]),
     ("scene", &[]),
@@ -18,6 +12,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("heat", &[]),
     ("recipe", &["memory", "input", "scene", "stages", "film", "render"]),
     ("output", &["memory", "input", "stages", "film"]),
+    ("saved", &["stages", "film", "render", "recipe", "output"]),
     ("chart", &["film"]),
     ("sampling", &["render"]),
     ("kernel", &["scene", "stages", "film", "render", "sampling"]),
@@ -26,7 +21,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("render_gpu", &["stages", "film", "render", "record", "sampling", "kernel", "tables"]),
     ("layers", &["scene", "render", "record", "render_cpu"]),
     ("backends", &["film", "render", "render_cpu", "render_gpu"]),
-    ("progressive", &["stages", "film", "heat", "render", "backends"]),
+    ("progressive", &["stages", "film", "render", "heat", "backends"]),
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
     ("control", &["scene", "render"]),
     ("console", &[]),
@@ -43,15 +38,16 @@ const ROOMS: &[(&str, &[&str])] = &[
             "render",
             "recipe",
             "output",
+            "saved",
+            "chart",
             "render_cpu",
             "render_gpu",
             "backends",
             "progressive",
-            "chart",
             "failure",
         ],
     ),
-    ("terminal", &["film", "cli", "console", "failure"]),
+    ("terminal", &["film", "console", "failure", "cli"]),
     (
         "batch",
         &[
@@ -61,15 +57,15 @@ const ROOMS: &[(&str, &[&str])] = &[
             "render",
             "recipe",
             "output",
+            "saved",
             "render_cpu",
-            "render_gpu",
             "backends",
             "progressive",
-            "cli",
-            "console",
             "describe",
+            "console",
             "failure",
             "interrupt",
+            "cli",
             "terminal",
         ],
     ),
@@ -78,19 +74,19 @@ const ROOMS: &[(&str, &[&str])] = &[
         &[
             "scene",
             "film",
-            "recipe",
             "render",
+            "recipe",
+            "chart",
             "tables",
             "render_cpu",
             "render_gpu",
             "backends",
-            "chart",
-            "cli",
             "control",
             "failure",
             "interrupt",
-            "terminal",
             "statistics",
+            "cli",
+            "terminal",
         ],
     ),
     (
@@ -102,15 +98,16 @@ const ROOMS: &[(&str, &[&str])] = &[
             "render",
             "recipe",
             "output",
+            "saved",
+            "chart",
             "backends",
             "progressive",
-            "statistics",
-            "chart",
-            "cli",
-            "console",
             "control",
+            "console",
             "failure",
             "interrupt",
+            "statistics",
+            "cli",
             "terminal",
         ],
     ),
@@ -119,14 +116,15 @@ const ROOMS: &[(&str, &[&str])] = &[
         &[
             "memory",
             "film",
-            "heat",
             "render",
+            "heat",
             "recipe",
             "output",
+            "saved",
             "backends",
+            "failure",
             "statistics",
             "cli",
-            "failure",
             "terminal",
         ],
     ),
@@ -140,10 +138,9 @@ const ROOMS: &[(&str, &[&str])] = &[
             "record",
             "render_cpu",
             "render_gpu",
-            "backends",
-            "cli",
             "console",
             "failure",
+            "cli",
             "terminal",
         ],
     ),
@@ -159,16 +156,39 @@ const ROOMS: &[(&str, &[&str])] = &[
             "sampling",
             "render_cpu",
             "backends",
-            "cli",
             "failure",
             "interrupt",
+            "cli",
             "terminal",
+        ],
+    ),
+    (
+        "app",
+        &[
+            "scene",
+            "stages",
+            "film",
+            "render",
+            "heat",
+            "recipe",
+            "output",
+            "saved",
+            "render_cpu",
+            "render_gpu",
+            "layers",
+            "backends",
+            "progressive",
+            "describe",
+            "console",
+            "statistics",
+            "cli",
+            "stress",
         ],
     ),
 ];
 
 /// Crates that only some rooms may use.
-const CRATES: &[(&str, &[&str])] = &[
+pub const CRATES: &[(&str, &[&str])] = &[
     ("egui", &["app"]),
     ("eframe", &["app"]),
     ("egui_plot", &["app"]),
@@ -186,75 +206,82 @@ const CRATES: &[(&str, &[&str])] = &[
     ("signal_hook", &["interrupt"]),
 ];
 
-fn source_root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
-}
+/// The files of the window and those of them that they may use; a folder counts as one. Lower layers first.
+pub const WINDOW: &[(&str, &[&str])] = &[
+    ("model", &[]),
+    ("command", &["model"]),
+    ("facts", &["model", "command"]),
+    ("answers", &[]),
+    ("theme", &["model"]),
+    ("texture", &[]),
+    ("widgets", &[]),
+    ("navigation", &[]),
+    ("frame_log", &[]),
+    ("prediction", &[]),
+    ("toasts", &["theme"]),
+    ("changes", &["model"]),
+    ("tracer", &["model", "texture"]),
+    ("layers", &["model", "texture"]),
+    ("second", &["model", "answers", "tracer"]),
+    ("files", &["model", "answers", "tracer"]),
+    ("inspector", &["model", "answers", "widgets", "tracer"]),
+    ("paths", &["model", "answers", "theme", "widgets", "inspector"]),
+    ("input", &["command", "navigation"]),
+    ("menu", &["model", "command", "facts", "theme", "prediction"]),
+    ("status_bar", &["facts", "theme", "prediction"]),
+    ("plot", &["command", "facts", "theme", "widgets", "prediction"]),
+    ("panels", &["model", "command", "facts", "widgets"]),
+    ("info", &["model", "command", "facts", "widgets", "menu"]),
+    ("viewport", &["model", "command", "facts", "theme", "texture", "navigation", "paths", "menu"]),
+    ("dialogs", &["command", "facts", "answers", "menu"]),
+    (
+        "window",
+        &[
+            "model",
+            "command",
+            "facts",
+            "frame_log",
+            "toasts",
+            "changes",
+            "tracer",
+            "layers",
+            "second",
+            "files",
+            "inspector",
+            "paths",
+            "viewport",
+            "dialogs",
+        ],
+    ),
+    ("perform", &["model", "command", "facts", "theme", "plot", "dialogs", "window"]),
+    ("receive", &["model", "command", "files", "window"]),
+    (
+        "frame",
+        &[
+            "model",
+            "theme",
+            "frame_log",
+            "tracer",
+            "input",
+            "menu",
+            "status_bar",
+            "plot",
+            "panels",
+            "info",
+            "viewport",
+            "window",
+        ],
+    ),
+    ("mod", &["model", "command", "theme", "window"]),
+];
 
-fn rust_files(at: &Path, into: &mut Vec<PathBuf>) {
-    if at.is_dir() {
-        for entry in fs::read_dir(at).expect("readable") {
-            rust_files(&entry.expect("readable").path(), into);
-        }
-    } else if at.extension().is_some_and(|ending| ending == "rs") {
-        into.push(at.to_owned());
-    }
-}
+/// Files that know the whole window.
+pub const TOP: &[&str] = &["window", "perform", "receive", "frame", "mod"];
 
-/// The room that a file belongs to: the first part of its path below `src`.
-fn room_of(file: &Path) -> String {
-    let below = file.strip_prefix(source_root()).expect("below src");
-    let first = below.components().next().expect("a name").as_os_str().to_string_lossy().into_owned();
-    first.trim_end_matches(".rs").to_owned()
-}
-
-/// The code of a file without comments and without its tests, which may use any room.
-fn code_of(file: &Path) -> String {
-    let text = fs::read_to_string(file).expect("UTF-8");
-    let before_tests = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
-    before_tests.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n")
-}
-
-fn names_after<'a>(code: &'a str, prefix: &'a str) -> impl Iterator<Item = &'a str> {
-    code.match_indices(prefix).map(move |(at, _)| {
-        let rest = &code[at + prefix.len()..];
-        let end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
-        &rest[..end]
-    })
-}
-
-fn files() -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    rust_files(&source_root(), &mut files);
-    assert!(files.len() > 30, "the sources were not found");
-    files
-}
-
-#[test]
-fn rooms_use_only_the_rooms_below_them() {
-    let mut faults = BTreeSet::new();
-    for file in files() {
-        let room = room_of(&file);
-        let Some((_, allowed)) = ROOMS.iter().find(|(name, _)| *name == room) else { continue };
-        for used in names_after(&code_of(&file), "crate::") {
-            let is_room = ROOMS.iter().any(|(name, _)| *name == used) || used == "app";
-            if is_room && used != room && !allowed.contains(&used) {
-                faults.insert(format!("{room} uses {used} in {}", file.display()));
-            }
-        }
-    }
-    assert!(faults.is_empty(), "{faults:#?}");
-}
-
-#[test]
-fn crates_stay_in_their_rooms() {
-    let mut faults = BTreeSet::new();
-    for file in files() {
-        let (room, code) = (room_of(&file), code_of(&file));
-        for (name, rooms) in CRATES {
-            if code.contains(&format!("{name}::")) && !rooms.contains(&room.as_str()) {
-                faults.insert(format!("{room} uses {name} in {}", file.display()));
-            }
-        }
-    }
-    assert!(faults.is_empty(), "{faults:#?}");
-}
+/// Files that import each other in a circle; nothing new may come to this.
+pub const CIRCLES: &[&[&str]] = &[
+    &["render_cpu/kernels", "render_cpu/record"],
+    &["render_gpu/dispatches", "render_gpu/prepared"],
+    &["tables/facts", "tables/groups"],
+    &["tables/hierarchy", "tables/parted"],
+];
