@@ -19,6 +19,7 @@ pub mod files;
 pub mod film;
 pub mod heat;
 pub mod interrupt;
+pub mod kernel;
 pub mod layers;
 pub mod memory;
 pub mod output;

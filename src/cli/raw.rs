@@ -6,6 +6,7 @@ use super::values::{
     parse_simd, parse_size, parse_vector,
 };
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
+use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 use std::ops::Range;
@@ -142,7 +143,7 @@ pub(super) struct RawPicture {
     /// Where random numbers come from: scrambled Sobol points, or independent ones as in the book
     /// [default: sobol, or the scene's]
     #[arg(long, value_enum, help_heading = "Picture")]
-    pub sampler: Option<RawSampler>,
+    pub sampler: Option<SamplerKind>,
     /// Chooses among pictures that differ in noise alone, 0 to 4294967295 [default: 0, or the scene's]
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..),
           allow_hyphen_values = true, help_heading = "Picture")]
@@ -203,18 +204,13 @@ pub(super) enum RawDevice {
     Reference,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum RawSampler {
-    Sobol,
-    Independent,
-}
+impl ValueEnum for SamplerKind {
+    fn value_variants<'a>() -> &'a [Self] {
+        &SamplerKind::ALL
+    }
 
-impl From<RawSampler> for SamplerKind {
-    fn from(raw: RawSampler) -> Self {
-        match raw {
-            RawSampler::Sobol => SamplerKind::Sobol,
-            RawSampler::Independent => SamplerKind::Independent,
-        }
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()))
     }
 }
 

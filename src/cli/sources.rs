@@ -94,7 +94,7 @@ pub(super) fn change(recipe: &mut Recipe, raw: &RawPicture, estimate_error: Opti
     set(&mut settings.width, raw.size.map(|(width, _)| width));
     set(&mut settings.height, raw.size.map(|(_, height)| height));
     set(&mut settings.max_depth, raw.depth);
-    set(&mut settings.sampler, raw.sampler.map(Into::into));
+    set(&mut settings.sampler, raw.sampler);
     set(&mut settings.seed, raw.seed);
     set(&mut settings.estimate_error, estimate_error.map(|switch| switch == RawSwitch::On));
     let camera = &mut recipe.camera;

@@ -14,7 +14,7 @@ mod sphere;
 
 pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, VFOV_LIMITS_DEGREES};
 pub use error::SceneError;
-pub use material::{Material, NamedMaterial};
+pub use material::{Material, NamedMaterial, Parameter};
 pub use pick::Pick;
 pub use sphere::Sphere;
 

@@ -2,13 +2,11 @@
 //! rounded.
 
 use super::facts::Facts;
+use crate::kernel::{HALF_EPSILON, Roots};
 use crate::render::RenderJob;
 use crate::scene::{Camera, Material, Sphere};
 use crate::stages::Surface;
 use glam::DVec3;
-
-/// Half a unit in the last place of 1, in `f32`.
-pub(super) const UNIT: f64 = f32::EPSILON as f64 / 2.0;
 
 /// A sphere is anchored when rounding at its radius exceeds this share of the smallest length near its surface. At
 /// that point the perpendicular form's distances are off by some `1e-4` of that length.
@@ -37,19 +35,6 @@ const GRID_RATIO: f64 = 256.0;
 
 /// The eye is on a surface when the distance between them is rounding in `f64`: this many units in the last place.
 const ON_SURFACE_UNITS: f64 = 4.0;
-
-/// Which roots of an anchored sphere count.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Roots {
-    /// The nearer: no ray is inside of it. One that rounding puts inside meets it where it starts.
-    Nearer = 0,
-    /// Both.
-    Both = 1,
-    /// The farther: it is opaque and holds the eye, so that every ray is inside of it and meets it, whatever
-    /// rounding says.
-    Farther = 2,
-}
 
 /// A sphere that is seen from a point of its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,13 +151,13 @@ fn reaches_into(sphere: &Sphere, cavity: &Sphere) -> bool {
 /// Whether the surfaces cross, or are closer than rounding tells.
 fn touch(a: &Sphere, b: &Sphere) -> bool {
     let apart = a.center.distance(b.center);
-    let margin = TOUCHING_UNITS * UNIT * a.radius.max(b.radius);
+    let margin = TOUCHING_UNITS * HALF_EPSILON * a.radius.max(b.radius);
     apart <= a.radius + b.radius + margin && apart >= (a.radius - b.radius).abs() - margin
 }
 
 /// Whether rounding moves a hit by more than a share of the sphere that shows.
 fn is_speck(sphere: &Sphere, eye: &Eye) -> bool {
-    UNIT * eye.position.distance(sphere.center) > 5e-4 * sphere.radius
+    HALF_EPSILON * eye.position.distance(sphere.center) > 5e-4 * sphere.radius
 }
 
 /// A point near what the eye is nearest to, on a grid; 0 where coordinates are small enough as they are.
@@ -205,7 +190,7 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
     eye: &Eye,
     is_opaque: &impl Fn(&Sphere) -> bool,
 ) -> Vec<Anchored> {
-    let needs_anchor = |radius: f64, length: f64| UNIT * radius > ANCHOR_SHARE * length;
+    let needs_anchor = |radius: f64, length: f64| HALF_EPSILON * radius > ANCHOR_SHARE * length;
     let is_special = |s: &Sphere| (is_opaque(s) && eye.is_inside(s)) || eye.height(s) == 0.0;
     let has_glass = shown().any(|(_, s)| !is_opaque(s));
     let share = if has_glass { TOUCHING_SHARE } else { 1.0 };
@@ -270,7 +255,7 @@ impl Detail {
         sphere: &Sphere,
         counted: impl Fn(&Sphere, f64) -> f64,
     ) -> Option<Self> {
-        let relevant = UNIT / ANCHOR_SHARE * sphere.radius;
+        let relevant = HALF_EPSILON / ANCHOR_SHARE * sphere.radius;
         let lengths = || {
             shown().filter(|(_, other)| other.radius < TOUCHING_SHARE * relevant).map(|(_, other)| {
                 let away = (other.center.distance(sphere.center) - sphere.radius).abs();

@@ -16,9 +16,10 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("saved", &["stages", "film", "render", "recipe", "output"]),
     ("chart", &["files"]),
     ("sampling", &["render"]),
-    ("tables", &["scene", "stages", "film", "render"]),
-    ("render_cpu", &["stages", "film", "render", "record", "sampling", "tables"]),
-    ("render_gpu", &["stages", "film", "render", "record", "sampling", "tables"]),
+    ("kernel", &["scene", "stages", "film", "render", "sampling"]),
+    ("tables", &["scene", "stages", "film", "render", "kernel"]),
+    ("render_cpu", &["stages", "film", "render", "record", "sampling", "kernel", "tables"]),
+    ("render_gpu", &["stages", "film", "render", "record", "sampling", "kernel", "tables"]),
     ("layers", &["scene", "render", "record", "render_cpu"]),
     ("backends", &["film", "render", "render_cpu", "render_gpu"]),
     ("progressive", &["stages", "film", "render", "heat", "backends"]),
@@ -287,7 +288,6 @@ pub const TOP: &[&str] = &["window", "perform", "receive", "frame", "mod"];
 pub const CIRCLES: &[&[&str]] = &[
     &["render_cpu/kernels", "render_cpu/record"],
     &["render_gpu/dispatches", "render_gpu/prepared"],
-    &["render_gpu/overrides", "render_gpu/shader_source"],
     &["tables/facts", "tables/groups"],
     &["tables/hierarchy", "tables/parted"],
 ];
