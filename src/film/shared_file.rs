@@ -407,11 +407,11 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("g.exr");
         put(&path, &[0..2]);
+        // All resume the film before any of them writes.
+        let places = [(); 3].map(|()| SharedFile::new(&path));
         std::thread::scope(|scope| {
-            for writer in 0..3_u64 {
-                let path = &path;
+            for (writer, mut place) in (0_u64..).zip(places) {
                 scope.spawn(move || {
-                    let mut place = SharedFile::new(path);
                     for turn in 1..8 {
                         let own = 100 * (writer + 1)..100 * (writer + 1) + 2 * turn;
                         let saved = place.save(&film(&[0..2, own]), &Description::new("r"), &same).unwrap();

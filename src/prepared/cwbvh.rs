@@ -4,7 +4,8 @@
 //! builds the tree and lays its nodes out; here their boxes are set anew, so that none is smaller by rounding than
 //! what it holds.
 
-use super::hierarchy::{Bounded, build_tree};
+use super::bounded::Bounded;
+use super::hierarchy::build_tree;
 use crate::kernel::CWBVH_STACK_SIZE;
 use crate::scene::Sphere;
 use glam::{DVec3, Vec3A};

@@ -1,7 +1,6 @@
 //! What follows from a scene alone, whoever looks at it: spheres that others cover, and layers so thin that rounding
 //! may show.
 
-use super::groups::Groups;
 use crate::kernel::HALF_EPSILON;
 use crate::render::RenderJob;
 use crate::scene::{Material, Scene, Sphere};
@@ -73,10 +72,10 @@ impl Facts {
         self.covered.binary_search(&index).is_ok()
     }
 
-    /// What single precision does not hold of a job whose spheres are seen as `groups` say.
-    pub fn warnings(&self, job: &RenderJob, groups: &Groups) -> Vec<String> {
+    /// What single precision does not hold of a job whose coordinates are measured from `origin`.
+    pub fn warnings(&self, job: &RenderJob, origin: DVec3) -> Vec<String> {
         let unresolved: Vec<Unresolved> =
-            self.layers.iter().filter_map(|layer| unresolved(*layer, job, groups)).collect();
+            self.layers.iter().filter_map(|layer| unresolved(*layer, job, origin)).collect();
         let (thin, closing): (Vec<_>, Vec<_>) =
             unresolved.into_iter().partition(|found| found.layer.thickness < found.limit);
         let others =
@@ -169,10 +168,10 @@ impl Facts {
 }
 
 /// `None` if the layer is right.
-fn unresolved(layer: Layer, job: &RenderJob, groups: &Groups) -> Option<Unresolved> {
+fn unresolved(layer: Layer, job: &RenderJob, origin: DVec3) -> Option<Unresolved> {
     let spheres = layer.spheres.map(|index| job.scene().spheres[index as usize]);
     let limits = spheres.map(|Sphere { center, radius, .. }| {
-        let coordinate = (center - groups.origin).abs().max_element() + radius;
+        let coordinate = (center - origin).abs().max_element() + radius;
         let distance = center.distance(job.camera().look_from);
         HALF_EPSILON * (LAYER_UNITS * coordinate).max(DISTANCE_UNITS * distance)
     });

@@ -3,15 +3,15 @@
 //! obvhs builds the tree; here it is laid out for the kernels, and its boxes are made wide enough that rounding
 //! never hides a hit that testing every sphere would find.
 
+use super::bounded::Bounded;
 use super::parted;
-use crate::kernel::{BOX_MARGIN, COUNT_MASK, Node, Real, STACK_SIZE};
+use crate::kernel::{COUNT_MASK, Node, Real, STACK_SIZE};
 use crate::scene::Sphere;
 use glam::DVec3;
-use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
-use obvhs::{Boundable, BvhBuildParams};
+use obvhs::BvhBuildParams;
 use std::time::Duration;
 
 /// Most levels of a tree: what a traversal has room for.
@@ -30,44 +30,6 @@ pub struct Hierarchy<R> {
     /// The place in the list of each sphere in the order of the leaves. Of two spheres at one distance that which
     /// stands first in the list is met.
     pub ranks: Vec<u32>,
-}
-
-/// A sphere, measured from a point, whose box is widened by the rounding in the test of a sphere. The box is worked
-/// out when it is asked for: in a scene of millions it would be most of what a build takes.
-pub(super) struct Bounded<'scene, 'origin> {
-    sphere: &'scene Sphere,
-    origin: &'origin DVec3,
-}
-
-impl<'scene, 'origin> Bounded<'scene, 'origin> {
-    /// All of `spheres`, measured from `origin`.
-    pub(super) fn all(
-        spheres: impl IntoIterator<Item = &'scene Sphere>,
-        origin: &'origin DVec3,
-    ) -> Vec<Self> {
-        spheres.into_iter().map(|sphere| Bounded { sphere, origin }).collect()
-    }
-}
-
-impl Bounded<'_, '_> {
-    pub(super) fn center(&self) -> DVec3 {
-        self.sphere.center - *self.origin
-    }
-
-    pub(super) fn radius(&self) -> f64 {
-        self.sphere.radius
-    }
-}
-
-impl Boundable for Bounded<'_, '_> {
-    fn aabb(&self) -> Aabb {
-        let (center, radius) = (self.center(), self.radius());
-        let reach = radius + BOX_MARGIN * (radius + center.abs().max_element());
-        let below = |x: f64| (x as f32).next_down();
-        let above = |x: f64| (x as f32).next_up();
-        let vector = |v: DVec3, f: fn(f64) -> f32| glam::Vec3A::new(f(v.x), f(v.y), f(v.z));
-        Aabb::new(vector(center - reach, below), vector(center + reach, above))
-    }
 }
 
 impl<R: Real> Hierarchy<R> {

@@ -1,5 +1,6 @@
 //! What a kernel reads: the job, rounded once to the kernel's precision and laid out flat.
 
+mod bounded;
 mod camera;
 pub mod cwbvh;
 mod facts;
@@ -174,7 +175,7 @@ impl<R: Real> PreparedScene<R> {
             self.records.push(RecordColumns::default());
         }
         self.warnings = if job.rules().surface == Surface::Exact {
-            self.facts.warnings(job, &groups)
+            self.facts.warnings(job, groups.origin)
         } else {
             Vec::new()
         };

@@ -2,7 +2,7 @@
 //! crowds about one place, where obvhs takes a time that grows with the square of their number and gives a tree as
 //! deep as there are spheres.
 
-use super::hierarchy::Bounded;
+use super::bounded::Bounded;
 use glam::DVec3;
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;

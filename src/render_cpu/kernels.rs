@@ -8,10 +8,8 @@ use super::Isa;
 use super::broadcast::BroadcastScene;
 use super::lanes::{Instructions, Lanes4, Lanes8, Lanes16, Reference, Scalar};
 use super::path::trace;
-use super::record::record;
 use super::work::{TileStats, Work};
 use crate::kernel::parts;
-use crate::record::PathRecord;
 use fearless_simd::{Level, Simd};
 
 /// Traces a tile.
@@ -92,27 +90,6 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
             }
         }
         _ => None,
-    }
-}
-
-/// Records one path.
-pub type Recorder = Box<dyn Fn(&BroadcastScene<f32>, [u32; 2], u64) -> PathRecord + Send + Sync>;
-
-/// A recorder that computes the same bits as the kernels of `isa`.
-pub fn recorder(isa: Isa) -> Recorder {
-    let level = Level::new();
-    #[cfg(target_arch = "x86_64")]
-    let fused = level.as_avx2();
-    #[cfg(target_arch = "aarch64")]
-    let fused = level.as_neon();
-    match fused {
-        Some(simd) if isa.is_fused() => Box::new(move |prepared, pixel, index| {
-            simd.vectorize(
-                #[inline(always)]
-                || record(Scalar::<true>, prepared, pixel, index),
-            )
-        }),
-        _ => Box::new(|prepared, pixel, index| record(Scalar::<false>, prepared, pixel, index)),
     }
 }
 

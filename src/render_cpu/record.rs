@@ -3,8 +3,7 @@
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
-use super::kernels::{Recorder, recorder};
-use super::lanes::{Lanes, V3, Wide};
+use super::lanes::{Lanes, Scalar, V3, Wide};
 use super::path::SinglePath;
 use super::sphere::NONE;
 use super::work::{DealtBlock, Work};
@@ -13,6 +12,7 @@ use crate::kernel::Real;
 use crate::prepared::PreparedScene;
 use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use crate::render::RenderJob;
+use fearless_simd::{Level, Simd};
 
 /// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as `isa` traces it; `None`: in
 /// `f64`.
@@ -46,6 +46,27 @@ impl PathRecorder {
     /// Sample `index` of a pixel, which must lie in the picture.
     pub fn record(&self, pixel: [u32; 2], index: u64) -> PathRecord {
         (self.recorder)(&self.prepared, pixel, index)
+    }
+}
+
+/// Records one path.
+type Recorder = Box<dyn Fn(&BroadcastScene<f32>, [u32; 2], u64) -> PathRecord + Send + Sync>;
+
+/// A recorder that computes the same bits as the kernels of `isa`.
+fn recorder(isa: Isa) -> Recorder {
+    let level = Level::new();
+    #[cfg(target_arch = "x86_64")]
+    let fused = level.as_avx2();
+    #[cfg(target_arch = "aarch64")]
+    let fused = level.as_neon();
+    match fused {
+        Some(simd) if isa.is_fused() => Box::new(move |prepared, pixel, index| {
+            simd.vectorize(
+                #[inline(always)]
+                || record(Scalar::<true>, prepared, pixel, index),
+            )
+        }),
+        _ => Box::new(|prepared, pixel, index| record(Scalar::<false>, prepared, pixel, index)),
     }
 }
 

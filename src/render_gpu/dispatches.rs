@@ -3,10 +3,11 @@
 
 use super::device::Gpu;
 use super::layout::{ASIDE_STRIDE, GpuBlock, GpuDispatch, WORKGROUP_SIZE, tile_size};
-use super::loaded::{Loaded, turns_over_lists};
+use super::loaded::Loaded;
 use super::options::InjectionPoint;
 use super::readback::{Receipt, Told};
 use super::schedule::{Blocks, Budget};
+use super::turns::{TURN_LIMIT, turns_over_lists};
 use super::{Fault, GpuRenderer, failed};
 use crate::film::Film;
 use crate::kernel::Features;
@@ -23,13 +24,6 @@ const QUEUE_DEPTH: usize = 2;
 
 /// Most workgroups along one axis of a dispatch; WebGPU allows 65,535.
 const GROUPS_ACROSS: u32 = 32_768;
-
-/// Turns of all its loops that a thread of a dispatch makes, its last ray's not included; then it puts its path aside
-/// and the next dispatch goes on with it.
-///
-/// Half of the smallest limit known: llvmpipe ends every loop once the loops of a thread have made 65,535 turns
-/// together, those counted twice that two of the 8 threads make which it runs in step.
-pub const TURN_LIMIT: u32 = 1 << 15;
 
 /// Most threads of a dispatch: so many can put their paths aside, 64 bytes each.
 const THREAD_LIMIT: u64 = 1 << 20;

@@ -1,17 +1,16 @@
 //! A job on the device: prepared scene and hierarchy in buffers, the kernel, the film.
 
-use super::dispatches::TURN_LIMIT;
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
 use super::layout::{GpuJob, WORKGROUP_SIZE, tile_size};
 use super::options::InjectionPoint;
 use super::scene::SceneData;
 use super::shader_source::EntryPoint;
+use super::turns::{TURN_LIMIT, turns_over_lists};
 use super::{GpuRenderer, HierarchyKind, failed};
 use crate::kernel::{Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
 use crate::render::{RenderError, RenderJob};
-use crate::stages::Surface;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -207,13 +206,6 @@ impl GpuRenderer {
             }
         }
     }
-}
-
-/// Turns of one ray's loops over lists. Twin: `turns_over_lists` in shaders/path.wgsl.
-pub(super) fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
-    let is_in_hierarchy = features.hierarchy && features.surface == Surface::Exact;
-    let listed = if is_in_hierarchy { 0 } else { prepared.opaque.len() + prepared.two_root.len() };
-    (prepared.anchored.len() + listed) as u64
 }
 
 fn at_least_one<T: bytemuck::Zeroable>(mut items: Vec<T>) -> Vec<T> {

@@ -17,9 +17,10 @@ mod scene;
 mod schedule;
 pub mod shader_source;
 mod small_programs;
+mod turns;
 
 pub use device::{AdapterInfo, adapters};
-pub use dispatches::TURN_LIMIT;
+pub use turns::TURN_LIMIT;
 pub use options::{
     BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, HierarchyKind, INTERACTIVE_TARGET,
     InjectionPoint,

@@ -283,11 +283,3 @@ pub const WINDOW: &[(&str, &[&str])] = &[
 
 /// Files that know the whole window.
 pub const TOP: &[&str] = &["window", "perform", "receive", "frame", "mod"];
-
-/// Files that import each other in a circle; nothing new may come to this.
-pub const CIRCLES: &[&[&str]] = &[
-    &["render_cpu/kernels", "render_cpu/record"],
-    &["render_gpu/dispatches", "render_gpu/prepared"],
-    &["tables/facts", "tables/groups"],
-    &["tables/hierarchy", "tables/parted"],
-];

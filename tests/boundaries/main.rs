@@ -6,7 +6,7 @@
 mod lists;
 mod sources;
 
-use lists::{CIRCLES, CRATES, ROOMS, TOP, WINDOW};
+use lists::{CRATES, ROOMS, TOP, WINDOW};
 use sources::{Source, file_of, sources};
 use std::collections::BTreeSet;
 
@@ -118,8 +118,7 @@ fn files_import_each_other_in_no_circle() {
             back.map(|other| sources[*other].name.as_str()).collect()
         })
         .collect();
-    let known: BTreeSet<Vec<&str>> = CIRCLES.iter().map(|circle| circle.to_vec()).collect();
-    assert_eq!(circles, known, "circles that are found, and those that are known");
+    assert!(circles.is_empty(), "{circles:?}");
 }
 
 #[test]
