@@ -82,6 +82,22 @@ fn the_order_of_samples_does_not_matter() {
 }
 
 #[test]
+fn merged_films_have_rejected_the_samples_of_both() {
+    let mut film = Film::new(1, 1, 2);
+    film.record(0..4, 3).unwrap();
+    let mut other = Film::new(1, 1, 2);
+    other.record(4..6, 2).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let paths = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
+    for (path, film) in paths.iter().zip([&film, &other]) {
+        checkpoint::save(path, film, &description()).unwrap();
+    }
+    assert_eq!(merge_files(&paths, same_recipe_text).unwrap().film.rejected(), 5);
+    film.merge(&other).unwrap();
+    assert_eq!((film.rejected(), film.sample_count()), (5, 6));
+}
+
+#[test]
 fn what_is_no_radiance_is_rejected_and_the_picture_stays_finite() {
     let mut film = Film::new(1, 1, 1);
     let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e-30];

@@ -167,6 +167,18 @@ mod tests {
     }
 
     #[test]
+    fn the_slopes_deviation_is_that_of_a_regression() {
+        // Logarithms 0, 1, 2 of the time and 0, 1, 0 of the error. About their mean of 1/3 the squares are 2/3, with one
+        // degree of freedom; the times' squares are 2.
+        let points = [(0.0_f64, 0.0_f64), (1.0, 1.0), (2.0, 0.0)];
+        let law = PowerLaw::through(&points.map(|(t, e)| Point { time: t.exp(), error: e.exp() })).unwrap();
+        assert!(law.slope.abs() < 1e-12, "{law:?}");
+        assert!((law.scatter - (2.0_f64 / 3.0).sqrt()).abs() < 1e-12, "{law:?}");
+        assert!((law.slope_deviation - (1.0_f64 / 3.0).sqrt()).abs() < 1e-12, "{law:?}");
+        assert_eq!(PowerLaw::through(&curve(-0.5, 2)).unwrap().slope_deviation, 0.0);
+    }
+
+    #[test]
     fn targets_are_met_between_points_and_beyond() {
         let points = curve(-0.5, 7);
         let within = time_to(&points, 0.02).unwrap();
