@@ -338,11 +338,13 @@ fn a_second_signal_ends_the_program_at_once() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     // One pass of this takes far longer than the drill.
-    let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "6000x4000"];
+    let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];
     let flags = ["--samples", "1000", "--out", "g.png", "--checkpoint", "g.exr", "--progress", "on"];
     let mut child = weekender(at, &[&picture[..], &flags].concat()).spawn().unwrap();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
     stderr.read_line(&mut String::new()).unwrap();
+    // Before the first pass there would be nothing to write.
+    sleep(Duration::from_millis(800));
     signal(&child, "INT");
     sleep(Duration::from_millis(700));
     assert_eq!(child.try_wait().unwrap(), None, "the first one waits for the pass");

@@ -54,7 +54,7 @@ fn every_shader_is_valid() {
 /// The compiler of another browser. It is no package of any system that is known of, so that it is looked for and its
 /// absence is told; with `WEEKENDER_REQUIRE_TINT=1` it is a failure.
 #[test]
-fn every_shader_told_by_tint() {
+fn every_shader_is_valid_to_tint() {
     if let Err(error) = std::process::Command::new("tint").arg("--version").output() {
         let is_required = std::env::var("WEEKENDER_REQUIRE_TINT").as_deref() == Ok("1");
         assert!(!is_required, "tint cannot be run: {error}");

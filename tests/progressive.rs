@@ -452,6 +452,7 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
     }
     progressive.set_plan(Plan::samples(2100));
     wait_for(&progressive, 2100);
+    assert_eq!(progressive.status().planned_samples_per_pixel, 2100);
     assert_eq!(progressive.finish(), Some(expected(2100)));
 }
 
@@ -481,6 +482,10 @@ fn a_film_goes_on_where_it_has_gaps() {
     progressive.start(Work { film: Some(film), ..Work::new(job(2), CPU, Plan::samples(100)) });
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
+    // The history is that of this render: what the film held before has no seconds.
+    let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
+    assert!(history.first().is_some_and(|first| (32..40).contains(first)), "{history:?}");
+    assert!(status.history.iter().all(|point| point.trace_seconds > 0.0), "{:?}", status.history);
     assert_eq!(progressive.finish(), Some(expected(100)));
 }
 

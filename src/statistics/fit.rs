@@ -206,6 +206,29 @@ mod tests {
         assert!(alone.range[1] - alone.range[0] > found.range[1] - found.range[0]);
     }
 
+    #[test]
+    fn a_prediction_reaches_two_deviations_to_either_side() {
+        let now = Point { time: 3.0, error: 0.01 };
+        let found = predict(&[], now, 0.005).unwrap();
+        // Half the error is 4 times the time; its logarithm is off by .02 / .5 for the estimate, and by .08 / .5 of
+        // itself for the slope.
+        let log_factor = 4.0_f64.ln();
+        let deviation = (0.04_f64.powi(2) + (0.16 * log_factor).powi(2)).sqrt();
+        let expected = [-2.0, 0.0, 2.0].map(|deviations| 12.0 * (deviations * deviation).exp());
+        for (found, expected) in [found.range[0], found.time, found.range[1]].into_iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn estimates_from_just_before_do_not_count() {
+        let mut points = curve(-0.6, 6);
+        let now = points.pop().unwrap();
+        let before = predict(&points, now, now.error / 2.0);
+        points.push(Point { time: 0.95 * now.time, error: 3.0 * now.error });
+        assert_eq!(predict(&points, now, now.error / 2.0), before);
+    }
+
     proptest! {
         #[test]
         fn a_power_law_is_found_again(slope in -1.0..-0.2_f64, scale in 1e-6..1e3_f64) {
