@@ -1,102 +1,10 @@
-// All that shaders share with the host, and the only file that names groups and bindings.
-//
-// Twin: src/render_gpu/layout.rs
-
-// What a job is, the same for all its dispatches.
-struct Job {
-    camera: Camera,
-    // Sky radiance at the horizon in units of the film.
-    sky_middle: vec3f,
-    // Largest coordinate of any box of the hierarchy.
-    extent: f32,
-    // Growth of it with the direction's y.
-    sky_slope: vec3f,
-    max_depth: u32,
-    seed: u32,
-    opaque_count: u32,
-    two_root_count: u32,
-    anchored_count: u32,
-    width: u32,
-    height: u32,
-    // Pixels across a workgroup's tile.
-    tile_width: u32,
-    // Nodes of the hierarchy: a traversal visits each once at most.
-    node_count: u32,
-    // The spheres where they are few: all threads read one at a time, which constant memory is made for.
-    few_spheres: array<vec4f, UNIFORM_SPHERES>,
-    few_anchored: array<AnchoredSphere, UNIFORM_ANCHORED>,
-}
-
-// What one dispatch is to do: tiles `first_tile ..` of the picture, and the first `block_count` blocks.
-struct Dispatch {
-    first_tile: u32,
-    tile_count: u32,
-    block_count: u32,
-    // Turns of its loops after which a thread puts its path aside.
-    turn_limit: u32,
-    // Rows of the picture that the film buffer holds.
-    first_row: u32,
-    row_count: u32,
-    // For resolve: samples in the film.
-    sample_count: u32,
-    transfer: u32,
-    // 1 where threads go on with what they put aside, 0 where they begin.
-    resumes: u32,
-    // The first of the words in which paths are put aside.
-    first_aside: u32,
-}
-
-// `count` samples of a half of the film.
-struct Block {
-    half: u32,
-    counter: u32,
-    step: u32,
-    count: u32,
-}
-
-// By sphere, what shading needs.
-struct Row {
-    // Centre, or anchor.
-    reference: vec3f,
-    curvature: f32,
-    albedo: vec3f,
-    weight: f32,
-    radius: f32,
-    index: f32,
-    inverse_index: f32,
-    normal_share: f32,
-    // From the anchor to the centre.
-    inward: vec3f,
-    // 1 if anchored, 2 if every ray is inside.
-    is_anchored: f32,
-}
-
-// Sums in units of 2^-24: low and high word.
-struct PixelSum {
-    red: vec2u,
-    green: vec2u,
-    blue: vec2u,
-}
-
-// What was counted: low and high words since the film was last sent for,
-struct Counters {
-    rays: atomic<u32>,
-    rays_high: atomic<u32>,
-    rejected: atomic<u32>,
-    rejected_high: atomic<u32>,
-    // and in this dispatch alone: samples whose sums are in the film,
-    finished: atomic<u32>,
-    finished_high: atomic<u32>,
-    // threads that have put a path aside,
-    unfinished: atomic<u32>,
-    // and those of them that could not trace one ray to its end.
-    stuck: atomic<u32>,
-}
+// What shaders read and write: the only file that names groups and bindings. Their structs, like all constants, tags
+// and overrides, are declared in src/kernel.
 
 @group(0) @binding(0) var<uniform> job: Job;
 @group(0) @binding(1) var<storage, read> spheres: array<vec4f>;
 @group(0) @binding(2) var<storage, read> anchored: array<AnchoredSphere>;
-@group(0) @binding(3) var<storage, read> rows: array<Row>;
+@group(0) @binding(3) var<storage, read> records: array<ShadingRecord>;
 @group(0) @binding(4) var<storage, read> nodes: array<vec4u>;
 
 @group(1) @binding(0) var<uniform> order: Dispatch;

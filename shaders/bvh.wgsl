@@ -2,17 +2,6 @@
 //
 // Twin: src/render_cpu/bvh.rs
 
-struct Node {
-    // Lowest corner.
-    low: vec3f,
-    // First sphere of a leaf, or the first of two children that stand side by side.
-    first: u32,
-    // Highest corner.
-    high: vec3f,
-    // Spheres of a leaf, else 0 in the bits of COUNT_MASK.
-    count: u32,
-}
-
 // A ray prepared for boxes: 1/d, and the origin moved outwards by the rounding there can be.
 struct Slabs {
     inverse: vec3f,
@@ -45,15 +34,6 @@ fn box_key(slabs: Slabs, low: vec3f, high: vec3f, limit: f32) -> u32 {
     let leave = min(min(far.x, far.y), min(far.z, limit));
     // The factor is for the rounding of the distances themselves.
     return select(MISS_KEY, bitcast<u32>(enter), leave * BOX_WIDENING >= enter);
-}
-
-// Of two spheres at one distance that which stands first in the list stays, which leaves do not keep the order of.
-fn take_in_any_order(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
-    var nearer = key < nearest.key;
-    if key == nearest.key && nearest.sphere != NONE {
-        nearer = rank_of(sphere) < rank_of(nearest.sphere);
-    }
-    return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
 }
 
 // Takes the nearest hit among the spheres of the hierarchy.

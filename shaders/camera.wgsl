@@ -2,20 +2,6 @@
 //
 // Twin: src/render_cpu/camera.rs
 
-struct Camera {
-    eye: vec3f,
-    tau: f32,
-    u: vec3f,
-    focus_tau: f32,
-    v: vec3f,
-    scale_x: f32,
-    w: vec3f,
-    scale_y: f32,
-    offset: vec2f,
-    // Pixels across and down.
-    size: vec2f,
-}
-
 // Where a ray starts and where it goes; the direction's length is not 1.
 struct CameraRay {
     origin: vec3f,
@@ -37,8 +23,8 @@ fn pinhole_ray(camera: Camera, corner: vec2f, jitter: vec2f) -> CameraRay {
 fn lens_ray(camera: Camera, corner: vec2f, jitter: vec2f, on_lens: vec2f) -> CameraRay {
     let s = fma(jitter, vec2f(camera.scale_x, camera.scale_y), corner);
     let direction = through(camera, fma(vec2f(-camera.tau), on_lens, s));
-    let origin = mul_add3(camera.u, camera.focus_tau * on_lens.x, camera.eye);
-    return CameraRay(mul_add3(camera.v, camera.focus_tau * on_lens.y, origin), direction);
+    let origin = mul_add3(camera.u, camera.lens_radius * on_lens.x, camera.eye);
+    return CameraRay(mul_add3(camera.v, camera.lens_radius * on_lens.y, origin), direction);
 }
 
 fn through(camera: Camera, s: vec2f) -> vec3f {

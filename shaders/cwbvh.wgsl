@@ -1,23 +1,6 @@
 // Traversal of the compressed hierarchy of eight children a node by one ray. (Ylitie, Karras and Laine 2017,
 // "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", sections 3 and 4.)
 
-struct CwbvhNode {
-    // Lowest corner, from which the children's boxes are measured.
-    low: vec3f,
-    // By axis, 8 bits: the exponent of the unit of their bounds. In the highest 8 bits, which children are nodes.
-    units: u32,
-    // Its children that are nodes stand side by side from here on,
-    first_child: u32,
-    // and the spheres of the others from here on.
-    first_sphere: u32,
-    // By child, 8 bits: what it adds to a mask of hits, in the upper 3, at the bit that the lower 5 tell.
-    marks: vec2u,
-    // By axis, 8 bits a child: lower bounds of children 0 .. 3 and 4 .. 7, then upper bounds.
-    x: vec4u,
-    y: vec4u,
-    z: vec4u,
-}
-
 // The 8 bits of a mask of hits that stand for nodes, the one to be visited first in the highest; below them are
 // 24 for spheres.
 const NODE_HITS = 0xFF000000u;

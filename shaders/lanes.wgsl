@@ -22,6 +22,10 @@ fn neg_mul_add3(a: vec3f, s: f32, b: vec3f) -> vec3f {
     return fma(-a, vec3f(s), b);
 }
 
+fn normalized(v: vec3f) -> vec3f {
+    return v * inverseSqrt(dot3(v, v));
+}
+
 // A float in [0, 1) from the upper 24 bits.
 fn unit_float(u: u32) -> f32 {
     return f32(u >> 8u) * UNIT_FLOAT_SCALE;

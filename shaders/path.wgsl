@@ -80,43 +80,22 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
             }
             traced.rays++;
         }
-
-        // What the ray brings back, and whether it is the last of its path.
-        let miss = nearest.sphere == NONE;
-        var ended = miss || path.absorbed || path.bounce == job.max_depth - 1u;
-        var lit = miss && !path.absorbed;
+        let record = records[select(nearest.sphere, 0u, nearest.sphere == NONE)];
         var point: SurfacePoint;
-        let row = rows[select(nearest.sphere, 0u, miss)];
-        if !ended || SHADING == SHADING_NORMALS {
-            point = hit_point(path.ray, bitcast<f32>(nearest.key), row);
-        }
-        if SHADING != SHADING_PATH {
-            lit = !path.absorbed;
-            ended = true;
-        }
-        if lit {
-            add_radiance(&path, miss, point.outward);
-        }
-
-        // The next sample's place in the sequence.
-        path.bounce = select(path.bounce + 1u, 0u, ended);
-        if ended {
-            path.counter += path.step;
-            path.remaining -= 1u;
-            if path.remaining == 0u {
-                if next_block > 0u {
-                    add_to_film(path.half, slot, path.sums);
-                }
-                if next_block == order.block_count {
-                    is_done = true;
-                    break;
-                }
-                enter_block(&path, blocks[next_block], 0u);
-                path.sums = vec3u(0u);
-                next_block++;
+        let ended = collect(&path, nearest, record, &point);
+        if ended && path.remaining == 0u {
+            if next_block > 0u {
+                add_to_film(path.half, slot, path.sums);
             }
+            if next_block == order.block_count {
+                is_done = true;
+                break;
+            }
+            enter_block(&path, blocks[next_block], 0u);
+            path.sums = vec3u(0u);
+            next_block++;
         }
-        send(&path, ended, nearest.sphere, row, point);
+        send_on(&path, ended, nearest.sphere, record, point);
     }
     // Counted here, since some drivers go through a branch whether it is taken or not.
     let end_block = select(max(next_block, 1u) - 1u, next_block, is_done);
@@ -137,23 +116,12 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
 // Turns of one ray's loops over lists: see `intersect`. Those over a hierarchy count themselves.
 fn turns_over_lists() -> u32 {
     let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
-    if HIERARCHY && !BOOK_ARITHMETIC {
+    if HIERARCHY && SURFACE == SURFACE_EXACT {
         return anchored_count;
     }
     let opaque_count = select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);
     let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
     return opaque_count + two_root_count + anchored_count;
-}
-
-// Goes to sample `place` of a block.
-fn enter_block(path: ptr<function, Path>, block: Block, place: u32) {
-    (*path).half = block.half;
-    (*path).counter = block.counter + place * block.step;
-    (*path).step = block.step;
-    (*path).remaining = block.count - place;
-    if SOBOL {
-        (*path).key = pixel_key(job.seed, block.half, (*path).pixel);
-    }
 }
 
 // What a ray meets first.
@@ -164,9 +132,10 @@ fn intersect(ray: Ray) -> Nearest {
     let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
     let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
     let listed = opaque_count + two_root_count;
-    if BOOK_ARITHMETIC {
+    if SURFACE != SURFACE_EXACT {
+        let t_min = select(0.0, BOOK_T_MIN, SURFACE == SURFACE_BOOK);
         for (var i = 0u; i < listed; i++) {
-            nearest = take(nearest, book_root(ray, sphere_at(i), BOOK_T_MIN), i);
+            nearest = take(nearest, book_root(ray, sphere_at(i), t_min), i);
         }
         return nearest;
     }
@@ -192,35 +161,80 @@ fn intersect(ray: Ray) -> Nearest {
     return nearest;
 }
 
-fn hit_point(ray: Ray, t: f32, row: Row) -> SurfacePoint {
+// The point that was hit.
+fn hit_point(ray: Ray, t: f32, record: ShadingRecord) -> SurfacePoint {
     var point: SurfacePoint;
-    if BOOK_ARITHMETIC {
-        point = book_point(ray, t, row.reference, row.curvature);
-    } else if ANCHORED && row.is_anchored > 0.0 {
-        point = anchored_surface_point(ray, t, row.reference, row.inward, row.curvature);
+    if SURFACE != SURFACE_EXACT {
+        point = book_point(ray, t, record.reference, record.curvature);
+    } else if ANCHORED && record.anchoring > 0.0 {
+        point = anchored_surface_point(ray, t, record.reference, record.inward, record.curvature);
     } else if SPECKS {
-        point = speck_surface_point(ray, t, row.reference, row.curvature, row.radius);
+        point = speck_surface_point(ray, t, record.reference, record.curvature, record.radius);
     } else {
-        point = surface_point(ray, t, row.reference, row.curvature, row.radius);
+        point = surface_point(ray, t, record.reference, record.curvature, record.radius);
     }
     return point;
 }
 
-fn sky(direction: vec3f) -> vec3f {
-    return max(vec3f(0.0), fma(job.sky_slope, vec3f(direction.y), job.sky_middle));
+// Column and row from x | y << 16.
+fn pixel_position(pixel: u32) -> vec2f {
+    return vec2f(f32(pixel & 0xFFFFu), f32(pixel >> 16u));
+}
+
+// Adds the light that arrives, ends the path, and goes to the next sample where it has ended, which is returned. Where
+// the ray goes on, `point` is set to the point that was hit.
+fn collect(
+    path: ptr<function, Path>,
+    nearest: Nearest,
+    record: ShadingRecord,
+    point: ptr<function, SurfacePoint>,
+) -> bool {
+    let miss = nearest.sphere == NONE;
+    var ended = miss || (*path).absorbed || (*path).bounce == job.max_depth - 1u;
+    var lit = miss && !(*path).absorbed;
+    if !ended || SHADING == SHADING_NORMALS {
+        *point = hit_point((*path).ray, bitcast<f32>(nearest.key), record);
+    }
+    if SHADING != SHADING_PATH {
+        lit = !(*path).absorbed;
+        ended = true;
+    }
+    if lit {
+        var light = shade_miss((*path).ray.direction.y);
+        if SHADING != SHADING_PATH {
+            light = shade_hit((*path).pixel, miss, (*point).outward, light);
+        }
+        add_radiance(path, light);
+    }
+    (*path).bounce = select((*path).bounce + 1u, 0u, ended);
+    if ended {
+        (*path).counter += (*path).step;
+        (*path).remaining -= 1u;
+    }
+    return ended;
+}
+
+// The sky's radiance in a direction of this height, in units of the film.
+fn shade_miss(height: f32) -> vec3f {
+    return max(vec3f(0.0), fma(job.sky_slope, vec3f(height), job.sky_middle));
+}
+
+// What a ray brings back where the stage shows something simpler than light: `light` where it misses.
+fn shade_hit(pixel: u32, miss: bool, outward: vec3f, light: vec3f) -> vec3f {
+    if SHADING == SHADING_IMAGE_GRADIENT {
+        // A single column or row has no far end: it is 0 everywhere.
+        return vec3f(pixel_position(pixel) / max(job.camera.size - 1.0, vec2f(1.0)), 0.0) * FIXED_POINT_SCALE;
+    }
+    var shown = vec3f(FIXED_POINT_SCALE, 0.0, 0.0);
+    if SHADING == SHADING_NORMALS {
+        let half = vec3f(0.5 * FIXED_POINT_SCALE);
+        shown = max(vec3f(0.0), fma(outward, half, half));
+    }
+    return select(shown, light, miss);
 }
 
 // Adds a path's end to the sums, or counts it where it is not a number that can be added.
-fn add_radiance(path: ptr<function, Path>, miss: bool, outward: vec3f) {
-    var light = sky((*path).ray.direction);
-    if SHADING == SHADING_IMAGE_GRADIENT {
-        light = vec3f(pixel_position((*path).pixel) / max(job.camera.size - 1.0, vec2f(1.0)), 0.0) * FIXED_POINT_SCALE;
-    } else if SHADING == SHADING_FIRST_HIT_RED {
-        light = select(vec3f(FIXED_POINT_SCALE, 0.0, 0.0), light, miss);
-    } else if SHADING == SHADING_NORMALS {
-        let half = vec3f(0.5 * FIXED_POINT_SCALE);
-        light = select(max(vec3f(0.0), fma(outward, half, half)), light, miss);
-    }
+fn add_radiance(path: ptr<function, Path>, light: vec3f) {
     let radiance = light * (*path).throughput;
     // As bits, since a compiler may take it that no NaN occurs: all that is wrong has larger bits.
     let total = bitcast<u32>(radiance.x + radiance.y + radiance.z);
@@ -231,84 +245,101 @@ fn add_radiance(path: ptr<function, Path>, miss: bool, outward: vec3f) {
     }
 }
 
+// Goes to sample `place` of a block.
+fn enter_block(path: ptr<function, Path>, block: Block, place: u32) {
+    (*path).half = block.half;
+    (*path).counter = block.counter + place * block.step;
+    (*path).step = block.step;
+    (*path).remaining = block.count - place;
+    (*path).key = sampler_key(job.seed, block.half, (*path).pixel);
+}
+
+// The numbers for a path's next ray.
+struct Drawn {
+    // For a direction or a point on the lens.
+    pair: vec2f,
+    // Sine and cosine of the second of the pair, in turns.
+    sine_cosine: vec2f,
+    // For a point in the pixel.
+    jitter: vec2f,
+}
+
+fn draw(path: Path) -> Drawn {
+    let drawn = numbers(job.seed, path.pixel, path.counter, path.key, path.bounce, has_lens());
+    let pair = vec2f(unit_float(drawn.x), unit_float(drawn.y));
+    let jitter = vec2f(unit_float(drawn.z), unit_float(drawn.w));
+    return Drawn(pair, sin_cos_turns(pair.y), jitter);
+}
+
+fn has_lens() -> bool {
+    return LENS && job.camera.tau > 0.0;
+}
+
 // Sends the path on from a surface, or a new one from the camera where it has ended. Lanes go both ways side by
 // side, so what both need stands outside the branch: one set of numbers, one sine and cosine, one length.
-fn send(path: ptr<function, Path>, ended: bool, hit: u32, row: Row, point: SurfacePoint) {
+fn send_on(path: ptr<function, Path>, ended: bool, hit: u32, record: ShadingRecord, point: SurfacePoint) {
     let drawn = draw(*path);
-    let sine_cosine = sin_cos_turns(drawn.pair.y);
     var sent: Ray;
     if ended {
-        sent = start_path(path, drawn, sine_cosine);
+        let camera = generate_camera_ray((*path).corner, drawn);
+        sent = Ray(camera.origin, camera.direction, select(NONE, EYE, EYE_ON_SURFACE), NONE);
+        (*path).throughput = vec3f(1.0);
+        (*path).absorbed = false;
     } else {
-        sent = scatter_path(path, drawn, sine_cosine, hit, row, point);
+        sent = scatter_path(path, drawn, hit, record, point);
     }
     sent.direction = normalized(sent.direction);
     (*path).ray = sent;
 }
 
-fn start_path(path: ptr<function, Path>, drawn: Drawn, sine_cosine: vec2f) -> Ray {
+// The ray of a new path.
+fn generate_camera_ray(corner: vec2f, drawn: Drawn) -> CameraRay {
     var jitter = drawn.jitter;
     if !ANTIALIASING {
         jitter = vec2f(0.5);
     }
-    var from_camera: CameraRay;
     if has_lens() {
-        let on_lens = sqrt(drawn.pair.x) * sine_cosine.yx;
-        from_camera = lens_ray(job.camera, (*path).corner, jitter, on_lens);
-    } else {
-        from_camera = pinhole_ray(job.camera, (*path).corner, jitter);
+        let on_lens = sqrt(drawn.pair.x) * drawn.sine_cosine.yx;
+        return lens_ray(job.camera, corner, jitter, on_lens);
     }
-    (*path).throughput = vec3f(1.0);
-    (*path).absorbed = false;
-    return Ray(from_camera.origin, from_camera.direction, select(NONE, EYE, EYE_ON_SURFACE), NONE);
+    return pinhole_ray(job.camera, corner, jitter);
 }
 
+// Scatters at what was hit. The direction's length is not 1.
 fn scatter_path(
     path: ptr<function, Path>,
     drawn: Drawn,
-    sine_cosine: vec2f,
     hit: u32,
-    row: Row,
+    record: ShadingRecord,
     point: SurfacePoint,
 ) -> Ray {
     let direction = (*path).ray.direction;
     let outward_cosine = dot3(direction, point.outward);
     var front = outward_cosine < 0.0;
-    if !BOOK_ARITHMETIC {
+    if SURFACE == SURFACE_EXACT {
         front = front && (*path).ray.inside != hit;
     }
     if CAVITY {
-        front = front && row.is_anchored < 2.0;
+        front = front && record.anchoring < 2.0;
     }
     let normal = select(-point.outward, point.outward, front);
-    var cosine = min(1.0, abs(outward_cosine));
-    var sine2 = fma(-cosine, cosine, 1.0);
     let rho = sqrt(drawn.pair.x * (1.0 - drawn.pair.x));
-    let across = (rho + rho) * sine_cosine.yx;
+    let across = (rho + rho) * drawn.sine_cosine.yx;
     let unit = vec3f(across.x, 1.0 - (drawn.pair.x + drawn.pair.x), across.y);
-    let surface = Surface(row.weight, row.index, row.inverse_index, row.normal_share);
-    var across_normal: vec3f;
+    let incidence = incidence_of(outward_cosine);
+    let surface = surface_of(record);
+    let coin = drawn.pair.x;
+    var bounced: Scatter;
     if STEEP_GLASS {
-        // A ray inside glass meets it under the angle under which it started: that is remembered, so that total
-        // reflection lasts.
-        across_normal = mul_add3(normal, cosine, direction);
-        let is_known = (*path).ray.inside == hit && row.index > 0.0;
-        sine2 = min(1.0, select(dot3(across_normal, across_normal), (*path).sine2, is_known));
-        cosine = sqrt(1.0 - sine2);
+        bounced = scatter_steeply(path, surface, hit, normal, incidence, front, unit, coin);
+    } else {
+        bounced = scatter(surface, direction, normal, incidence, front, unit, coin);
     }
-    let scattered = scatter(surface, direction, normal, cosine, sine2, front, unit, drawn.pair.x);
-    var sent = scattered.direction;
-    if STEEP_GLASS {
-        if scattered.refracts {
-            sent = refracted(across_normal, normal, scattered.ratio, sine2);
-            sine2 *= scattered.ratio * scattered.ratio;
-        }
-        (*path).sine2 = sine2;
-    }
-    if HEMISPHERE && row.weight > 0.0 {
+    var sent = bounced.direction;
+    if HEMISPHERE && surface.weight > 0.0 {
         sent = hemisphere(normal, unit);
     }
-    var albedo = row.albedo;
+    var albedo = record.albedo;
     if REFLECTANCE_STRIPS {
         albedo = vec3f(strip_reflectance((*path).pixel));
     }
@@ -316,53 +347,39 @@ fn scatter_path(
         sent = normal;
     }
     // A fuzzy reflection into the surface is absorbed.
-    (*path).absorbed = METAL && scattered.is_metal && !(dot3(sent, normal) > 0.0);
+    (*path).absorbed = METAL && bounced.is_metal && !(dot3(sent, normal) > 0.0);
     (*path).throughput *= albedo;
-    let inward = front == scattered.refracts;
+    let inward = front == bounced.refracts;
     return Ray(point.position, sent, select(hit, NONE, inward), select(NONE, hit, inward));
 }
 
-fn has_lens() -> bool {
-    return LENS && job.camera.tau > 0.0;
-}
-
-fn normalized(v: vec3f) -> vec3f {
-    return v * inverseSqrt(dot3(v, v));
+// Scatters where the angle of incidence must be known better than from its cosine. A ray inside glass meets it under
+// the angle under which it started: that is remembered, so that total reflection lasts.
+fn scatter_steeply(
+    path: ptr<function, Path>,
+    surface: Surface,
+    hit: u32,
+    normal: vec3f,
+    rough: Incidence,
+    front: bool,
+    unit: vec3f,
+    coin: f32,
+) -> Scatter {
+    let direction = (*path).ray.direction;
+    let across = mul_add3(normal, rough.cosine, direction);
+    let is_known = (*path).ray.inside == hit && surface.refraction_index > 0.0;
+    let incidence = incidence_of_sine2(select(dot3(across, across), (*path).sine2, is_known));
+    var bounced = scatter(surface, direction, normal, incidence, front, unit, coin);
+    (*path).sine2 = incidence.sine2;
+    if bounced.refracts {
+        bounced.direction = refracted(across, normal, bounced.ratio, incidence.sine2);
+        (*path).sine2 *= bounced.ratio * bounced.ratio;
+    }
+    return bounced;
 }
 
 // The reflectance of the picture's strip that a pixel lies in: 10, 30, 50, 70, 90 %.
 fn strip_reflectance(pixel: u32) -> f32 {
     let strip = (pixel_position(pixel).x + 0.5) * (5.0 / job.camera.size.x) - 0.5;
     return fma(round(max(0.0, strip)), 0.2, 0.1);
-}
-
-// Column and row from x | y << 16.
-fn pixel_position(pixel: u32) -> vec2f {
-    return vec2f(f32(pixel & 0xFFFFu), f32(pixel >> 16u));
-}
-
-// Two numbers for a direction or a lens point, and a point in the pixel.
-struct Drawn {
-    pair: vec2f,
-    jitter: vec2f,
-}
-
-fn draw(path: Path) -> Drawn {
-    var first: vec2u;
-    var second: vec2u;
-    if SOBOL {
-        first = sobol_pair(path.counter, stream_of(path.key, path.bounce));
-        second = first;
-        if has_lens() {
-            second = sobol_pair(path.counter, lens_stream_of(path.key, path.bounce));
-        }
-    } else {
-        let numbers = pcg4d(vec4u(path.pixel, path.counter, path.bounce, job.seed));
-        first = numbers.xy;
-        second = select(first, numbers.zw, has_lens());
-    }
-    return Drawn(
-        vec2f(unit_float(first.x), unit_float(first.y)),
-        vec2f(unit_float(second.x), unit_float(second.y)),
-    );
 }

@@ -44,13 +44,13 @@ fn path_trace(
             atomicAdd(&counters.rejected_high, 1u);
         }
         let finished = atomicLoad(&group_finished);
-        if atomicAdd(&counters.finished, finished) > 0xFFFFFFFFu - finished {
-            atomicAdd(&counters.finished_high, 1u);
+        if atomicAdd(&counters.dispatch.finished, finished) > 0xFFFFFFFFu - finished {
+            atomicAdd(&counters.dispatch.finished_high, 1u);
         }
         let unfinished = atomicLoad(&group_unfinished);
         if unfinished > 0u {
-            atomicAdd(&counters.unfinished, unfinished);
-            atomicAdd(&counters.stuck, atomicLoad(&group_stuck));
+            atomicAdd(&counters.dispatch.unfinished, unfinished);
+            atomicAdd(&counters.dispatch.stuck, atomicLoad(&group_stuck));
         }
     }
 }

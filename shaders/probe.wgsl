@@ -86,12 +86,11 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
         case PROBE_SCATTER: {
             let surface = Surface(f(base, 0u), f(base, 1u), f(base, 2u), f(base, 3u));
             let front = words[base + 14u] != 0u;
-            let cosine = f(base, 13u);
-            let sine2 = fma(-cosine, cosine, 1.0);
+            let incidence = incidence_of(f(base, 13u));
             let coin = f(base, 15u);
-            let sent = scatter(surface, v3(base, 4u), v3(base, 7u), cosine, sine2, front, v3(base, 10u), coin);
-            let share = reflectance(cosine, f(base, 3u));
-            let through = refracted(v3(base, 4u), v3(base, 7u), sent.ratio, sine2);
+            let sent = scatter(surface, v3(base, 4u), v3(base, 7u), incidence, front, v3(base, 10u), coin);
+            let share = reflectance(incidence.cosine, f(base, 3u));
+            let through = refracted(v3(base, 4u), v3(base, 7u), sent.ratio, incidence.sine2);
             put3(base, 0u, sent.direction);
             words[base + 3u] = select(0u, 1u, sent.refracts) | select(0u, 2u, sent.is_metal);
             put(base, 4u, share);
@@ -113,6 +112,29 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             let sum = wide_sum(vec2u(words[base + 1u], words[base + 2u]), words[base + 3u]);
             words[base + 1u] = sum.x;
             words[base + 2u] = sum.y;
+        }
+        case PROBE_INCIDENCE: {
+            let by_cosine = incidence_of(f(base, 0u));
+            let by_sine2 = incidence_of_sine2(f(base, 1u));
+            let sent = hemisphere(v3(base, 2u), v3(base, 5u));
+            let reflectance = strip_reflectance(words[base + 8u]);
+            put(base, 0u, by_cosine.cosine);
+            put(base, 1u, by_cosine.sine2);
+            put(base, 2u, by_sine2.cosine);
+            put(base, 3u, by_sine2.sine2);
+            put3(base, 4u, sent);
+            put(base, 7u, reflectance);
+        }
+        case PROBE_BOX: {
+            let slabs = slabs_of(probe_ray(base), f(base, 15u), BOX_MARGIN);
+            words[base] = box_key(slabs, v3(base, 8u), v3(base, 11u), f(base, 14u));
+        }
+        case PROBE_FOUR_HITS: {
+            let grid = Grid(v3(base, 0u), v3(base, 3u), v3(base, 6u));
+            let x = vec2u(words[base + 9u], words[base + 10u]);
+            let y = vec2u(words[base + 11u], words[base + 12u]);
+            let z = vec2u(words[base + 13u], words[base + 14u]);
+            words[base] = four_hits(grid, x, y, z, words[base + 15u], words[base + 16u], f(base, 17u));
         }
         default: {}
     }

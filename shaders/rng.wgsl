@@ -62,3 +62,24 @@ fn lens_stream_of(key: u32, bounce: u32) -> u32 {
 fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
     return mix32(mix32(seed + half * GOLDEN_RATIO) ^ pixel);
 }
+
+// What a sampler's streams of numbers for a pixel begin with; nothing where the pixel itself is hashed.
+fn sampler_key(seed: u32, half: u32, pixel: u32) -> u32 {
+    if SAMPLER == SAMPLER_SOBOL {
+        return pixel_key(seed, half, pixel);
+    }
+    return 0u;
+}
+
+// Two pairs of numbers of a path's next ray, the second of which differs `with_lens` alone.
+fn numbers(seed: u32, pixel: u32, counter: u32, key: u32, bounce: u32, with_lens: bool) -> vec4u {
+    if SAMPLER == SAMPLER_SOBOL {
+        let first = sobol_pair(counter, stream_of(key, bounce));
+        if with_lens {
+            return vec4u(first, sobol_pair(counter, lens_stream_of(key, bounce)));
+        }
+        return first.xyxy;
+    }
+    let drawn = pcg4d(vec4u(pixel, counter, bounce, seed));
+    return select(drawn.xyxy, drawn, with_lens);
+}

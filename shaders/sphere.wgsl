@@ -18,15 +18,6 @@ struct Nearest {
     sphere: u32,
 }
 
-// A sphere as seen from a point on its surface.
-struct AnchoredSphere {
-    anchor: vec3f,
-    curvature: f32,
-    inward: vec3f,
-    // A ROOTS_ tag, and UNDER_EYE where the eye is on the surface.
-    flags: u32,
-}
-
 fn nothing() -> Nearest {
     return Nearest(INFINITE_KEY, NONE);
 }
@@ -34,6 +25,15 @@ fn nothing() -> Nearest {
 // Of two spheres at one distance the first taken stays.
 fn take(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
     let nearer = key < nearest.key;
+    return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
+}
+
+// Of two spheres at one distance that which stands first in the list stays, which leaves do not keep the order of.
+fn take_in_any_order(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
+    var nearer = key < nearest.key;
+    if key == nearest.key && nearest.sphere != NONE {
+        nearer = rank_of(sphere) < rank_of(nearest.sphere);
+    }
     return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
 }
 

@@ -1,7 +1,7 @@
 //! The control: the same picture by a plain C89 program, which is compiled when it is asked for.
 
 use crate::render::{RenderJob, RenderSettings};
-use crate::scene::{Camera, Material, Scene};
+use crate::scene::{Camera, Parameter, Scene};
 use glam::DVec3;
 use std::fmt::Write as _;
 use std::fs;
@@ -226,14 +226,13 @@ fn scene_text(scene: &Scene, camera: &Camera) -> String {
     );
     for sphere in &scene.spheres {
         let place = format!("{} {:?}", three(sphere.center), sphere.radius);
+        let material = scene.material_of(sphere);
+        let words = material.parameters().into_iter().map(|(_, parameter)| match parameter {
+            Parameter::Number(number) => format!(" {number:?}"),
+            Parameter::Colour(colour) => format!(" {}", three(colour)),
+        });
         // Writing to a string cannot fail.
-        let _ = match *scene.material_of(sphere) {
-            Material::Lambertian { albedo } => writeln!(text, "lambertian {place} {}", three(albedo)),
-            Material::Metal { albedo, fuzz } => writeln!(text, "metal {place} {} {fuzz:?}", three(albedo)),
-            Material::Dielectric { refraction_index } => {
-                writeln!(text, "dielectric {place} {refraction_index:?}")
-            }
-        };
+        let _ = writeln!(text, "{} {place}{}", material.kind(), words.collect::<String>());
     }
     text
 }

@@ -4,7 +4,7 @@
 use crate::record::PathRecord;
 use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::render_cpu::PathRecorder;
-use crate::scene::{Material, Scene};
+use crate::scene::Scene;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -57,10 +57,7 @@ impl Layer {
             }
             // The camera's ray counts in full, so that the next one's throughput is what the surface left.
             (_, Some(next)) => DVec3::from(next.throughput),
-            (_, None) => match *scene.material_of(sphere) {
-                Material::Lambertian { albedo } | Material::Metal { albedo, .. } => albedo,
-                Material::Dielectric { .. } => DVec3::ONE,
-            },
+            (_, None) => scene.material_of(sphere).albedo().unwrap_or(DVec3::ONE),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What every backend renders and how it is asked: [`RenderJob`], [`Features`] and the [`Renderer`] trait.
+//! What every backend renders and how it is asked: [`RenderJob`] and the [`Renderer`] trait.
 //!
 //! **A sample is a pure function** of (job, pixel, sample index). It does not depend on the backend, the packet
 //! width, the thread, its neighbours or what was rendered before. Everything else rests on that.
@@ -7,8 +7,8 @@ pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
 
 use crate::film::Film;
 use crate::memory::{self, MemoryError};
-use crate::scene::{Camera, Material, Scene, SceneError};
-use crate::stages::{Rules, Shading};
+use crate::scene::{Camera, Scene, SceneError};
+use crate::stages::Rules;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use std::ops::Range;
@@ -197,40 +197,6 @@ impl RenderJob {
         let RenderSettings { width, height, .. } = self.settings;
         (film.width(), film.height(), film.halves().len()) == (width, height, self.settings.half_count())
     }
-
-    /// What this job needs of a kernel.
-    pub fn features(&self) -> Features {
-        let occurs =
-            |test: fn(&Material) -> bool| self.scene.spheres.iter().any(|s| test(self.scene.material_of(s)));
-        Features {
-            lambertian: occurs(|m| matches!(m, Material::Lambertian { .. })),
-            metal: occurs(|m| matches!(m, Material::Metal { .. })),
-            fuzz: occurs(|m| m.effective_fuzz() > 0.0),
-            dielectric: occurs(|m| matches!(m, Material::Dielectric { .. })),
-            lens: self.camera.defocus_angle_degrees > 0.0,
-            stage_rules: !self.rules.are_finished(),
-            rays: self.rules.shading != Shading::ImageGradient,
-        }
-    }
-}
-
-/// What a job needs of a kernel; what it does not need is left out of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Features {
-    /// A Lambertian surface occurs.
-    pub lambertian: bool,
-    /// A metal occurs.
-    pub metal: bool,
-    /// A metal with fuzz above 0 occurs.
-    pub fuzz: bool,
-    /// Glass occurs.
-    pub dielectric: bool,
-    /// The camera has a lens of some size.
-    pub lens: bool,
-    /// A stage's rules differ from the finished renderer's.
-    pub stage_rules: bool,
-    /// Rays are traced at all.
-    pub rays: bool,
 }
 
 /// A job that cannot be rendered.

@@ -11,6 +11,10 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 fn weekender(directory: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    // Whatever should have been refused opens no window.
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(display);
+    }
     command.current_dir(directory).args(arguments).stdin(Stdio::null());
     command
 }
@@ -376,18 +380,25 @@ fn films_of_other_pictures_are_not_resumed() {
     let directory = temp();
     render(directory.path(), &["--samples", "2", "--checkpoint", "film.exr"]);
     std::fs::write(directory.path().join("broken.exr"), "not a film").unwrap();
-    let resume = ["--batch", "--resume", "film.exr"];
-    let with = |more: &[&'static str]| [&resume[..], more].concat();
-    refused_in(&directory, &with(&["--size", "16x9"]), &["16x9", "32x18"]);
-    refused_in(&directory, &with(&["--seed", "5"]), &["seed is 5"]);
-    refused_in(&directory, &with(&["--depth", "3"]), &["depth is 3"]);
-    refused_in(&directory, &with(&["--vfov", "30"]), &["camera"]);
-    refused_in(&directory, &with(&["--sampler", "independent"]), &["independent", "sobol"]);
-    refused_in(&directory, &with(&["--estimate-error", "off"]), &["estimate-error is off"]);
-    refused_in(&directory, &with(&["--scene", "book", "--size", "32x18"]), &["another picture"]);
-    refused_in(&directory, &["--batch", "--resume", "broken.exr"], &["broken.exr"]);
-    refused_in(&directory, &["--batch", "--resume", "missing.exr"], &["missing.exr"]);
-    refused_in(&directory, &["--batch", "--resume", "film.png"], &["--resume", ".exr"]);
+    // The window refuses them as a batch render does.
+    for way in [&["--batch"][..], &[]] {
+        let with = |film: &'static str, more: &[&'static str]| [way, &["--resume", film], more].concat();
+        for (flags, parts) in [
+            (&["--size", "16x9"][..], &["16x9", "32x18"][..]),
+            (&["--seed", "5"], &["seed is 5"]),
+            (&["--depth", "3"], &["depth is 3"]),
+            (&["--vfov", "30"], &["camera"]),
+            (&["--sampler", "independent"], &["independent", "sobol"]),
+            (&["--estimate-error", "off"], &["estimate-error is off"]),
+            (&["--scene", "book", "--size", "32x18"], &["another picture"]),
+            (&["--stage", "metal", "--size", "32x18"], &["another picture"]),
+        ] {
+            refused_in(&directory, &with("film.exr", flags), parts);
+        }
+        refused_in(&directory, &with("broken.exr", &[]), &["broken.exr"]);
+        refused_in(&directory, &with("missing.exr", &[]), &["missing.exr"]);
+        refused_in(&directory, &with("film.png", &[]), &["--resume", ".exr"]);
+    }
 }
 
 #[test]

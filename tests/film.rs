@@ -7,12 +7,12 @@ use std::collections::HashSet;
 use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
+use weekender::files::InputError;
 use weekender::film::{
     CheckpointError, Description, ErrorEstimate, FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, FilmError,
     MergeError, PixelSum, RADIANCE_LIMIT, SAMPLE_LIMIT, SampleRanges, checkpoint, fixed_point, key,
     merge_files, same_recipe_text, to_byte,
 };
-use weekender::input::InputError;
 use weekender::output::decode_description;
 use weekender::stages::Transfer;
 

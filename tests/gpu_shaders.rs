@@ -6,11 +6,10 @@ mod gpu_common;
 use gpu_common::say_loudly;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use std::collections::HashMap;
-use std::mem::offset_of;
-use weekender::render_gpu::Overrides;
-use weekender::render_gpu::layout::*;
+use weekender::kernel::{CameraTable, Features, Row, ShadingRecord, records, words_of};
+use weekender::render::SamplerKind;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
+use weekender::stages::{DielectricLaws, Shading, Surface};
 
 fn parsed(entry_point: EntryPoint) -> naga::Module {
     let text = source(entry_point);
@@ -20,15 +19,27 @@ fn parsed(entry_point: EntryPoint) -> naga::Module {
     }
 }
 
-/// The general kernel with a list and with each hierarchy: name and value of every override.
-fn variants() -> [Vec<(String, f64)>; 3] {
-    let general = Overrides::default();
+/// The general kernel with a list and with each hierarchy, and one with every stage rule: name and value of every override.
+fn variants() -> [Vec<(String, f64)>; 4] {
+    let general = Features::default();
     let variants = [
         general,
-        Overrides { hierarchy: true, ..general },
-        Overrides { hierarchy: true, cwbvh: true, ..general },
+        Features { hierarchy: true, ..general },
+        Features { hierarchy: true, cwbvh: true, ..general },
+        Features {
+            specks: true,
+            steep_glass: true,
+            sampler: SamplerKind::Independent,
+            antialiasing: false,
+            surface: Surface::Book,
+            hemisphere: true,
+            reflectance_strips: true,
+            shading: Shading::Normals,
+            dielectric_laws: DielectricLaws::TotalReflection,
+            ..general
+        },
     ];
-    variants.map(|v| v.constants().into_iter().map(|(name, c)| (name.to_owned(), c.value())).collect())
+    variants.map(|features| features.overrides())
 }
 
 #[test]
@@ -82,104 +93,72 @@ fn told_by_tint(text: &str, overrides: &[String]) -> std::process::Output {
     tint.args(["--format", "wgsl", "--overrides", &overrides.join(",")]).arg(&file).output().unwrap()
 }
 
-fn offsets(module: &naga::Module, name: &str) -> (HashMap<String, u32>, u32) {
-    for (_, ty) in module.types.iter() {
-        if let naga::TypeInner::Struct { members, span } = &ty.inner
-            && ty.name.as_deref() == Some(name)
-        {
-            let offset = |m: &naga::StructMember| (m.name.clone().unwrap_or_default(), m.offset);
-            return (members.iter().map(offset).collect(), *span);
-        }
-    }
-    panic!("no struct {name} in the shaders");
-}
-
-macro_rules! same_layout {
-    ($module:expr, $rust:ident, $wgsl:literal, $($field:ident),+) => {
-        let (members, span) = offsets(&$module, $wgsl);
-        assert_eq!(span as usize, size_of::<$rust>(), "size of {}", $wgsl);
-        let mut count = 0;
-        $(
-            count += 1;
-            let offset = members.get(stringify!($field)).copied();
-            assert_eq!(offset, Some(offset_of!($rust, $field) as u32), "{}.{}", $wgsl, stringify!($field));
-        )+
-        assert_eq!(members.len(), count, "{} has members that are not compared", $wgsl);
+/// What WGSL calls a type.
+fn name_of(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
+    let scalar = |scalar: naga::Scalar| match (scalar.kind, scalar.width) {
+        (naga::ScalarKind::Float, 4) => "f32",
+        (naga::ScalarKind::Uint, 4) => "u32",
+        other => panic!("{other:?} is not for records"),
     };
+    match &module.types[ty].inner {
+        naga::TypeInner::Scalar(of) => scalar(*of).to_owned(),
+        naga::TypeInner::Atomic(of) => format!("atomic<{}>", scalar(*of)),
+        naga::TypeInner::Vector { size, scalar: of } => format!("vec{}{}", *size as u8, &scalar(*of)[..1]),
+        naga::TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
+            format!("array<{}, {count}>", name_of(module, *base))
+        }
+        naga::TypeInner::Struct { .. } => module.types[ty].name.clone().unwrap(),
+        other => panic!("{other:?} is not for records"),
+    }
 }
 
+/// Name, type and offset of each member of a struct, and its size as an element of an array.
+fn layout_of(module: &naga::Module, name: &str) -> (Vec<(String, String, usize)>, usize) {
+    let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
+    let (_, naga::Type { inner: naga::TypeInner::Struct { members, span }, .. }) = found.unwrap() else {
+        panic!("{name} is not a struct")
+    };
+    let members = members
+        .iter()
+        .map(|member| (member.name.clone().unwrap(), name_of(module, member.ty), member.offset as usize));
+    (members.collect(), *span as usize)
+}
+
+/// Names, types, offsets and sizes of what the host writes are those that the shaders read.
 #[test]
 fn layouts_agree() {
     let module = parsed(EntryPoint::PathTrace);
-    same_layout!(module, GpuCamera, "Camera", eye, tau, u, focus_tau, v, scale_x, w, scale_y, offset, size);
-    same_layout!(module, GpuAnchoredSphere, "AnchoredSphere", anchor, curvature, inward, flags);
-    same_layout!(
-        module,
-        GpuJob,
-        "Job",
-        camera,
-        sky_middle,
-        extent,
-        sky_slope,
-        max_depth,
-        seed,
-        opaque_count,
-        two_root_count,
-        anchored_count,
-        width,
-        height,
-        tile_width,
-        node_count,
-        few_spheres,
-        few_anchored
-    );
-    same_layout!(
-        module,
-        GpuDispatch,
-        "Dispatch",
-        first_tile,
-        tile_count,
-        block_count,
-        turn_limit,
-        first_row,
-        row_count,
-        sample_count,
-        transfer,
-        resumes,
-        first_aside
-    );
-    same_layout!(module, GpuBlock, "Block", half, counter, step, count);
-    same_layout!(
-        module,
-        GpuRow,
-        "Row",
-        reference,
-        curvature,
-        albedo,
-        weight,
-        radius,
-        index,
-        inverse_index,
-        normal_share,
-        inward,
-        is_anchored
-    );
-    same_layout!(module, GpuNode, "Node", low, first, high, count);
-    same_layout!(module, GpuCwbvhNode, "CwbvhNode", low, units, first_child, first_sphere, marks, x, y, z);
-    same_layout!(module, GpuPixelSum, "PixelSum", red, green, blue);
-    let (members, span) = offsets(&module, "Counters");
-    assert_eq!((span as usize, members.len()), (size_of::<GpuCounters>(), 8));
-    let own = [
-        ("rays", offset_of!(GpuCounters, rays)),
-        ("rays_high", offset_of!(GpuCounters, rays_high)),
-        ("rejected", offset_of!(GpuCounters, rejected)),
-        ("rejected_high", offset_of!(GpuCounters, rejected_high)),
-        ("finished", offset_of!(GpuCounters, dispatch.finished)),
-        ("finished_high", offset_of!(GpuCounters, dispatch.finished_high)),
-        ("unfinished", offset_of!(GpuCounters, dispatch.unfinished)),
-        ("stuck", offset_of!(GpuCounters, dispatch.stuck)),
-    ];
-    for (name, offset) in own {
-        assert_eq!(members.get(name).copied(), Some(offset as u32), "Counters.{name}");
+    for (name, size, fields) in records::layouts() {
+        let (members, span) = layout_of(&module, &name);
+        let fields: Vec<_> = fields.into_iter().map(|f| (f.name.to_owned(), f.wgsl, f.offset)).collect();
+        assert_eq!(fields, members, "{name}");
+        assert_eq!(size, span, "size of {name}");
     }
+}
+
+/// What the host writes of a record is as long as the shaders take it to be, and in the order of its fields.
+#[test]
+fn words_are_those_of_the_fields() {
+    let record = ShadingRecord {
+        reference: [1.0, 2.0, 3.0],
+        curvature: 4.0,
+        albedo: [5.0, 6.0, 7.0],
+        weight: 8.0,
+        radius: 9.0,
+        refraction_index: 10.0,
+        inverse_index: 11.0,
+        f0: 12.0,
+        inward: [13.0, 14.0, 15.0],
+        anchoring: 16.0,
+    };
+    let expected: Vec<f32> = (1..=16).map(|number| number as f32).collect();
+    assert_eq!(Row::from(record).0[..16], expected);
+    let words = words_of(&[record, record]);
+    assert_eq!(words.len() * 4, 2 * size_of::<ShadingRecord<f32>>());
+    assert_eq!(words[16..], expected.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+    let job = records::layouts().into_iter().find(|(name, ..)| name == "Job").unwrap();
+    let camera = CameraTable { tau: 2.0, size: [3.0, 4.0], ..CameraTable::default() };
+    let words = words_of(&[camera]);
+    assert_eq!((words[3], words[19], words.len()), (2.0_f32.to_bits(), 4.0_f32.to_bits(), 20));
+    assert_eq!(job.2[1].offset, 80);
 }

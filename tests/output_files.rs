@@ -6,10 +6,9 @@ use image::{ImageFormat, ImageReader};
 use std::fs;
 use std::io;
 use std::path::Path;
+use weekender::files::{check_writable, replace_file};
 use weekender::film::{Film, checkpoint, fixed_point};
-use weekender::output::{
-    Description, OutputError, OutputFormat, check_writable, key, read_description, replace_file, write_image,
-};
+use weekender::output::{Description, OutputError, OutputFormat, key, read_description, write_image};
 use weekender::stages::Transfer;
 
 fn film() -> Film {

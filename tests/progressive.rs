@@ -8,7 +8,7 @@ use std::time::Duration;
 use weekender::backends::{BackendChoice, Together};
 use weekender::film::{Film, PixelSum};
 use weekender::progressive::{
-    EndReason, Factory, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, Work,
+    EndReason, Factory, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, Stop, Work,
 };
 use weekender::recipe::Recipe;
 use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
@@ -326,8 +326,8 @@ fn pauses_lose_nothing() {
 
 #[test]
 fn the_time_limit_ends_it_with_at_least_one_pass() {
-    for limit in [Duration::from_nanos(1), Duration::from_millis(100)] {
-        let progressive = started(CPU, Plan { time_limit: Some(limit), ..Plan::endless() });
+    for limit in [1e-9, 0.1] {
+        let progressive = started(CPU, Plan::until(Stop { seconds: Some(limit), ..Stop::default() }));
         let status = progressive.wait_until_over();
         assert_eq!(status.phase, Phase::Done(EndReason::TimeLimit));
         assert!(status.samples_per_pixel >= 2 && status.elapsed < Duration::from_secs(5), "{status:?}");
@@ -338,7 +338,7 @@ fn the_time_limit_ends_it_with_at_least_one_pass() {
 #[test]
 fn the_noise_target_ends_it() {
     let target = expected(64).error().unwrap().rmse;
-    let progressive = started(CPU, Plan { noise_target: Some(target), ..Plan::endless() });
+    let progressive = started(CPU, Plan::until(Stop { noise: Some(target), ..Stop::default() }));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
     assert!(status.error.unwrap().rmse <= target);
@@ -348,7 +348,8 @@ fn the_noise_target_ends_it() {
 /// A target that the first samples meet: their estimate is too rough to be trusted.
 #[test]
 fn a_noise_target_is_not_looked_at_before_its_first_samples() {
-    let progressive = started(CPU, Plan { noise_target: Some(1e9), ..Plan::endless() });
+    let progressive =
+        started(CPU, Plan { stop: Stop { noise: Some(1e9), ..Stop::default() }, ..Plan::endless() });
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
     assert_eq!((status.samples_per_pixel, NOISE_TARGET_FIRST_SAMPLES), (16, 16));

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use std::path::Path;
-use weekender::input::InputError;
+use weekender::files::InputError;
 use weekender::recipe::Recipe;
 use weekender::recipe::file::{FileError, load, parse, to_picture_toml, to_toml};
 use weekender::render::{RenderSettings, SamplerKind};

@@ -3,11 +3,11 @@
 use crate::widths::{Body, COUNT, Vectors, rays, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
+use weekender::kernel::{AnchoredSphere, Roots};
 use weekender::render_cpu::lanes::Lanes;
 use weekender::render_cpu::sphere::{
     Nearest, Spheres, WideSphere, anchored_root, book_root, near_root, nearest_root,
 };
-use weekender::tables::{AnchoredSphere, Roots};
 
 /// Spheres that each ray is tested against: so many that loading the rays does not matter.
 const SPHERES: usize = 32;
@@ -41,8 +41,7 @@ impl Intersect {
             anchor: [0.0, -0.5 - index as f32, -1.0],
             inward: [0.0, -1.0, 0.0],
             curvature: 0.001,
-            roots: Roots::Nearer,
-            under_eye: false,
+            flags: Roots::Nearer as u32,
         };
         let grounds = (0..SPHERES).map(ground).collect();
         Intersect { root, origins: Vectors::within(-0.1, 0.1), directions, spheres, grounds }

@@ -4,7 +4,7 @@ use crate::widths::{Body, COUNT, Vectors, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::render_cpu::lanes::{Lanes, V3, dot};
-use weekender::render_cpu::material::{Incidence, Surface, scatter};
+use weekender::render_cpu::material::{Surface, incidence_of, scatter};
 use weekender::stages::DielectricLaws;
 
 /// Bounces of each ray: so many that loading it does not matter.
@@ -39,9 +39,9 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
             let index = L::select(is_glass, l.constant(1.5), zero);
             let surface = Surface {
                 weight: kind - l.constant(0.6),
-                index,
+                refraction_index: index,
                 inverse_index: l.constant(1.0) / index,
-                normal_share: l.constant(0.04),
+                f0: l.constant(0.04),
             };
             let (unit, _) = self.units.load(l, first);
             for _ in 0..BOUNCES {
@@ -55,7 +55,7 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
                     laws,
                     direction,
                     normal,
-                    &Incidence::of(l, cosine),
+                    &incidence_of(l, cosine),
                     front,
                     unit,
                     coin,

@@ -1,12 +1,12 @@
 //! One body of work at several lane counts.
 
 use fearless_simd::Level;
+use weekender::kernel::Row;
 use weekender::render_cpu::Isa;
 use weekender::render_cpu::lanes::{
     Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3, Wide,
 };
 use weekender::render_cpu::sphere::{NONE, Rays};
-use weekender::tables::Row;
 
 /// Rays, directions or draws that a body goes through: few enough for the first cache.
 pub const COUNT: usize = 256;

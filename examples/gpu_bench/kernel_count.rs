@@ -7,7 +7,7 @@ use naga::{Arena, BinaryOperator, Block, Expression, Function, Handle, Literal, 
 use naga::{Module, ScalarKind, TypeInner};
 use std::collections::HashMap;
 use std::ops::AddAssign;
-use weekender::render_gpu::Overrides;
+use weekender::kernel::Features;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
 
 /// A specialised kernel.
@@ -46,15 +46,11 @@ impl AddAssign for Work {
 }
 
 impl Counted {
-    pub fn of(overrides: &Overrides) -> anyhow::Result<Self> {
+    pub fn of(features: &Features) -> anyhow::Result<Self> {
         let text = source(EntryPoint::PathTrace);
         let module = naga::front::wgsl::parse_str(&text)?;
         let info = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module)?;
-        let constants = overrides
-            .constants()
-            .into_iter()
-            .map(|(name, constant)| (name.to_owned(), constant.value()))
-            .collect();
+        let constants = features.overrides().into_iter().collect();
         let entry = Some((naga::ShaderStage::Compute, EntryPoint::PathTrace.name()));
         let (module, info) = process_overrides(&module, &info, entry, &constants)?;
         let mut module = module.into_owned();

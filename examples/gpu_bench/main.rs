@@ -18,15 +18,16 @@ use kernel_count::Counted;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
+use weekender::kernel::Node;
 use weekender::progressive::{Plan, Progressive, Work};
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, RenderSettings, Renderer};
-use weekender::render_gpu::{GpuOptions, GpuRenderer, HierarchyKind, Overrides};
+use weekender::render_gpu::{GpuOptions, GpuRenderer, HierarchyKind};
 use weekender::stages::Shading;
 use weekender::statistics;
 use weekender::tables::Tables;
 use weekender::tables::cwbvh::{CwBvhNode, Cwbvh};
-use weekender::tables::hierarchy::{Hierarchy, Node};
+use weekender::tables::hierarchy::Hierarchy;
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -175,14 +176,14 @@ fn hierarchy(scene: &str) -> anyhow::Result<()> {
 fn size(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
     let tables = Tables::<f32>::new(&job);
-    let [general, specialised] = [Overrides::general(&job, &tables), Overrides::specialised(&job, &tables)]
-        .map(|o| (Counted::of(&o).map(|counted| counted.size()), o));
-    let (specialised, overrides) = specialised;
+    let needed = tables.features;
+    let [general, specialised] =
+        [needed.generalised(), needed].map(|features| Counted::of(&features).map(|counted| counted.size()));
     println!(
         "| {scene} | {} | {} | {} |",
-        general.0?,
+        general?,
         specialised?,
-        if overrides.shading == Shading::Path { overrides.summary() } else { String::new() }
+        if needed.shading == Shading::Path { needed.describe() } else { String::new() }
     );
     Ok(())
 }
@@ -192,9 +193,8 @@ fn work(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 24])?;
     let tables = Tables::<f32>::new(&job);
     anyhow::ensure!(tables.hierarchy.is_none(), "the length of a traversal is not known beforehand");
-    let overrides = Overrides::specialised(&job, &tables);
     let trips = [tables.opaque.len(), tables.two_root.len(), tables.anchored.len()];
-    let work = Counted::of(&overrides)?.turn(&trips.into_iter().filter(|n| *n > 0).collect::<Vec<_>>());
+    let work = Counted::of(&tables.features)?.turn(&trips.into_iter().filter(|n| *n > 0).collect::<Vec<_>>());
     println!("| {scene} | {} | {} | {} | {} |", work.float, work.integer, work.special, work.total());
     Ok(())
 }

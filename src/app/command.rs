@@ -1,8 +1,8 @@
 //! Everything that the user can ask for. Menus, buttons, shortcuts, palette and help read it from here.
 
-use super::Device;
-use super::remembered::Theme;
-use super::viewport::Show;
+use super::model::device::Device;
+use super::model::remembered::Theme;
+use super::model::show::Show;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
@@ -139,6 +139,10 @@ const fn ctrl_shift(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
 }
 
+/// With Ctrl, these stand for the views in their order.
+const VIEW_KEYS: [Key; 9] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+
 impl Command {
     /// All of them, in the menus' order.
     pub fn all() -> Vec<Command> {
@@ -146,12 +150,12 @@ impl Command {
         let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
         all.extend([SaveScene, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
-        all.extend(super::viewport::Show::ALL.map(Show));
+        all.extend(self::Show::ALL.map(Show));
         all.extend([Wipe, WipeDifference, Fit, ActualSize, ZoomIn, ZoomOut]);
         all.extend([Panels, Controls, Info, Plot, FullScreen]);
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Pause, Restart, SwitchDevice]);
-        all.extend(super::Device::ALL.map(Device));
+        all.extend(self::Device::ALL.map(Device));
         all.extend([PreviousStage, NextStage, Book]);
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
         all.push(BookArithmetic);
@@ -312,7 +316,10 @@ impl Command {
             Command::Redo => ctrl_shift(Key::Z),
             Command::Home => key(Key::Home),
             Command::AddBookmark => ctrl(Key::B),
-            Command::Show(show) => ctrl(show.key()),
+            Command::Show(show) => {
+                let place = Show::ALL.iter().position(|other| *other == show)?;
+                ctrl(*VIEW_KEYS.get(place)?)
+            }
             Command::Wipe => key(Key::C),
             Command::WipeDifference => key(Key::X),
             Command::Fit => key(Key::F),

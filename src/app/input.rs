@@ -2,9 +2,10 @@
 
 use super::command::Command;
 use super::navigation;
-use super::window::Window;
+use crate::scene::Camera;
 use eframe::egui::{self, Key, Modifiers};
 use glam::DVec3;
+use std::path::PathBuf;
 
 /// Scene units a second, as a share of the distance to `look_at`.
 const FLY_SHARE_PER_SECOND: f64 = 0.7;
@@ -12,81 +13,81 @@ const FLY_SHARE_PER_SECOND: f64 = 0.7;
 /// How much faster it goes with Shift.
 const FAST: f64 = 4.0;
 
-impl Window {
-    /// Turns keys into commands and moves.
-    pub(super) fn take_input(&mut self, context: &egui::Context) {
-        self.take_dropped(context);
-        if self.dialog.is_some() || context.text_edit_focused() {
-            return;
-        }
-        let is_focused = context.memory(|memory| memory.focused().is_some());
-        for command in by_modifiers() {
-            let Some(shortcut) = command.shortcut() else { continue };
-            // A control that has the focus is moved from with Tab and pressed with Space.
-            let is_plain = shortcut.modifiers == Modifiers::NONE;
-            if is_focused && is_plain && matches!(shortcut.logical_key, Key::Tab | Key::Space) {
-                continue;
-            }
-            // In a long frame a key can have been pressed more than once.
-            let presses = context
-                .input_mut(|input| input.count_and_consume_key(shortcut.modifiers, shortcut.logical_key));
-            if presses > 0 {
-                if command == Command::Panels {
-                    context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
-                }
-                (0..presses).for_each(|_| self.send(command));
-                if command.opens_dialog() {
-                    // What is typed after it, be it within this frame, is for the dialog.
-                    return;
-                }
-            }
-        }
-        let also = |key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-        if also(Key::F6) {
-            context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next));
-        }
-        if also(Key::Questionmark) {
-            self.send(Command::Help);
-        }
-        if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Y)) {
-            self.send(Command::Redo);
-        }
-        // Escape leaves a control first, then the full screen.
-        if !self.had_focus && also(Key::Escape) && self.is_full_screen {
-            self.send(Command::FullScreen);
-        }
-        self.fly(context);
-    }
+/// What the keyboard was for in the frame before.
+pub struct Keyboard {
+    /// A control, a menu or a dialog had it.
+    pub had_focus: bool,
+    /// The window takes the whole screen.
+    pub is_full_screen: bool,
+}
 
-    fn fly(&mut self, context: &egui::Context) {
-        let (by, seconds, is_fast) = context.input(|input| {
-            let is_plain = !input.modifiers.command && !input.modifiers.alt;
-            let held = |key| f64::from(u8::from(is_plain && input.key_down(key)));
-            let by = DVec3::new(
-                held(Key::D) - held(Key::A),
-                held(Key::E) - held(Key::Q),
-                held(Key::W) - held(Key::S),
-            );
-            // After a pause without frames the first step would be a jump.
-            (by, f64::from(input.stable_dt.min(0.05)), input.modifiers.shift)
-        });
-        if by == DVec3::ZERO {
-            return;
-        }
-        let camera = &self.document.camera;
-        let distance = camera.look_from.distance(camera.look_at);
-        let speed = FLY_SHARE_PER_SECOND * distance * if is_fast { FAST } else { 1.0 };
-        self.document.camera = navigation::fly(camera, by * speed * seconds);
-        self.note_move();
-        context.request_repaint();
+/// Turns keys into commands. Returns whether the keys that are held may move the camera.
+pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Vec<Command>) -> bool {
+    if context.text_edit_focused() {
+        return false;
     }
+    let is_focused = context.memory(|memory| memory.focused().is_some());
+    for command in by_modifiers() {
+        let Some(shortcut) = command.shortcut() else { continue };
+        // A control that has the focus is moved from with Tab and pressed with Space.
+        let is_plain = shortcut.modifiers == Modifiers::NONE;
+        if is_focused && is_plain && matches!(shortcut.logical_key, Key::Tab | Key::Space) {
+            continue;
+        }
+        // In a long frame a key can have been pressed more than once.
+        let presses =
+            context.input_mut(|input| input.count_and_consume_key(shortcut.modifiers, shortcut.logical_key));
+        if presses > 0 {
+            if command == Command::Panels {
+                context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
+            }
+            (0..presses).for_each(|_| commands.push(command));
+            if command.opens_dialog() {
+                // What is typed after it, be it within this frame, is for the dialog.
+                return false;
+            }
+        }
+    }
+    let also = |key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    if also(Key::F6) {
+        context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next));
+    }
+    if also(Key::Questionmark) {
+        commands.push(Command::Help);
+    }
+    if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Y)) {
+        commands.push(Command::Redo);
+    }
+    // Escape leaves a control first, then the full screen.
+    if !keyboard.had_focus && also(Key::Escape) && keyboard.is_full_screen {
+        commands.push(Command::FullScreen);
+    }
+    true
+}
 
-    fn take_dropped(&mut self, context: &egui::Context) {
-        let dropped = context.input(|input| input.raw.dropped_files.clone());
-        for file in dropped {
-            self.open(file.path().to_owned(), Some(context));
-        }
+/// Flies while keys are held. Returns whether it did.
+pub fn fly(context: &egui::Context, camera: &mut Camera) -> bool {
+    let (by, seconds, is_fast) = context.input(|input| {
+        let is_plain = !input.modifiers.command && !input.modifiers.alt;
+        let held = |key| f64::from(u8::from(is_plain && input.key_down(key)));
+        let by =
+            DVec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));
+        // After a pause without frames the first step would be a jump.
+        (by, f64::from(input.stable_dt.min(0.05)), input.modifiers.shift)
+    });
+    if by == DVec3::ZERO {
+        return false;
     }
+    let distance = camera.look_from.distance(camera.look_at);
+    let speed = FLY_SHARE_PER_SECOND * distance * if is_fast { FAST } else { 1.0 };
+    *camera = navigation::fly(camera, by * speed * seconds);
+    context.request_repaint();
+    true
+}
+
+/// The files that were dropped on the window.
+pub fn dropped(context: &egui::Context) -> Vec<PathBuf> {
+    context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
 }
 
 /// Those with more modifiers first: Ctrl+S is also pressed when Ctrl+Shift+S is.

@@ -1,7 +1,7 @@
 //! The pixel under the pointer: its value, its error, and what is seen there.
 
-use super::document::Document;
-use super::files::Message;
+use super::answers::Answers;
+use super::model::document::Document;
 use super::tracer::Tracer;
 use super::widgets::compact;
 use crate::film::to_byte;
@@ -9,7 +9,7 @@ use crate::layers::Layer;
 use crate::progressive::standard_error;
 use crate::scene::Scene;
 use eframe::egui::{self, RichText, Ui};
-use std::sync::mpsc::Sender;
+use std::sync::{Arc, Weak};
 
 /// With more spheres, looking for the one under the pointer would hold the window up.
 const PICK_LIMIT: usize = 50_000;
@@ -36,7 +36,9 @@ pub struct Inspector {
     pixel: Option<Pixel>,
     /// What the last answer was for: pixel and samples.
     asked: Option<([u32; 2], u64)>,
-    is_waiting: bool,
+    /// Lives as long as the film has not been asked.
+    waiting: Weak<()>,
+    answers: Answers<Pixel>,
 }
 
 impl Inspector {
@@ -52,55 +54,51 @@ impl Inspector {
         *self = Inspector { hovered: self.hovered, ..Inspector::default() };
     }
 
-    /// The film has answered; a film that is gone or has no samples yet leaves what was known before it.
-    pub fn learn(&mut self, pixel: Option<Pixel>) {
-        self.is_waiting = false;
-        self.pixel = pixel.or(self.pixel.take());
+    /// The pixel as the film had it last.
+    pub fn pixel(&self) -> Option<&Pixel> {
+        self.pixel.as_ref()
     }
 
-    /// Asks the film, if there is something to learn.
-    pub fn follow(
-        &mut self,
-        document: &Document,
-        main: &Tracer,
-        sender: &Sender<Message>,
-        context: &egui::Context,
-    ) {
+    /// Takes what the film has answered, and asks it if there is more to learn. A film that is gone or has no samples
+    /// leaves what was known before it.
+    pub fn follow(&mut self, document: &Document, main: &Tracer, context: &egui::Context) {
+        while let Some(pixel) = self.answers.take() {
+            self.pixel = Some(pixel);
+        }
         let Some(at) = self.hovered else { return };
         let samples = main.shown().map_or(0, |shown| shown.samples);
-        if self.is_waiting || self.asked == Some((at, samples)) || !main.is_full(document) {
+        let is_waiting = self.waiting.strong_count() > 0;
+        if is_waiting || self.asked == Some((at, samples)) || !main.is_full(document) {
             return;
         }
-        self.is_waiting = true;
+        let question = Arc::new(());
+        self.waiting = Arc::downgrade(&question);
         self.asked = Some((at, samples));
-        let transfer = document.rules().transfer;
-        let answer = Answer { sender: sender.clone(), context: context.clone(), pixel: None };
+        let (transfer, answer) = (document.rules().transfer, self.answers.answer(context));
         main.inspect(move |film| {
-            let mut answer = answer;
             let [x, y] = at;
             if x < film.width() && y < film.height() && film.sample_count() > 0 {
                 let index = y as usize * film.width() as usize + x as usize;
                 let mean = film.mean(index);
                 let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
                 let (error, samples) = (standard_error(film, index), film.sample_count());
-                answer.pixel = Some(Pixel { at, mean, error, bytes, samples });
+                // The frame that this wakes may ask the next question.
+                drop(question);
+                answer.give(Pixel { at, mean, error, bytes, samples });
             }
         });
     }
-}
 
-/// Sends what was found, or, if the film is gone before, that nothing was.
-struct Answer {
-    sender: Sender<Message>,
-    context: egui::Context,
-    pixel: Option<Pixel>,
-}
-
-impl Drop for Answer {
-    fn drop(&mut self) {
-        // A window that has been closed wants no answer.
-        let _ = self.sender.send(Message::Pixel(self.pixel.take()));
-        self.context.request_repaint();
+    /// Draws it; `layer` is the layer that is shown, and its value there.
+    pub fn ui(&self, ui: &mut Ui, document: &Document, layer: Option<(Layer, [f64; 3])>) {
+        ui.label(RichText::new("Pixel").strong());
+        match &self.pixel {
+            Some(pixel) => pixel_ui(document, pixel, layer, ui),
+            None => {
+                let text = "Move the pointer over the picture.";
+                ui.label(RichText::new(text).color(ui.visuals().weak_text_color()));
+            }
+        }
     }
 }
 
@@ -108,21 +106,6 @@ impl Drop for Answer {
 pub fn names(scene: &Scene, sphere: usize) -> (String, String) {
     let named = &scene.materials[scene.spheres[sphere].material];
     (format!("sphere {sphere}"), format!("{} ({})", named.name, named.material.kind()))
-}
-
-pub fn ui(window: &mut super::Window, ui: &mut Ui) {
-    ui.label(RichText::new("Pixel").strong());
-    match &window.inspector.pixel {
-        Some(pixel) => {
-            let layer = window.layers.value_at(pixel.at).filter(|_| window.viewport.show.layer().is_some());
-            pixel_ui(&window.document, pixel, layer, ui);
-        }
-        None => {
-            let text = "Move the pointer over the picture.";
-            ui.label(RichText::new(text).color(ui.visuals().weak_text_color()));
-        }
-    }
-    super::paths::ui(window, ui);
 }
 
 fn pixel_ui(document: &Document, pixel: &Pixel, layer: Option<(Layer, [f64; 3])>, ui: &mut Ui) {

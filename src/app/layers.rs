@@ -1,6 +1,6 @@
 //! Layers of the picture, traced on a thread of their own: a coarse one at once, then finer ones.
 
-use super::document::Document;
+use super::model::document::Document;
 use super::texture::Texture;
 use crate::film::to_byte;
 use crate::heat::HeatScale;

@@ -1,11 +1,10 @@
 //! The bar at the top: menus, stage, device, pause and save.
 
 use super::command::{Command, Group};
-use super::device::Device;
-use super::plot;
+use super::facts::Facts;
+use super::model::device::Device;
+use super::prediction::prediction_label;
 use super::theme;
-use super::viewport::Show;
-use super::window::Window;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
 use eframe::egui::{self, Align, Button, Layout, RichText, TextStyle, Ui};
@@ -13,7 +12,7 @@ use eframe::egui::{self, Align, Button, Layout, RichText, TextStyle, Ui};
 /// How wide a menu is, points: a name and its keys are not far apart.
 pub const MENU_WIDTH: f32 = 300.0;
 
-pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
+pub fn ui(ui: &mut Ui, is_narrow: bool, facts: &Facts, commands: &mut Vec<Command>) {
     let frame = theme::panel(egui::Margin::symmetric(10, 6));
     egui::Panel::top("menu").frame(frame).show(ui, |ui| {
         let height = ui.spacing().interact_size.y + 2.0;
@@ -23,33 +22,33 @@ pub fn ui(window: &mut Window, ui: &mut Ui, is_narrow: bool) {
                 egui::containers::menu::menu_style(ui.style_mut());
                 ui.spacing_mut().item_spacing.x = 2.0;
                 ui.spacing_mut().button_padding.x = 5.0;
-                menus(window, ui);
+                menus(ui, facts, commands);
             });
             if !is_narrow {
                 ui.add_space(12.0);
-                stage_bar(window, ui, true);
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(window, ui));
+                stage_bar(ui, true, facts, commands);
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, facts, commands));
             }
         });
         if is_narrow {
             ui.horizontal_wrapped(|ui| {
-                stage_bar(window, ui, false);
+                stage_bar(ui, false, facts, commands);
                 ui.separator();
-                devices(window, ui);
-                pause(window, ui);
-                save(window, ui);
-                prediction(window, ui);
+                devices(ui, facts, commands);
+                pause(ui, facts, commands);
+                save(ui, commands);
+                prediction(ui, facts);
             });
         }
     });
 }
 
-fn menus(window: &mut Window, ui: &mut Ui) {
+fn menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     for group in Group::ALL {
         ui.menu_button(group.name(), |ui| {
             ui.set_width(MENU_WIDTH);
             if group == Group::Stage {
-                stage_menu(window, ui);
+                stage_menu(ui, facts, commands);
                 return;
             }
             let mut last = None;
@@ -59,7 +58,7 @@ fn menus(window: &mut Window, ui: &mut Ui) {
                     ui.separator();
                 }
                 last = Some(section);
-                item(window, ui, command);
+                item(ui, facts, commands, command);
             }
         });
     }
@@ -83,16 +82,16 @@ fn section(command: Command) -> u8 {
     }
 }
 
-fn stage_menu(window: &mut Window, ui: &mut Ui) {
+fn stage_menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     for command in [Command::PreviousStage, Command::NextStage, Command::Book] {
-        item(window, ui, command);
+        item(ui, facts, commands, command);
     }
     ui.separator();
-    stage_list(window, ui);
+    stage_list(ui, facts, commands);
 }
 
 /// All stages by chapter.
-fn stage_list(window: &mut Window, ui: &mut Ui) {
+fn stage_list(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let is_new = has_just_opened(ui);
     egui::ScrollArea::vertical().max_height(460.0).show(ui, |ui| {
         let mut chapter = "";
@@ -103,9 +102,9 @@ fn stage_list(window: &mut Window, ui: &mut Ui) {
                 let heading = format!("{chapter}  {}", stage.chapter_title);
                 ui.label(RichText::new(heading).small().color(ui.visuals().weak_text_color()));
             }
-            let response = item(window, ui, Command::Stage(stage));
+            let response = item(ui, facts, commands, Command::Stage(stage));
             // One sees where one is.
-            if is_new && window.document.stage() == Some(stage) {
+            if is_new && facts.document().stage() == Some(stage) {
                 response.scroll_to_me(Some(Align::Center));
             }
         }
@@ -127,15 +126,15 @@ fn has_just_opened(ui: &Ui) -> bool {
 }
 
 /// A command as a line of a menu.
-pub fn item(window: &mut Window, ui: &mut Ui, command: Command) -> egui::Response {
-    let useless = window.useless(command);
-    let button = line(ui, command, is_on(window, command));
+pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command) -> egui::Response {
+    let useless = facts.useless(command);
+    let button = line(ui, command, facts.is_on(command));
     let mut response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
     if let Some(reason) = useless {
         response = response.on_disabled_hover_text(reason);
     }
     if response.clicked() {
-        window.send(command);
+        commands.push(command);
         ui.close();
     }
     response
@@ -153,34 +152,12 @@ pub fn line(ui: &Ui, command: Command, is_chosen: bool) -> Button<'static> {
     button.min_size(egui::vec2(ui.available_width(), 0.0))
 }
 
-fn is_on(window: &Window, command: Command) -> bool {
-    use super::compare::Mode;
-    let remembered = &window.remembered;
-    match command {
-        Command::Show(show) => {
-            window.viewport.show == show && (show != Show::Picture || window.compare.mode.is_none())
-        }
-        Command::Wipe => window.compare.mode == Some(Mode::Wipe) && !window.compare.is_by_book,
-        Command::BookArithmetic => window.compare.mode.is_some() && window.compare.is_by_book,
-        Command::WipeDifference => window.compare.mode == Some(Mode::Difference),
-        Command::Controls => remembered.has_controls,
-        Command::Info => remembered.has_info,
-        Command::Plot => remembered.has_plot,
-        Command::FullScreen => window.is_full_screen,
-        Command::Theme(theme) => remembered.theme == theme,
-        Command::Device(device) => remembered.device == device,
-        Command::Stage(stage) => window.document.stage() == Some(stage),
-        Command::Extreme(case) => window.document.case() == Some(case),
-        _ => false,
-    }
-}
-
-fn stage_bar(window: &mut Window, ui: &mut Ui, is_wide: bool) {
+fn stage_bar(ui: &mut Ui, is_wide: bool, facts: &Facts, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 4.0;
-    step(window, ui, Command::PreviousStage, "‹");
-    let title = match window.document.stage() {
+    step(ui, facts, commands, Command::PreviousStage, "‹");
+    let title = match facts.document().stage() {
         Some(stage) => format!("{}  {}", stage.section, stage.title),
-        None => window.document.title(),
+        None => facts.document().title(),
     };
     let width = if is_wide { (ui.available_width() - 400.0).clamp(160.0, 340.0) } else { 240.0 };
     let button = Button::new(RichText::new(title).strong()).min_size(egui::vec2(width, 0.0)).truncate();
@@ -188,20 +165,20 @@ fn stage_bar(window: &mut Window, ui: &mut Ui, is_wide: bool) {
         ui.set_max_width(width);
         egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
             ui.set_width(MENU_WIDTH);
-            stage_list(window, ui);
+            stage_list(ui, facts, commands);
         })
     });
     sized.inner.0.on_hover_text("All stages of the book").accessible_name("Choose a stage");
-    step(window, ui, Command::NextStage, "›");
+    step(ui, facts, commands, Command::NextStage, "›");
 }
 
-fn step(window: &mut Window, ui: &mut Ui, command: Command, label: &str) {
-    let useless = window.useless(command);
+fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command, label: &str) {
+    let useless = facts.useless(command);
     let response = ui.add_enabled(useless.is_none(), Button::new(label)).accessible_name(command.name());
     let response =
         response.on_hover_text(with_keys(ui, command)).on_disabled_hover_text(useless.unwrap_or_default());
     if response.clicked() {
-        window.send(command);
+        commands.push(command);
     }
 }
 
@@ -214,44 +191,45 @@ fn with_keys(ui: &Ui, command: Command) -> String {
 }
 
 /// From right to left.
-fn buttons(window: &mut Window, ui: &mut Ui) {
-    save(window, ui);
-    pause(window, ui);
+fn buttons(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    save(ui, commands);
+    pause(ui, facts, commands);
     ui.add_space(8.0);
     ui.spacing_mut().item_spacing.x = 3.0;
     for device in Device::ALL.into_iter().rev() {
-        device_button(window, ui, device);
+        device_button(ui, facts, commands, device);
     }
     ui.add_space(8.0);
-    prediction(window, ui);
+    prediction(ui, facts);
 }
 
-fn save(window: &mut Window, ui: &mut Ui) {
+fn save(ui: &mut Ui, commands: &mut Vec<Command>) {
     let command = Command::Save(OutputFormat::Png);
     let response = ui.button("Save").on_hover_text(with_keys(ui, command));
     if response.clicked() {
-        window.send(command);
+        commands.push(command);
     }
 }
 
-fn pause(window: &mut Window, ui: &mut Ui) {
+fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     // Both words in one width, so that nothing beside it moves.
-    let label = if window.is_paused { "Go on" } else { "Pause" };
-    let button = Button::new(label).min_size(egui::vec2(58.0, 0.0)).selected(window.is_paused);
-    let can_pause = window.is_working() || window.is_paused;
+    let is_paused = facts.model.is_paused;
+    let label = if is_paused { "Go on" } else { "Pause" };
+    let button = Button::new(label).min_size(egui::vec2(58.0, 0.0)).selected(is_paused);
+    let can_pause = facts.is_working() || is_paused;
     let response = ui
         .add_enabled(can_pause, button)
         .on_hover_text(with_keys(ui, Command::Pause))
         .on_disabled_hover_text("The picture is done; see Stop for when it ends");
     if response.clicked() {
-        window.send(Command::Pause);
+        commands.push(Command::Pause);
     }
 }
 
 /// When the target will be reached, where there is room. It comes last, so that what changes with every estimate
 /// moves nothing.
-fn prediction(window: &Window, ui: &mut Ui) {
-    let Some(words) = plot::prediction_label(window) else { return };
+fn prediction(ui: &mut Ui, facts: &Facts) {
+    let Some(words) = prediction_label(&facts.status, facts.document().stop.noise) else { return };
     let text = RichText::new(words).small();
     let galley = egui::WidgetText::from(text.clone()).into_galley(ui, None, f32::INFINITY, TextStyle::Small);
     if galley.size().x < ui.available_size_before_wrap().x {
@@ -259,15 +237,15 @@ fn prediction(window: &Window, ui: &mut Ui) {
     }
 }
 
-fn devices(window: &mut Window, ui: &mut Ui) {
+fn devices(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     ui.spacing_mut().item_spacing.x = 3.0;
     for device in Device::ALL {
-        device_button(window, ui, device);
+        device_button(ui, facts, commands, device);
     }
 }
 
-fn device_button(window: &mut Window, ui: &mut Ui, device: Device) {
-    let is_chosen = window.remembered.device == device;
+fn device_button(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, device: Device) {
+    let is_chosen = facts.model.remembered.device == device;
     let unavailable = device.unavailable();
     let mut label = RichText::new(device.label());
     if is_chosen {
@@ -283,6 +261,6 @@ fn device_button(window: &mut Window, ui: &mut Ui, device: Device) {
         .on_disabled_hover_text(unavailable.unwrap_or_default())
         .accessible_name(Command::Device(device).name());
     if response.clicked() {
-        window.send(Command::Device(device));
+        commands.push(Command::Device(device));
     }
 }

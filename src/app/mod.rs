@@ -1,26 +1,33 @@
 //! The window: a picture that gets better while one watches, and everything that one can do to it.
 //!
-//! [`Window`] holds all state. Menus, buttons, shortcuts and the palette all send a [`Command`], which
-//! [`Window::perform`] carries out. The tracer has a thread of its own, which this one never waits for.
+//! `model` is what the user has chosen, free of controls and drawing. A panel is a function of the part of it that it may
+//! change, of `Facts` to show, and of a list of [`Command`]s that it adds to; menus, keys and the palette add to the same
+//! list. Whoever asks another thread keeps the place where the answers arrive. Only [`Window`] knows everything: it
+//! carries out the commands and says what is to be rendered. The tracer has a thread of its own, which this one never
+//! waits for.
 
+mod answers;
+mod changes;
 mod command;
-mod compare;
-mod device;
 mod dialogs;
-mod document;
+mod facts;
 mod files;
+mod frame;
 mod frame_log;
+mod info;
 mod input;
 mod inspector;
 mod layers;
 mod menu;
+mod model;
 mod navigation;
 mod panels;
 mod paths;
 mod perform;
 mod plot;
-mod remembered;
-mod stage_text;
+mod prediction;
+mod receive;
+mod second;
 mod status_bar;
 mod texture;
 mod theme;
@@ -31,10 +38,11 @@ mod widgets;
 mod window;
 
 pub use command::{Command, Group};
-pub use device::Device;
-pub use document::{Document, Origin, Source, Stop};
-pub use remembered::Theme;
-pub use viewport::Show;
+pub use model::device::Device;
+pub use model::document::Document;
+pub use model::origin::{Origin, Source};
+pub use model::remembered::Theme;
+pub use model::show::Show;
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
@@ -81,7 +89,7 @@ fn renderers(wish: DrawWith) -> &'static [eframe::Renderer] {
     match wish {
         DrawWith::Wgpu => &[Wgpu],
         DrawWith::Gl => &[Glow],
-        DrawWith::Auto if device::adapter().is_ok_and(|adapter| !adapter.is_software) => &[Wgpu, Glow],
+        DrawWith::Auto if model::device::adapter().is_ok_and(|adapter| !adapter.is_software) => &[Wgpu, Glow],
         DrawWith::Auto => &[Glow, Wgpu],
     }
 }

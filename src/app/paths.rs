@@ -1,7 +1,8 @@
 //! The paths of one pixel, listed ray by ray and drawn as lines over the picture.
 
-use super::document::Document;
-use super::files::Message;
+use super::answers::Answers;
+use super::inspector::names;
+use super::model::document::Document;
 use super::theme;
 use super::widgets::compact;
 use crate::render_cpu::{Isa, PathRecord, PathRecorder, RecordedRay};
@@ -10,7 +11,6 @@ use eframe::egui::{
     self, Align2, Color32, DragValue, Painter, Pos2, Rect, RichText, Stroke, TextStyle, Ui, vec2,
 };
 use glam::DVec3;
-use std::sync::mpsc::Sender;
 
 /// How many paths can be listed at once.
 const COUNT_LIMIT: u64 = 64;
@@ -42,41 +42,41 @@ pub struct Paths {
     selected: Option<usize>,
     /// It has just been listed and is to be scrolled to.
     is_new: bool,
+    answers: Answers<Listed>,
 }
 
 impl Default for Paths {
     fn default() -> Self {
-        Paths { count: 16, number: 0, is_waiting: false, listed: None, selected: None, is_new: false }
+        Paths {
+            count: 16,
+            number: 0,
+            is_waiting: false,
+            listed: None,
+            selected: None,
+            is_new: false,
+            answers: Answers::default(),
+        }
     }
 }
 
 impl Paths {
     /// Lists the paths of a pixel; another thread records them.
-    pub fn list(
-        &mut self,
-        document: &Document,
-        pixel: [u32; 2],
-        sender: &Sender<Message>,
-        context: &egui::Context,
-    ) {
+    pub fn list(&mut self, document: &Document, pixel: [u32; 2], context: &egui::Context) {
         // A document that cannot be rendered says so elsewhere.
         let Ok(job) = document.job(1) else { return };
         self.number += 1;
         let (number, count, document) = (self.number, self.count, document.clone());
-        let (sender, context) = (sender.clone(), context.clone());
         let record = move || {
             let isa = Isa::available().into_iter().max().unwrap_or(Isa::Baseline);
             let recorder = PathRecorder::new(&job, isa, None);
             let records = (0..count).map(|sample| recorder.record(pixel, sample)).collect();
-            // A window that has been closed wants no answer.
-            let _ = sender.send(Message::Paths(Listed { number, pixel, document, records }));
-            context.request_repaint();
+            Listed { number, pixel, document, records }
         };
-        self.is_waiting = std::thread::Builder::new().name("paths".into()).spawn(record).is_ok();
+        self.is_waiting = self.answers.ask("paths", context, record).is_ok();
     }
 
     /// They have been recorded.
-    pub fn learn(&mut self, listed: Listed) {
+    fn learn(&mut self, listed: Listed) {
         if listed.number == self.number {
             self.is_waiting = false;
             self.is_new = self.listed.as_ref().is_none_or(|old| old.pixel != listed.pixel);
@@ -92,8 +92,12 @@ impl Paths {
         (self.listed, self.is_waiting) = (None, false);
     }
 
-    /// Lists them anew if other numbers make other paths; a camera that moves looks at those there are.
-    pub fn follow(&mut self, document: &Document, sender: &Sender<Message>, context: &egui::Context) {
+    /// Takes what was recorded. Lists them anew if other numbers make other paths; a camera that moves looks at those
+    /// there are.
+    pub fn follow(&mut self, document: &Document, context: &egui::Context) {
+        while let Some(listed) = self.answers.take() {
+            self.learn(listed);
+        }
         let Some(listed) = &self.listed else { return };
         if self.is_waiting || listed.document.settings == document.settings {
             return;
@@ -101,7 +105,7 @@ impl Paths {
         let [x, y] = listed.pixel;
         if x < document.settings.width && y < document.settings.height {
             let before = Document { camera: listed.document.camera, ..document.clone() };
-            self.list(&before, [x, y], sender, context);
+            self.list(&before, [x, y], context);
         } else {
             self.forget();
         }
@@ -110,6 +114,76 @@ impl Paths {
     /// How many there are.
     pub fn len(&self) -> usize {
         self.listed.as_ref().map_or(0, |listed| listed.records.len())
+    }
+
+    /// Lists them.
+    pub fn ui(&mut self, ui: &mut Ui, document: &Document) {
+        let weak = ui.visuals().weak_text_color();
+        let Some(listed) = &self.listed else {
+            let text = if self.is_waiting {
+                "Recording paths…"
+            } else {
+                "Alt-click or right-click lists the paths of a pixel."
+            };
+            ui.label(RichText::new(text).color(weak).small());
+            return;
+        };
+        let pixel = listed.pixel;
+        ui.add_space(6.0);
+        let heading = ui.label(RichText::new(format!("Paths of pixel {}, {}", pixel[0], pixel[1])).strong());
+        if std::mem::take(&mut self.is_new) {
+            heading.scroll_to_me(Some(egui::Align::Min));
+        }
+        let last = listed.records.len().saturating_sub(1);
+        let mut selected = self.selected;
+        let mut count = self.count;
+        let mut is_cleared = false;
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let drag = DragValue::new(&mut count).range(1..=COUNT_LIMIT).speed(0.2).suffix(" paths");
+            let help = format!("How many of the pixel's samples are listed, 1 to {COUNT_LIMIT}");
+            ui.add(drag).on_hover_text(help).accessible_name("Paths listed");
+            let step = |ui: &mut Ui, label: &str, name: &str, to: Option<usize>| {
+                let button = egui::Button::new(label).small();
+                let response = ui.add_enabled(to.is_some(), button).on_hover_text(name);
+                response.on_disabled_hover_text("There is none").accessible_name(name).clicked()
+            };
+            let at = selected.unwrap_or(0);
+            let [before, after] = [at.checked_sub(1), Some(at + 1).filter(|next| *next <= last)];
+            if step(ui, "‹", "Path of the sample before", before) {
+                selected = before;
+            }
+            if step(ui, "›", "Path of the sample after", after) {
+                selected = after;
+            }
+            let clear = ui.small_button("Clear").on_hover_text("Take the paths off the picture");
+            is_cleared = clear.accessible_name("Clear paths").clicked();
+        });
+        if listed.document.camera != document.camera {
+            let text = "As the camera stood when they were listed; Alt-click lists anew.";
+            ui.add(egui::Label::new(RichText::new(text).small().color(weak)).wrap());
+        }
+        for (index, record) in listed.records.iter().enumerate() {
+            let rays = if record.rays.len() == 1 { "ray" } else { "rays" };
+            let text = format!("sample {index:>2}  {:>2} {rays}", record.rays.len());
+            let header = egui::CollapsingHeader::new(RichText::new(text).monospace())
+                .id_salt(("path", index))
+                .open(Some(selected == Some(index)))
+                .show(ui, |ui| list_rays(ui, record, document.scene()))
+                .header_response
+                .on_hover_text("One path of this pixel; the open one is drawn strongest");
+            if header.accessible_name(format!("Path of sample {index}")).clicked() {
+                selected = (selected != Some(index)).then_some(index);
+            }
+        }
+        self.selected = selected;
+        if is_cleared {
+            self.forget();
+        } else if count != self.count {
+            self.count = count;
+            let before = Document { camera: listed.document.camera, ..document.clone() };
+            self.list(&before, pixel, ui.ctx());
+        }
     }
 
     /// Draws all paths, the selected one last and strongest.
@@ -195,85 +269,13 @@ impl View<'_> {
     }
 }
 
-pub fn ui(window: &mut super::Window, ui: &mut Ui) {
-    let weak = ui.visuals().weak_text_color();
-    let document = window.document.clone();
-    let paths = &mut window.paths;
-    let Some(listed) = &paths.listed else {
-        let text = if paths.is_waiting {
-            "Recording paths…"
-        } else {
-            "Alt-click or right-click lists the paths of a pixel."
-        };
-        ui.label(RichText::new(text).color(weak).small());
-        return;
-    };
-    let pixel = listed.pixel;
-    ui.add_space(6.0);
-    let heading = ui.label(RichText::new(format!("Paths of pixel {}, {}", pixel[0], pixel[1])).strong());
-    if std::mem::take(&mut paths.is_new) {
-        heading.scroll_to_me(Some(egui::Align::Min));
-    }
-    let last = listed.records.len().saturating_sub(1);
-    let mut selected = paths.selected;
-    let mut count = paths.count;
-    let mut is_cleared = false;
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = 4.0;
-        let drag = DragValue::new(&mut count).range(1..=COUNT_LIMIT).speed(0.2).suffix(" paths");
-        let help = format!("How many of the pixel's samples are listed, 1 to {COUNT_LIMIT}");
-        ui.add(drag).on_hover_text(help).accessible_name("Paths listed");
-        let step = |ui: &mut Ui, label: &str, name: &str, to: Option<usize>| {
-            let button = egui::Button::new(label).small();
-            let response = ui.add_enabled(to.is_some(), button).on_hover_text(name);
-            response.on_disabled_hover_text("There is none").accessible_name(name).clicked()
-        };
-        let at = selected.unwrap_or(0);
-        let [before, after] = [at.checked_sub(1), Some(at + 1).filter(|next| *next <= last)];
-        if step(ui, "‹", "Path of the sample before", before) {
-            selected = before;
-        }
-        if step(ui, "›", "Path of the sample after", after) {
-            selected = after;
-        }
-        let clear = ui.small_button("Clear").on_hover_text("Take the paths off the picture");
-        is_cleared = clear.accessible_name("Clear paths").clicked();
-    });
-    if listed.document.camera != document.camera {
-        let text = "As the camera stood when they were listed; Alt-click lists anew.";
-        ui.add(egui::Label::new(RichText::new(text).small().color(weak)).wrap());
-    }
-    for (index, record) in listed.records.iter().enumerate() {
-        let rays = if record.rays.len() == 1 { "ray" } else { "rays" };
-        let text = format!("sample {index:>2}  {:>2} {rays}", record.rays.len());
-        let header = egui::CollapsingHeader::new(RichText::new(text).monospace())
-            .id_salt(("path", index))
-            .open(Some(selected == Some(index)))
-            .show(ui, |ui| list_rays(ui, record, document.scene()))
-            .header_response
-            .on_hover_text("One path of this pixel; the open one is drawn strongest");
-        if header.accessible_name(format!("Path of sample {index}")).clicked() {
-            selected = (selected != Some(index)).then_some(index);
-        }
-    }
-    paths.selected = selected;
-    if is_cleared {
-        paths.forget();
-    } else if count != paths.count {
-        paths.count = count;
-        let before = Document { camera: listed.document.camera, ..document };
-        let sender = window.messages.0.clone();
-        window.paths.list(&before, pixel, &sender, ui.ctx());
-    }
-}
-
 fn list_rays(ui: &mut Ui, record: &PathRecord, scene: &Scene) {
     let weak = ui.visuals().weak_text_color();
     let triple = |v: [f64; 3]| format!("{} {} {}", compact(v[0]), compact(v[1]), compact(v[2]));
     for (index, ray) in record.rays.iter().enumerate() {
         let what = match ray.hit {
             Some(hit) => {
-                let (object, material) = super::inspector::names(scene, hit.sphere);
+                let (object, material) = names(scene, hit.sphere);
                 format!("{object}, {material}")
             }
             None => "leaves to the sky".to_owned(),

@@ -2,12 +2,12 @@
 //! the last restart, how it should go on, and the target, which can be typed or dragged.
 
 use super::command::Command;
-use super::document::Stop;
+use super::facts::Facts;
+use super::prediction::{FARTHEST, points, prediction, prediction_words};
 use super::theme;
 use super::widgets::compact;
-use super::window::Window;
-use crate::progressive::{HistoryPoint, NOISE_TARGET_FIRST_SAMPLES, Status};
-use crate::statistics::fit::{Point, Prediction, predict};
+use crate::progressive::{HistoryPoint, Status, Stop};
+use crate::statistics::fit::{Point, Prediction};
 use eframe::egui::{
     self, Align2, Color32, CursorIcon, DragValue, Rangef, Rect, RichText, Sense, Ui, WidgetInfo,
 };
@@ -23,17 +23,15 @@ const TARGETS: std::ops::RangeInclusive<f64> = 1e-6..=1.0;
 /// Powers of ten that a scale has lines for.
 const MOST_DECADES: f64 = 40.0;
 
-/// Seconds from now beyond which nothing is drawn.
-const FARTHEST: f64 = 1e6;
-
 /// Points between lines of the scale at the left: from the least that has labels, to that which has them in full.
 const LABEL_SPACING: Rangef = Rangef { min: 8.0, max: 14.0 };
 
 /// How near the pointer must be to the target to take hold of it, points.
 const GRIP: f32 = 8.0;
 
-pub fn ui(window: &mut Window, ui: &mut Ui) {
-    let status = window.main.status().clone();
+/// Draws it. `target` is the error at which the render ends.
+pub fn ui(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut Vec<Command>) {
+    let status = &facts.status;
     let frame = theme::panel(egui::Margin::symmetric(12, 6));
     egui::Panel::bottom("plot")
         .frame(frame)
@@ -41,25 +39,25 @@ pub fn ui(window: &mut Window, ui: &mut Ui) {
         .default_size(150.0)
         .size_range(90.0..=400.0)
         .show(ui, |ui| {
-            header(window, ui, &status);
-            if points(&status).is_empty() {
+            header(ui, target, facts, commands);
+            if points(status).is_empty() {
                 let weak = ui.visuals().weak_text_color();
                 ui.centered_and_justified(|ui| ui.label(RichText::new("No estimate yet").color(weak)));
             } else {
-                plot(window, ui, &status);
+                plot(ui, target, status);
             }
         });
 }
 
 /// What the plot shows, the target as a number, and the plot's data.
-fn header(window: &mut Window, ui: &mut Ui, status: &Status) {
+fn header(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut Vec<Command>) {
     let weak = ui.visuals().weak_text_color();
     ui.horizontal_wrapped(|ui| {
         let title = "Estimated error (RMSE, linear radiance) against seconds; dots at 1, 2, 4, 8 … samples";
         ui.label(RichText::new(title).small().color(weak)).on_hover_text(
             "Sobol points are even at powers of two; between two dots the error falls a little less",
         );
-        if let Some(target) = &mut window.document.stop.noise {
+        if let Some(target) = target {
             ui.label(RichText::new("target").small());
             let number = DragValue::new(target).range(TARGETS).speed(1e-4).max_decimals(6);
             ui.add(number.update_while_editing(false))
@@ -68,24 +66,24 @@ fn header(window: &mut Window, ui: &mut Ui, status: &Status) {
         } else {
             let button = ui.add(egui::Button::new("Set a target").small());
             if button.on_hover_text("End the render at an estimated error, which can be dragged").clicked() {
-                window.document.stop.noise = Some(Stop::NOISE);
+                *target = Some(Stop::NOISE);
             }
         }
-        if let Some(prediction) = prediction(status, window.document.stop.noise) {
+        if let Some(prediction) = prediction(&facts.status, *target) {
             ui.label(RichText::new(prediction_words(&prediction)).small());
         }
         for (label, command) in [("Copy data", Command::CopyPlot), ("Save data…", Command::SavePlot)] {
-            let useless = window.useless(command);
+            let useless = facts.useless(command);
             let button = ui.add_enabled(useless.is_none(), egui::Button::new(label).small());
             let button = button.on_hover_text(command.help());
             if button.on_disabled_hover_text(useless.unwrap_or_default()).clicked() {
-                window.send(command);
+                commands.push(command);
             }
         }
     });
 }
 
-fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
+fn plot(ui: &mut Ui, stop_at: &mut Option<f64>, status: &Status) {
     let accent = theme::accent(ui);
     let visuals = ui.visuals();
     let (weak, strong) = (visuals.weak_text_color(), visuals.strong_text_color());
@@ -98,7 +96,7 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
     };
     let curves = curves(&status.history);
     let all = points(status);
-    let target = window.document.stop.noise;
+    let target = *stop_at;
     let prediction = prediction(status, target);
     let plot = Plot::new("error")
         .allow_drag(false)
@@ -147,7 +145,7 @@ fn plot(window: &mut Window, ui: &mut Ui, status: &Status) {
             plot.line(Line::new("now", PlotPoints::from(newest)).color(color).width(1.0).allow_hover(false));
         }
     });
-    if let Some(target) = &mut window.document.stop.noise {
+    if let Some(target) = stop_at {
         drag_target(ui, line, target, &response.transform);
     }
 }
@@ -264,60 +262,6 @@ fn logarithm(point: &Point) -> [f64; 2] {
     [point.time.log10(), point.error.log10()]
 }
 
-/// All estimates, the newest last.
-fn points(status: &Status) -> Vec<Point> {
-    let history = status.history.iter().map(|p| Point { time: p.trace_seconds, error: p.rmse_estimate });
-    let now = status.error.map(|error| Point { time: status.trace.as_secs_f64(), error: error.rmse });
-    history.chain(now).filter(|point| point.time > 0.0 && point.error > 0.0).collect()
-}
-
-/// In how many seconds from now the error will be at the target; `None` where it is, or where too little is known.
-pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
-    if status.samples_per_pixel < NOISE_TARGET_FIRST_SAMPLES || status.phase.is_over() {
-        return None;
-    }
-    let error = status.error?;
-    // A switch of backends bends the curve: only what the present one did tells how it goes on.
-    let backend = status.history.last().map(|point| point.backend);
-    let mut history: Vec<Point> = status
-        .history
-        .iter()
-        .rev()
-        .take_while(|point| {
-            Some(point.backend) == backend && point.samples_per_pixel >= NOISE_TARGET_FIRST_SAMPLES
-        })
-        .map(|point| Point { time: point.trace_seconds, error: point.rmse_estimate })
-        .collect();
-    history.reverse();
-    let now = Point { time: status.trace.as_secs_f64(), error: error.rmse };
-    let from_now = |time: f64| (time - now.time).max(0.0);
-    predict(&history, now, target?)
-        .map(|found| Prediction { time: from_now(found.time), range: found.range.map(from_now) })
-        .filter(|found| found.time < FARTHEST)
-}
-
-/// As "RMSE .005 in about 38 s (33 to 44)", while there is a target ahead.
-pub fn prediction_label(window: &Window) -> Option<String> {
-    let target = window.document.stop.noise;
-    let prediction = prediction(window.main.status(), target)?;
-    Some(format!("RMSE {} {}", target?, prediction_words(&prediction)))
-}
-
-/// As "in about 38 s (33 to 44)".
-pub fn prediction_words(prediction: &Prediction) -> String {
-    let [low, high] = prediction.range;
-    let about = whole(prediction.time);
-    if high < FARTHEST {
-        format!("in about {about} s ({} to {})", whole(low), whole(high))
-    } else {
-        format!("in about {about} s ({} or more)", whole(low))
-    }
-}
-
-fn whole(seconds: f64) -> String {
-    format!("{:.0}", seconds.ceil())
-}
-
 /// The points with a head.
 pub fn csv(history: &[HistoryPoint]) -> String {
     let mut text = String::from("backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n");
@@ -345,9 +289,6 @@ fn power(exponent: f64, unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::film::ErrorEstimate;
-    use crate::progressive::Phase;
-    use std::time::Duration;
 
     fn point(backend: &'static str, samples: u64, trace_seconds: f64) -> HistoryPoint {
         let rmse_estimate = 0.1 / (samples as f64).sqrt();
@@ -397,30 +338,5 @@ mod tests {
     #[test]
     fn a_target_that_is_dragged_has_two_digits() {
         assert_eq!([0.002_134, 0.0999, 1.0].map(two_digits), [0.0021, 0.1, 1.0]);
-    }
-
-    #[test]
-    fn a_prediction_without_an_end_says_so() {
-        let prediction = Prediction { time: 38.0, range: [31.0, f64::INFINITY] };
-        assert_eq!(prediction_words(&prediction), "in about 38 s (31 or more)");
-    }
-
-    #[test]
-    fn the_prediction_counts_from_now_and_tells_its_range() {
-        let mut status = Status {
-            samples_per_pixel: 100,
-            phase: Phase::Tracing,
-            trace: Duration::from_secs(10),
-            error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 0.0, rel_mse: 0.0 }),
-            ..Status::default()
-        };
-        let found = prediction(&status, Some(0.002)).unwrap();
-        assert!((found.time - 30.0).abs() < 1e-6, "{found:?}");
-        assert!(found.range[0] > 10.0 && found.range[1] < 90.0, "{found:?}");
-        assert!(prediction_words(&found).starts_with("in about 30 s ("), "{}", prediction_words(&found));
-        assert_eq!(prediction(&status, Some(0.01)), None);
-        assert_eq!(prediction(&status, None), None);
-        status.samples_per_pixel = 2;
-        assert_eq!(prediction(&status, Some(0.002)), None);
     }
 }

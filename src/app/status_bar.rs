@@ -1,19 +1,18 @@
 //! The bar at the bottom: how far, how fast, how good, and by whom. Each figure has a place of its own, so that
 //! nothing jumps.
 
-use super::document::Stop;
-use super::plot;
+use super::facts::Facts;
+use super::prediction::{prediction, prediction_words};
 use super::theme;
-use super::window::Window;
-use crate::progressive::{Contribution, Phase, Status};
+use crate::progressive::{Contribution, Phase, Status, Stop};
 use crate::render::BackendInfo;
 use eframe::egui::{self, Align, Layout, RichText, Ui};
 use std::borrow::Cow;
 
-pub fn ui(window: &mut Window, ui: &mut Ui) {
+pub fn ui(ui: &mut Ui, facts: &Facts) {
     let frame = theme::panel(egui::Margin::symmetric(12, 5));
     egui::Panel::bottom("status").frame(frame).show(ui, |ui| {
-        bar(ui, window.main.status(), window.document.stop, window.is_paused());
+        bar(ui, &facts.status, facts.document().stop, facts.model.is_paused);
     });
 }
 
@@ -150,9 +149,9 @@ fn rays_per_path(status: &Status) -> String {
 fn error_words(status: &Status, target: Option<f64>) -> String {
     let Some(error) = status.error else { return "error –".to_owned() };
     let now = format!("error {:.5}", error.rmse);
-    match (target, plot::prediction(status, target)) {
+    match (target, prediction(status, target)) {
         (Some(target), Some(prediction)) => {
-            format!("{now}, {target} {}", plot::prediction_words(&prediction))
+            format!("{now}, {target} {}", prediction_words(&prediction))
         }
         (Some(target), None) if error.rmse <= target => format!("{now}, below {target}"),
         _ => now,

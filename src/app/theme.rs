@@ -1,6 +1,6 @@
 //! Colours and spacing: quiet greys, and one accent, the blue of the book's sky.
 
-use super::remembered::Theme;
+use super::model::remembered::Theme;
 use eframe::egui::{
     self, Color32, Context, CornerRadius, Frame, Margin, Shadow, Stroke, Style, TextStyle, Ui, Visuals,
 };

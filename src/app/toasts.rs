@@ -55,7 +55,7 @@ impl Toasts {
         self.0.iter().map(|toast| toast.text.as_str())
     }
 
-    pub(super) fn ui(&mut self, ui: &egui::Ui, over: egui::Rect) {
+    pub fn ui(&mut self, ui: &egui::Ui, over: egui::Rect) {
         self.0.retain(|toast| toast.since.elapsed() < lifetime(toast.tone));
         let Some(first) = self.0.iter().map(|toast| lifetime(toast.tone) - toast.since.elapsed()).min()
         else {

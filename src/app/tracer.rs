@@ -1,12 +1,13 @@
 //! The window's side of a progressive render: what is wanted, what runs, and the newest picture as a texture.
 
-use super::document::{Document, Stop};
+use super::model::document::Document;
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::progressive::{Phase, Plan, Progressive, Status, View, Work};
+use crate::progressive::{Phase, Plan, Progressive, Status, Stop, View, Work};
 use eframe::egui;
 use std::io;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What a pass should take while someone moves something.
@@ -35,6 +36,8 @@ pub struct Want<'a> {
     pub document: &'a Document,
     pub backend: &'a BackendChoice,
     pub stop: Stop,
+    /// How the film is shown.
+    pub view: View,
     /// Something moves: a coarse picture now is better than a fine one later.
     pub is_moving: bool,
     /// What is new is traced so far that it can be seen, and then waits.
@@ -44,11 +47,11 @@ pub struct Want<'a> {
 impl Want<'_> {
     fn plan(&self, is_held: bool) -> Plan {
         let pass_target = if self.is_moving { MOVING_PASS } else { STILL_PASS };
-        let mut plan = self.stop.plan(pass_target);
+        let mut stop = self.stop;
         if is_held {
-            plan.samples.end = plan.samples.end.min(PAUSED_SAMPLES);
+            stop.samples = Some(stop.samples.map_or(PAUSED_SAMPLES, |samples| samples.min(PAUSED_SAMPLES)));
         }
-        plan
+        Plan { pass_target, ..Plan::until(stop) }
     }
 }
 
@@ -79,10 +82,11 @@ pub struct Tracer {
     progressive: Progressive,
     started: Option<Started>,
     shown: Option<Shown>,
-    status: Status,
+    status: Arc<Status>,
     asked: Instant,
-    backend: Option<BackendChoice>,
-    plan: Option<Plan>,
+    /// What the render thread was told last.
+    told: Option<(BackendChoice, Plan)>,
+    view: View,
     /// Pixels a second of the last preview, from its wish to its picture: drawing the window takes its part, too.
     preview_speed: Option<f64>,
     moving_divisor: Option<u32>,
@@ -94,10 +98,10 @@ impl Tracer {
             progressive: Progressive::spawn()?,
             started: None,
             shown: None,
-            status: Status::default(),
+            status: Arc::default(),
             asked: Instant::now(),
-            backend: None,
-            plan: None,
+            told: None,
+            view: View::Picture,
             preview_speed: None,
             moving_divisor: None,
         })
@@ -110,7 +114,7 @@ impl Tracer {
     }
 
     /// The numbers as of this frame.
-    pub fn status(&self) -> &Status {
+    pub fn status(&self) -> &Arc<Status> {
         &self.status
     }
 
@@ -129,10 +133,22 @@ impl Tracer {
         self.started.as_ref().is_some_and(|run| run.divisor == 1 && run.document.has_same_film(document))
     }
 
-    /// What pictures show.
-    pub fn set_view(&self, view: View) {
-        self.progressive.set_view(view);
-        self.progressive.ask_for_picture();
+    /// Sets what pictures show.
+    fn look(&mut self, view: &View) {
+        let is_same = match (&self.view, view) {
+            (View::Difference(old), View::Difference(new)) => Arc::ptr_eq(old, new),
+            (old, new) => old == new,
+        };
+        if !is_same {
+            self.view = view.clone();
+            self.progressive.set_view(view.clone());
+            self.progressive.ask_for_picture();
+        }
+    }
+
+    /// Whether that film has samples.
+    pub fn has_samples(&self, document: &Document) -> bool {
+        self.is_full(document) && self.status.samples_per_pixel > 0
     }
 
     /// Reads the film on the render thread.
@@ -163,12 +179,13 @@ impl Tracer {
 
     /// Goes on with a film of `document`.
     pub fn go_on_with(&mut self, film: Film, want: &Want<'_>) -> Result<(), String> {
+        self.look(&want.view);
         self.start(want, 1, Some(film))
     }
 
     /// Fetches what is new. Returns when the render of a new picture has begun.
     pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
-        self.status = self.progressive.status();
+        self.status = Arc::new(self.progressive.status());
         let started = self.started.as_mut()?;
         let mut pictured = None;
         if let Some(picture) = self.progressive.newest_picture()
@@ -215,6 +232,7 @@ impl Tracer {
     /// # Errors
     /// Why the document cannot be rendered; what ran goes on.
     pub fn want(&mut self, want: &Want<'_>) -> Result<(), String> {
+        self.look(&want.view);
         if !want.is_moving {
             self.moving_divisor = None;
         }
@@ -244,7 +262,7 @@ impl Tracer {
         let work = Work { film, ..Work::new(job, want.backend.clone(), plan.clone()) };
         self.progressive.start(work);
         self.progressive.ask_for_picture();
-        self.status = self.progressive.status();
+        self.status = Arc::new(self.progressive.status());
         self.started = Some(Started {
             document: want.document.clone(),
             divisor,
@@ -253,24 +271,24 @@ impl Tracer {
             is_pictured: false,
             is_held: want.is_paused,
         });
-        self.backend = Some(want.backend.clone());
-        self.plan = Some(plan);
+        self.told = Some((want.backend.clone(), plan));
         Ok(())
     }
 
     /// The film stays, whoever traces and whenever it ends.
     fn adjust(&mut self, want: &Want<'_>) {
-        if self.backend.as_ref() != Some(want.backend) {
-            self.backend = Some(want.backend.clone());
-            self.progressive.switch_backend(want.backend.clone());
-        }
         let is_held = self.started.as_mut().is_some_and(|run| {
             run.is_held &= want.is_paused;
             run.is_held
         });
         let plan = want.plan(is_held);
-        if self.plan.as_ref() != Some(&plan) {
-            self.plan = Some(plan.clone());
+        let Some((told_backend, told_plan)) = &mut self.told else { return };
+        if told_backend != want.backend {
+            told_backend.clone_from(want.backend);
+            self.progressive.switch_backend(want.backend.clone());
+        }
+        if *told_plan != plan {
+            told_plan.clone_from(&plan);
             self.progressive.set_plan(plan);
         }
     }

@@ -1,12 +1,13 @@
 //! The picture and the film, written with what they say about themselves.
 
 use super::rescue;
-use super::resuming::same_job;
 use crate::cli::RenderOptions;
 use crate::describe::describe;
-use crate::film::{FileIdentity, Film, Saved, SharedFile};
+use crate::files::FileIdentity;
+use crate::film::{Film, Saved, SharedFile};
 use crate::output::{OutputFormat, write_image};
 use crate::progressive::Status;
+use crate::saved::same_job;
 use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};

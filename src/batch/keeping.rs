@@ -2,11 +2,11 @@
 //! the time since.
 
 use super::files::SharedPlace;
-use super::resuming::same_job;
 use crate::cli::RenderOptions;
 use crate::describe::describe;
 use crate::film::Film;
 use crate::progressive::{Progressive, Status};
+use crate::saved::same_job;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::{Builder, JoinHandle};

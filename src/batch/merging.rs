@@ -1,11 +1,12 @@
 //! `weekender merge`: films of one picture, added.
 
-use super::resuming;
 use crate::cli::MergeOptions;
 use crate::failure::Failure;
-use crate::film::{SampleRanges, check_writable, merge_files};
+use crate::files::check_writable;
+use crate::film::{SampleRanges, merge_files};
 use crate::output::{OutputFormat, write_image};
 use crate::recipe::file;
+use crate::saved::same_job;
 use crate::terminal::print;
 use std::process::ExitCode;
 
@@ -16,7 +17,7 @@ use std::process::ExitCode;
 pub fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
     OutputFormat::from_path(&options.out).map_err(Failure::input)?;
     check_writable(&options.out).map_err(Failure::input)?;
-    let sum = merge_files(&options.films, resuming::same_job).map_err(Failure::input)?;
+    let sum = merge_files(&options.films, same_job).map_err(Failure::input)?;
     let recipe = file::parse(sum.description.recipe(), "the films' recipe").map_err(Failure::input)?;
     let transfer = recipe.rules.transfer;
     write_image(&options.out, &sum.film, transfer, &sum.description).map_err(Failure::run)?;

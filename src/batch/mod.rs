@@ -6,7 +6,6 @@ mod listing;
 mod merging;
 mod progress;
 mod rescue;
-mod resuming;
 mod summary;
 
 pub use listing::list;
@@ -16,17 +15,18 @@ use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
 use crate::console;
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::{Film, check_film_writable, check_writable, write_text};
+use crate::files::{check_replaceable, check_writable, write_text};
+use crate::film::Film;
 use crate::interrupt::Interrupt;
 use crate::progressive::{Phase, Progressive, Status, Work};
 use crate::recipe::{Recipe, file};
 use crate::render::Renderer;
+use crate::saved::{self, SavedFilm};
 use crate::terminal::{print, print_beside, write_json};
 use anyhow::{Context, anyhow};
 use files::{Places, SharedPlace};
 use keeping::Keeper;
 use progress::Progress;
-use resuming::Resumed;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
@@ -42,7 +42,9 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     let places: Vec<Places> = options.renders.iter().map(Places::of).collect();
     // Found out now, the film of a resumed render is read before a kernel is built.
     let mut resumed = match options.renders.as_slice() {
-        [only] => resuming::load(only).map_err(Failure::Input)?,
+        [RenderOptions { resume: Some(path), job, .. }] => {
+            Some(saved::resume(path, job).map_err(Failure::input)?)
+        }
         _ => None,
     };
     if let ([render], [places], Some(resumed)) = (options.renders.as_slice(), places.as_slice(), &resumed) {
@@ -115,7 +117,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     };
     let scene = options.save_scene.as_ref().map(|save| &save.path);
     for path in pictures.chain([json, scene]).flatten() {
-        let check = if files::is_film(path) { check_film_writable } else { check_writable };
+        let check = if files::is_film(path) { check_replaceable } else { check_writable };
         check(path).map_err(Failure::input)?;
     }
     for render in &options.renders {
@@ -138,10 +140,10 @@ impl Begun<'_> {
         render: &RenderOptions,
         progressive: &mut Progressive,
         renderer: Option<Box<dyn Renderer>>,
-        resumed: Option<Resumed>,
+        resumed: Option<SavedFilm>,
     ) -> (Summary, Result<(), Failure>) {
         let (film, seconds_before) = match resumed {
-            Some(Resumed { film, seconds }) => (Some(film), seconds),
+            Some(SavedFilm { film, seconds, .. }) => (Some(film), seconds),
             None => (None, Some(0.0)),
         };
         let held_before = film.as_ref().map_or(0, Film::sample_count);

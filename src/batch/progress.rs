@@ -75,10 +75,11 @@ fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
     let per_sample = status.trace.as_secs_f64() / added as f64;
     let held = status.samples_per_pixel as f64;
     let by_samples = (status.planned_samples_per_pixel as f64 - held) * per_sample;
-    let by_time = plan.time_limit.map(|limit| limit.saturating_sub(status.elapsed).as_secs_f64());
+    let by_time = plan.stop.time_limit().map(|limit| limit.saturating_sub(status.elapsed).as_secs_f64());
     // The error falls at least as the square root of the samples.
     let by_noise = plan
-        .noise_target
+        .stop
+        .noise
         .zip(status.error)
         .map(|(target, error)| held * ((error.rmse / target).powi(2) - 1.0).max(0.0) * per_sample);
     [Some(by_samples), by_time, by_noise].into_iter().flatten().reduce(f64::min)
@@ -122,9 +123,9 @@ mod tests {
         status.contributions =
             vec![crate::progressive::Contribution { backend: info, samples_per_pixel: 100 }];
         assert_eq!(seconds_left(&plan, &status), Some(100.0));
-        plan.time_limit = Some(Duration::from_secs(60));
+        plan.stop.seconds = Some(60.0);
         assert_eq!(seconds_left(&plan, &status), Some(50.0));
-        plan.noise_target = Some(0.01);
+        plan.stop.noise = Some(0.01);
         assert!((seconds_left(&plan, &status).unwrap() - 30.0).abs() < 1e-9);
     }
 }

@@ -12,7 +12,7 @@ use crate::chart;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
 use crate::control::{Control, ControlError};
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::check_writable;
+use crate::files::check_writable;
 use crate::interrupt::Interrupt;
 use crate::terminal;
 use contender::{Cancelled, Contender, contenders};

@@ -2,7 +2,7 @@
 
 use super::style::{FAINT_INK, FONT, INK, Units, provide_font};
 use super::{Figure, Panel, bars, lines};
-use crate::film::{WriteError, replace_file};
+use crate::files::{WriteError, replace_file};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::io;

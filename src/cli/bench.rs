@@ -1,8 +1,9 @@
 //! The flags of `weekender bench`, and what they mean together.
 
+use super::error::CliError;
 use super::paths::Paths;
-use super::raw::{ProgressChoice, RawSampler};
-use super::sources::{self, CliError};
+use super::raw::ProgressChoice;
+use super::sources;
 use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size};
 use crate::backends::BackendError;
 use crate::chart::ChartFormat;
@@ -30,7 +31,7 @@ pub(super) struct RawBench {
     pub samples: Option<u64>,
     /// Where random numbers come from [default: sobol, or the scene's]
     #[arg(long, value_enum, help_heading = "What is measured")]
-    pub sampler: Option<RawSampler>,
+    pub sampler: Option<SamplerKind>,
 
     /// Instruction levels with commas between them; auto is the best of this processor, all are all it has
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto",
@@ -168,7 +169,7 @@ pub(super) fn bench(raw: RawBench) -> Result<BenchOptions, CliError> {
         progress: raw.progress,
         size: raw.size,
         samples: raw.samples,
-        sampler: raw.sampler.map(Into::into),
+        sampler: raw.sampler,
         path_limit: if raw.quick { QUICK_PATH_LIMIT } else { PATH_LIMIT },
     };
     let files = raw.scene.iter().filter_map(|scene| sources::scene_file(Some(scene)));

@@ -1,8 +1,9 @@
 //! The flags of `weekender compare`, and what they mean together.
 
+use super::error::CliError;
 use super::paths::Paths;
 use super::raw::RawPicture;
-use super::sources::{self, CliError, Source};
+use super::sources::{self, Source};
 use super::values::JsonTarget;
 use crate::backends::BackendChoice;
 use crate::output::Encoding;

@@ -1,8 +1,9 @@
 //! The flags of `weekender diff`, and what they mean together.
 
+use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{RawPicture, RawSwitch};
-use super::sources::{self, CliError, Source};
+use super::sources::{self, Source};
 use super::values::{JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance};
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::{CpuOptions, Isa};

@@ -3,30 +3,32 @@
 mod bench;
 mod compare;
 mod diff;
+mod error;
 mod paths;
 mod raw;
 mod render;
 mod report;
 mod sources;
 mod stress;
+mod subcommands;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
 pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice, SideChoice};
+pub use error::CliError;
 pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
-pub use sources::CliError;
 pub use stress::StressOptions;
 pub use values::JsonTarget;
 
 use crate::failure::Failure;
 use clap::Parser;
 use paths::Paths;
-use raw::{Raw, RawCommand};
 use std::ffi::OsString;
 use std::path::PathBuf;
+use subcommands::{Raw, RawCommand};
 
 /// What the program is asked to do.
 #[derive(Debug)]

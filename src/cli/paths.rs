@@ -1,8 +1,8 @@
 //! Whether the files of a command get in each other's way, found out before any is written.
 
-use super::sources::CliError;
+use super::error::CliError;
 use super::values::JsonTarget;
-use crate::film::FileIdentity;
+use crate::files::FileIdentity;
 use std::path::{Path, PathBuf};
 
 /// The files that a command reads and writes, each with the flag that names it.

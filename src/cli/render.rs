@@ -1,17 +1,19 @@
 //! What the flags of rendering mean together, for the window and for files.
 
 use super::Request;
+use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{DrawWith, ProgressChoice, RawDevice, RawRender};
-use super::sources::{self, CliError, Source};
+use super::sources::{self, Source};
 use super::values::{JsonTarget, Level, Simd};
 use crate::backends::BackendChoice;
 use crate::output::OutputFormat;
-use crate::progressive::Plan;
+use crate::progressive::{Plan, Stop};
 use crate::recipe::{Recipe, plain_name};
-use crate::render::{RenderJob, SAMPLE_LIMIT};
+use crate::render::RenderJob;
 use crate::render_cpu::CpuOptions;
 use crate::render_gpu::{Drill, DrillPoint, Fault, GpuOptions};
+use crate::saved;
 use crate::stages::Stage;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -41,6 +43,8 @@ pub struct BatchOptions {
 pub struct WindowOptions {
     /// What is rendered.
     pub recipe: Recipe,
+    /// The same without the changes that flags make.
+    pub unchanged: Recipe,
     /// The stage that it is from.
     pub stage: Option<&'static Stage>,
     /// The scene file that it is from.
@@ -50,7 +54,7 @@ pub struct WindowOptions {
     /// Whether flags said who renders.
     pub is_device_given: bool,
     /// When it ends, if that was said.
-    pub plan: Option<Plan>,
+    pub stop: Option<Stop>,
     /// The film that goes on.
     pub resume: Option<PathBuf>,
     /// What draws the window.
@@ -151,9 +155,10 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         }
     }
     let mut source = sources::find(&raw.picture, raw.resume.as_deref())?;
+    let unchanged = source.recipe.clone();
     sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
     source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
-    source.recipe.job()?;
+    let job = source.recipe.job()?;
     let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
     let file = sources::scene_file(raw.picture.scene.as_deref());
     Paths::default()
@@ -161,9 +166,13 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         .read("--resume", raw.resume.as_deref())
         .write("--frame-log", raw.frame_log.as_deref())
         .check(&[])?;
+    if let Some(film) = &raw.resume {
+        saved::check_resume(film, &job)?;
+    }
     Ok(WindowOptions {
-        plan: ends.then(|| plan(raw, &source.recipe)),
+        stop: ends.then(|| plan(raw, &source.recipe).stop),
         recipe: source.recipe,
+        unchanged,
         stage: source.stage,
         file: file.map(PathBuf::from),
         backend,
@@ -233,18 +242,13 @@ fn check_paths(
 }
 
 fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
-    let ends_otherwise = raw.time_limit.is_some() || raw.noise_target.is_some();
-    let samples = match (&raw.sample_range, raw.samples) {
-        (Some(range), _) => range.clone(),
-        (None, None) if ends_otherwise => 0..SAMPLE_LIMIT,
-        (None, _) => 0..recipe.samples_per_pixel,
+    let (seconds, noise) = (raw.time_limit, raw.noise_target);
+    let (first_sample, samples) = match (&raw.sample_range, raw.samples) {
+        (Some(range), _) => (range.start, Some(range.end)),
+        (None, None) if seconds.is_some() || noise.is_some() => (0, None),
+        (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
-    Plan {
-        samples,
-        time_limit: raw.time_limit.map(Duration::from_secs_f64),
-        noise_target: raw.noise_target,
-        pass_target: Plan::BATCH_PASS,
-    }
+    Plan { first_sample, stop: Stop { samples, seconds, noise }, pass_target: Plan::BATCH_PASS }
 }
 
 fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {

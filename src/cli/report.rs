@@ -1,8 +1,9 @@
 //! The flags of `weekender report`, and what they mean together.
 
+use super::error::CliError;
 use super::paths::Paths;
-use super::raw::{ProgressChoice, RawSampler, RawSwitch};
-use super::sources::{self, CliError};
+use super::raw::{ProgressChoice, RawSwitch};
+use super::sources;
 use super::values::{parse_rmse, parse_seconds, parse_size};
 use crate::backends::BackendChoice;
 use crate::recipe::Recipe;
@@ -45,7 +46,7 @@ pub(super) struct RawReport {
         default_value = "sobol,independent",
         help_heading = "What is compared"
     )]
-    pub samplers: Vec<RawSampler>,
+    pub samplers: Vec<SamplerKind>,
     /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "What is compared")]
     pub adapter: Option<String>,
@@ -228,7 +229,7 @@ pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, C
     Ok(ReportOptions {
         scenes,
         backends,
-        samplers: raw.samplers.into_iter().map(Into::into).collect(),
+        samplers: raw.samplers,
         seeds: raw.seeds.unwrap_or(defaults.seeds),
         size,
         time_limit: raw.time_limit.unwrap_or(defaults.time_limit),

@@ -1,8 +1,8 @@
 //! The flags of `weekender stress`, and what they mean together.
 
+use super::error::CliError;
 use super::paths::Paths;
 use super::raw::ProgressChoice;
-use super::sources::CliError;
 use super::values::{JsonTarget, Levels, parse_levels, parse_seconds};
 use crate::backends::BackendError;
 use crate::render_cpu::{CpuError, Isa};

@@ -10,7 +10,7 @@ pub use verdict::{Comparison, Evidence, NonFinite, PairedSamples, PairedSums, RO
 
 use crate::cli::{CompareOptions, JsonTarget};
 use crate::failure::Failure;
-use crate::film::{check_writable, replace_file};
+use crate::files::{check_writable, replace_file};
 use crate::recipe::Recipe;
 use crate::render::RenderSettings;
 use crate::terminal::{print_beside, write_json};

@@ -2,11 +2,12 @@
 
 use crate::backends::{self, BackendChoice};
 use crate::cli::CompareSide;
-use crate::film::{CheckpointError, Description, Film, checkpoint, key};
+use crate::film::{Film, key};
 use crate::memory;
-use crate::output::{Encoding, read_description, read_picture};
-use crate::recipe::{Recipe, file};
+use crate::output::{Encoding, read_picture};
+use crate::recipe::Recipe;
 use crate::render::{RenderJob, RenderSettings, Renderer};
+use crate::saved::{OpenError, Saved};
 use anyhow::{Context, Result};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
@@ -43,31 +44,26 @@ impl Side {
     /// A file that cannot be read, with what to do.
     pub fn read(path: &Path, encoding: Encoding) -> Result<Self> {
         let name = path.display().to_string();
-        match checkpoint::load(path) {
-            Ok(read) => {
-                check_memory(read.film.width(), read.film.height(), 0)?;
-                let recipe = recipe_of(&read.description, &name);
-                let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
-                let about = format!("film, {}", about_film(&read.film, recipe.as_ref()));
-                return Ok(Side { recipe, job, ..Side::of_film(name, about, read.film) });
-            }
-            // A picture. A film that is damaged is none.
-            Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => {}
+        let saved = match Saved::read(path) {
+            Ok(saved) => Some(saved),
+            // Most pictures do not say what they are; the picture itself is read below, with its errors.
+            Err(OpenError::Picture(_) | OpenError::NotFilm(_)) => None,
             Err(error) => return Err(error.into()),
+        };
+        // Numbers can be compared whatever is said of them.
+        let recipe = saved.as_ref().and_then(|saved| saved.recipe().ok());
+        let said = said(saved.as_ref());
+        if let Some(film) = saved.and_then(|saved| saved.film) {
+            check_memory(film.width(), film.height(), 0)?;
+            let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
+            let about = format!("film, {}", about_film(&film, recipe.as_ref()));
+            return Ok(Side { recipe, job, ..Side::of_film(name, about, film) });
         }
-        // Most pictures do not say what they are; the picture itself is read below, with its errors.
-        let description = read_description(path).ok();
-        let recipe = description.as_ref().and_then(|description| recipe_of(description, &name));
         let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
         let picture = read_picture(path, encoding)?;
         let kind = if picture.steps.is_some() { "whole numbers" } else { "float" };
         Ok(Side {
-            about: format!(
-                "picture, {}x{}, {kind}{}",
-                picture.width,
-                picture.height,
-                said(description.as_ref())
-            ),
+            about: format!("picture, {}x{}, {kind}{said}", picture.width, picture.height),
             name,
             width: picture.width,
             height: picture.height,
@@ -115,12 +111,6 @@ pub(super) fn check_memory(width: u32, height: u32, films: u64) -> Result<()> {
     Ok(memory::check(what, bytes, "compare smaller pictures (--size for those that are rendered)")?)
 }
 
-fn recipe_of(description: &Description, name: &str) -> Option<Recipe> {
-    let mut recipe = file::parse(description.recipe(), name).ok()?;
-    recipe.name = description.get(key::SCENE).unwrap_or("film").to_owned();
-    Some(recipe)
-}
-
 /// An empty film for a job.
 ///
 /// # Errors
@@ -130,8 +120,8 @@ pub(super) fn new_film(job: &RenderJob) -> Result<Film> {
     Ok(Film::try_new(width, height, job.settings().half_count())?)
 }
 
-fn said(description: Option<&Description>) -> String {
-    let samples = description.and_then(|description| description.get(key::SAMPLES));
+fn said(saved: Option<&Saved>) -> String {
+    let samples = saved.and_then(|saved| saved.description.get(key::SAMPLES));
     samples.map_or_else(String::new, |samples| format!(", {samples} samples"))
 }
 

@@ -14,7 +14,7 @@ pub use words::Told;
 use crate::cli::{DiffOptions, JsonTarget, PathChoice};
 use crate::console::printable;
 use crate::failure::Failure;
-use crate::film::check_writable;
+use crate::files::check_writable;
 use crate::record::PathRecord;
 use crate::terminal::{is_taken, print_painted_beside, write_json};
 use serde::Serialize;

@@ -9,20 +9,15 @@ pub mod checkpoint;
 mod checksum;
 mod description;
 mod difference;
-mod identity;
-mod leftovers;
 mod merge;
 mod ranges;
-mod replace;
 mod shared_file;
 
 pub use checkpoint::{CheckpointError, FilmFile};
 pub use checksum::Checksum;
 pub use description::{Description, RECIPE_KEY, key};
-pub use identity::FileIdentity;
 pub use merge::{MergeError, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;
-pub use replace::{WriteError, check_film_writable, check_writable, replace_file, write_text};
 pub use shared_file::{Saved, SharedFile};
 
 use crate::memory::{self, MemoryError};

@@ -7,9 +7,8 @@
 
 use super::checkpoint::{self, FilmFile};
 use super::difference::{difference, minus, ranges_of};
-use super::identity::Stamp;
-use super::replace::NewFile;
-use super::{Description, Film, SampleRanges, WriteError, key};
+use super::{Description, Film, SampleRanges, key};
+use crate::files::{NewFile, Stamp, WriteError};
 use std::fs::{File, TryLockError};
 use std::io::{BufReader, Seek};
 use std::ops::Range;

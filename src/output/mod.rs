@@ -1,6 +1,7 @@
 //! Pictures in files: 8-bit PNG, binary PPM (P6), and OpenEXR, which is the whole film. All of them say what they
 //! show: see [`Description`]. Pictures of other programs can be read, too: [`read_picture`].
 
+mod limits;
 mod pfm;
 mod png;
 mod ppm;
@@ -8,10 +9,10 @@ mod read;
 
 pub use read::{Encoding, ReadPicture, decode_picture, read_picture};
 
-pub use crate::film::{Description, RECIPE_KEY, WriteError, check_writable, key, replace_file};
+pub use crate::film::{Description, RECIPE_KEY, key};
 
+use crate::files::{self, InputError, WriteError, replace_file};
 use crate::film::{CheckpointError, Film, checkpoint};
-use crate::input::{self, InputError};
 use crate::stages::Transfer;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -118,7 +119,7 @@ pub fn write_image(
 /// # Errors
 /// [`OutputError::Input`], [`OutputError::Read`], [`OutputError::Film`] or [`OutputError::NoDescription`].
 pub fn read_description(path: &Path) -> Result<Description, OutputError> {
-    let (file, _) = input::open(path)?;
+    let (file, _) = files::open(path)?;
     decode_description(BufReader::new(file), path)
 }
 

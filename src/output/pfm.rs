@@ -2,6 +2,7 @@
 //!
 //! Source: Paul Debevec, "PFM Portable FloatMap Image Format".
 
+use super::limits::{check_memory, pixel_count};
 use std::io::{self, BufRead, Read};
 
 /// Longest word of the header, bytes.
@@ -21,11 +22,11 @@ pub(super) fn read(mut reader: impl BufRead, length: u64) -> io::Result<(u32, u3
     let (width, height) = (side("width")?, side("height")?);
     let text = word(&mut reader)?;
     let scale: f32 = text.parse().map_err(|_| invalid(format!("its scale is {text:?}")))?;
-    let count = super::read::pixel_count(width, height)? * channels;
+    let count = pixel_count(width, height)? * channels;
     if length < 4 * count as u64 {
         return Err(invalid(format!("it has {length} bytes, but its pixels alone take {}", 4 * count)));
     }
-    super::read::check_memory(width, height)?;
+    check_memory(width, height)?;
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(4 * count)?;
     reader.take(4 * count as u64).read_to_end(&mut bytes)?;

@@ -1,10 +1,10 @@
 //! Pictures of any program, as linear radiance: PFM, EXR, PNG and binary PPM.
 
 use super::OutputError;
+use super::limits::{PIXEL_LIMIT, check_memory, pixel_count};
 use super::pfm;
+use crate::files;
 use crate::film::checkpoint;
-use crate::input;
-use crate::memory;
 use crate::stages::Transfer;
 use image::ImageDecoder;
 use std::io::{self, BufRead, BufReader, Seek};
@@ -34,26 +34,13 @@ pub struct ReadPicture {
     pub limit: f64,
 }
 
-/// Most pixels of a picture that is read.
-const PIXEL_LIMIT: u64 = 1 << 28;
-
-/// Pixels of a picture of this size.
-pub(super) fn pixel_count(width: u32, height: u32) -> io::Result<usize> {
-    let count = u64::from(width) * u64::from(height);
-    if !(1..=PIXEL_LIMIT).contains(&count) {
-        let reason = format!("it has {width}x{height} pixels, where 1 to {PIXEL_LIMIT} can be read");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
-    }
-    Ok(count as usize)
-}
-
 /// Reads a picture. What the file is shows in its first bytes; its name does not matter. `encoding` is that of
 /// whole numbers.
 ///
 /// # Errors
 /// [`OutputError::Input`] or [`OutputError::Read`].
 pub fn read_picture(path: &Path, encoding: Encoding) -> Result<ReadPicture, OutputError> {
-    let (file, length) = input::open(path)?;
+    let (file, length) = files::open(path)?;
     decode_picture(BufReader::new(file), length, encoding)
         .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
 }
@@ -75,21 +62,6 @@ pub fn decode_picture(
         [b'P', b'2'..=b'6', ..] => read_whole(reader, length, image::ImageFormat::Pnm, encoding),
         _ => Err(invalid("it is no PFM, EXR, PNG or PPM")),
     }
-}
-
-/// What a pixel takes at most while a picture is read: as it is in the file, as it is decoded, and as numbers with
-/// their steps.
-const BYTES_PER_PIXEL: u64 = 80;
-
-/// Refuses a picture that does not fit into memory.
-pub(super) fn check_memory(width: u32, height: u32) -> io::Result<()> {
-    let bytes = u64::from(width) * u64::from(height) * BYTES_PER_PIXEL;
-    memory::check(
-        || format!("a picture of {width}x{height}"),
-        bytes,
-        "close other programs, or make it smaller",
-    )
-    .map_err(|error| io::Error::new(io::ErrorKind::OutOfMemory, error))
 }
 
 fn invalid(reason: impl ToString) -> io::Error {

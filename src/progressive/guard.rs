@@ -1,9 +1,11 @@
 //! Calls of renderers, whose panics are errors like any other, and how a renderer is left that has failed.
 
-use super::render::Backend;
-use crate::backends::close;
-use crate::render::RenderError;
+use crate::backends::{BackendChoice, close};
+use crate::render::{RenderError, Renderer};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// A renderer and what it was made from.
+pub(super) type Backend = (BackendChoice, Box<dyn Renderer>);
 
 /// Runs `work`. A panic is the error of `backend`; the film is as it was, which renderers promise.
 pub(super) fn guarded<T>(

@@ -1,6 +1,6 @@
 //! The render at hand: a film, who adds to it, and what it says of itself.
 
-use super::guard::{dismiss, guarded};
+use super::guard::{Backend, dismiss, guarded};
 use super::shared::{Picture, Shared};
 use super::upcoming::Upcoming;
 use super::{EndReason, Factory, HistoryPoint, PassSizer, Phase, Plan, Status, View};
@@ -11,9 +11,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::TryRecvError;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-
-/// A renderer and what it was made from.
-pub(super) type Backend = (BackendChoice, Box<dyn Renderer>);
 
 /// Estimating the error may take at most one part in this of the time.
 const ERROR_ESTIMATE_SHARE: u32 = 20;
@@ -101,7 +98,7 @@ impl Render {
     /// Samples per pixel that the film will hold.
     fn planned_count(&self) -> u64 {
         let mut samples = self.film.samples().clone();
-        while let Some(gap) = samples.first_gap(self.plan.samples.clone(), u64::MAX) {
+        while let Some(gap) = samples.first_gap(self.plan.range(), u64::MAX) {
             // A gap does not overlap what is there.
             if samples.insert(gap).is_err() {
                 break;
@@ -122,7 +119,7 @@ impl Render {
 
     /// Ends because no pass is left: all samples are there, or the time is over.
     fn end_of_plan(&mut self) {
-        let is_whole = self.dealt.first_gap(self.plan.samples.clone(), 1).is_none();
+        let is_whole = self.dealt.first_gap(self.plan.range(), 1).is_none();
         self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
     }
 
@@ -272,12 +269,12 @@ impl Render {
 
     /// The samples that are next; `None` when none are missing or there is no time left for them.
     fn next_pass(&self) -> Option<std::ops::Range<u64>> {
-        let time_left = match self.plan.time_limit {
+        let time_left = match self.plan.stop.time_limit() {
             // A picture without a sample is of no use to anyone.
             Some(limit) if self.dealt.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
             _ => None,
         };
-        self.sizer.next(&self.dealt, self.plan.samples.clone(), time_left)
+        self.sizer.next(&self.dealt, self.plan.range(), time_left)
     }
 
     fn pass(
@@ -286,7 +283,7 @@ impl Render {
         is_picture_wanted: bool,
         begin: Instant,
     ) -> Result<(), RenderError> {
-        if self.plan.noise_reached(self.film.sample_count(), self.status.error) {
+        if self.plan.stop.noise_reached(self.film.sample_count(), self.status.error) {
             self.collect(renderer)?;
             self.end(EndReason::NoiseTarget);
             return Ok(());

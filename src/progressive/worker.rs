@@ -1,7 +1,8 @@
 //! The render thread: obeys commands, then renders a pass, and so on.
 
+use super::guard::Backend;
 use super::guard::{dismiss, guarded};
-use super::render::{Backend, Render};
+use super::render::Render;
 use super::shared::Shared;
 use super::{EndReason, Factory, Phase, Plan, Status, View, Work};
 use crate::backends::BackendChoice;

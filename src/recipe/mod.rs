@@ -6,8 +6,9 @@ pub mod file;
 use crate::memory::{self, MemoryError};
 use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT, TRACING_BYTES_PER_SPHERE};
 use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
-use crate::scene::{Camera, Scene, Sphere, or_nearest, similar_names};
+use crate::scene::{Camera, Scene, Sphere};
 use crate::stages::{Rules, Setup, Stage};
+use crate::suggest::{or_nearest, similar_names};
 use std::sync::Arc;
 use thiserror::Error;
 

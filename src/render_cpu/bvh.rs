@@ -4,15 +4,59 @@
 
 use super::lanes::{Lanes, V3, splat3};
 use super::sphere::{Nearest, Rays, Spheres, near_root, nearest_root};
-use crate::tables::Real;
-use crate::tables::hierarchy::{COUNT_MASK, DEPTH_LIMIT, Hierarchy, LEAST_COMPONENT, Node, ROUNDING_UNITS};
+use crate::kernel::{BOX_MARGIN, BOX_WIDENING, COUNT_MASK, LEAST_COMPONENT, Node, Real, STACK_SIZE};
+use crate::tables::hierarchy::Hierarchy;
 
 /// Nodes to be visited, one a level at most. It outlives the traversals: clearing it each time would show in the run
 /// time.
-pub type Stack = [u32; DEPTH_LIMIT];
+pub type Stack = [u32; STACK_SIZE];
 
 /// A stack to start with.
-pub const EMPTY_STACK: Stack = [0; DEPTH_LIMIT];
+pub const EMPTY_STACK: Stack = [0; STACK_SIZE];
+
+/// Rays prepared for boxes: per axis `1/d`, and the origin moved outwards by the rounding there can be.
+pub struct Slabs<L: Lanes> {
+    inverse: V3<L::F>,
+    low: V3<L::F>,
+    high: V3<L::F>,
+}
+
+/// Prepares rays for boxes whose coordinates are at most as large as `extent`.
+#[inline(always)]
+pub fn slabs_of<L: Lanes>(l: L, rays: &Rays<L>, extent: L::Real) -> Slabs<L> {
+    let o = rays.origin;
+    let size = L::max(L::max(L::abs(o.x), L::abs(o.y)), L::max(L::abs(o.z), l.splat(extent)));
+    let margin = size * l.constant(BOX_MARGIN);
+    let inverse = V3 {
+        x: inverse_of(l, rays.direction.x),
+        y: inverse_of(l, rays.direction.y),
+        z: inverse_of(l, rays.direction.z),
+    };
+    let margin = V3 { x: margin, y: margin, z: margin };
+    Slabs { inverse, low: (o + margin).times(inverse), high: (o - margin).times(inverse) }
+}
+
+/// `1/d`, finite also where `d` is 0.
+#[inline(always)]
+fn inverse_of<L: Lanes>(l: L, d: L::F) -> L::F {
+    let least = l.constant(LEAST_COMPONENT);
+    let size = L::max(L::abs(d), least);
+    L::copysign(l.constant(1.0) / size, d)
+}
+
+/// Which rays meet the box before distance `limit`.
+#[inline(always)]
+pub fn meets_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit: L::F) -> L::M {
+    let (low, high) = (splat3(l, node.low), splat3(l, node.high));
+    let at = |corner: L::F, inverse: L::F, origin: L::F| L::mul_add(corner, inverse, -origin);
+    let (x0, x1) = (at(low.x, slabs.inverse.x, slabs.low.x), at(high.x, slabs.inverse.x, slabs.high.x));
+    let (y0, y1) = (at(low.y, slabs.inverse.y, slabs.low.y), at(high.y, slabs.inverse.y, slabs.high.y));
+    let (z0, z1) = (at(low.z, slabs.inverse.z, slabs.low.z), at(high.z, slabs.inverse.z, slabs.high.z));
+    let enter = L::max(L::max(L::min(x0, x1), L::min(y0, y1)), L::max(L::min(z0, z1), l.constant(0.0)));
+    let leave = L::min(L::min(L::max(x0, x1), L::max(y0, y1)), L::min(L::max(z0, z1), limit));
+    // Rounding of the distances themselves.
+    !L::lt(leave * l.constant(BOX_WIDENING), enter)
+}
 
 /// Takes the nearest hits among the spheres of a hierarchy into `nearest`. `active` lanes are those whose result
 /// matters.
@@ -26,7 +70,7 @@ pub fn traverse<L: Lanes>(
     stack: &mut Stack,
     nearest: &mut Nearest<L>,
 ) {
-    let slabs = Slabs::new(l, rays, hierarchy.extent);
+    let slabs = slabs_of(l, rays, hierarchy.extent);
     let forward = [rays.direction.x, rays.direction.y, rays.direction.z].map(|d| {
         2 * L::bits(L::lt(l.constant(0.0), d) & active).count_ones() >= L::bits(active).count_ones()
     });
@@ -34,7 +78,7 @@ pub fn traverse<L: Lanes>(
     let (mut index, mut depth) = (0, 0);
     loop {
         let node = &hierarchy.nodes[index as usize];
-        if L::bits(slabs.meet(l, node, limit) & active) != 0 {
+        if L::bits(meets_box(l, &slabs, node, limit) & active) != 0 {
             let count = node.count & COUNT_MASK;
             if count == 0 {
                 let ascending = node.count & (1 << 29) == 0;
@@ -64,50 +108,4 @@ pub fn traverse<L: Lanes>(
         depth -= 1;
         index = stack[depth];
     }
-}
-
-/// Rays prepared for boxes: per axis `1/d`, and the origin moved outwards by the rounding there can be.
-struct Slabs<L: Lanes> {
-    inverse: V3<L::F>,
-    low: V3<L::F>,
-    high: V3<L::F>,
-}
-
-impl<L: Lanes> Slabs<L> {
-    #[inline(always)]
-    fn new(l: L, rays: &Rays<L>, extent: L::Real) -> Self {
-        let o = rays.origin;
-        let size = L::max(L::max(L::abs(o.x), L::abs(o.y)), L::max(L::abs(o.z), l.splat(extent)));
-        let margin = size * l.constant(ROUNDING_UNITS * f64::from(f32::EPSILON) / 2.0);
-        let inverse = V3 {
-            x: inverse(l, rays.direction.x),
-            y: inverse(l, rays.direction.y),
-            z: inverse(l, rays.direction.z),
-        };
-        let margin = V3 { x: margin, y: margin, z: margin };
-        Slabs { inverse, low: (o + margin).times(inverse), high: (o - margin).times(inverse) }
-    }
-
-    /// Which rays meet the box before distance `limit`.
-    #[inline(always)]
-    fn meet(&self, l: L, node: &Node<L::Real>, limit: L::F) -> L::M {
-        let (min, max) = (splat3(l, node.min), splat3(l, node.max));
-        let at = |corner: L::F, inverse: L::F, origin: L::F| L::mul_add(corner, inverse, -origin);
-        let (x0, x1) = (at(min.x, self.inverse.x, self.low.x), at(max.x, self.inverse.x, self.high.x));
-        let (y0, y1) = (at(min.y, self.inverse.y, self.low.y), at(max.y, self.inverse.y, self.high.y));
-        let (z0, z1) = (at(min.z, self.inverse.z, self.low.z), at(max.z, self.inverse.z, self.high.z));
-        let enter = L::max(L::max(L::min(x0, x1), L::min(y0, y1)), L::max(L::min(z0, z1), l.constant(0.0)));
-        let leave = L::min(L::min(L::max(x0, x1), L::max(y0, y1)), L::min(L::max(z0, z1), limit));
-        // Rounding of the distances themselves.
-        let wide = l.constant(1.0 + 4.0 * f64::from(f32::EPSILON));
-        !L::lt(leave * wide, enter)
-    }
-}
-
-/// `1/d`, finite also where `d` is 0.
-#[inline(always)]
-fn inverse<L: Lanes>(l: L, d: L::F) -> L::F {
-    let least = l.constant(LEAST_COMPONENT);
-    let size = L::max(L::abs(d), least);
-    L::copysign(l.constant(1.0) / size, d)
 }

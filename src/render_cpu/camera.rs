@@ -3,7 +3,7 @@
 //! Twin: shaders/camera.wgsl
 
 use super::lanes::{Lanes, V3, Wide, load3, mul_add3};
-use crate::tables::CameraTable;
+use crate::kernel::CameraTable;
 
 /// Where a ray starts and where it goes; the direction's length is not 1.
 pub struct CameraRays<L: Lanes> {
@@ -17,36 +17,36 @@ pub struct CameraRays<L: Lanes> {
 #[inline(always)]
 pub fn screen<L: Lanes>(l: L, camera: &CameraTable<Wide<L::Real>>, x: L::F, y: L::F) -> [L::F; 2] {
     [
-        L::mul_add(x, l.load(&camera.scale[0]), l.load(&camera.offset[0])),
-        L::mul_add(y, l.load(&camera.scale[1]), l.load(&camera.offset[1])),
+        L::mul_add(x, l.load(&camera.scale_x), l.load(&camera.offset[0])),
+        L::mul_add(y, l.load(&camera.scale_y), l.load(&camera.offset[1])),
     ]
 }
 
 /// Rays from the eye through the point `jitter` (in `[0, 1)` each) of the pixel at `screen`.
 #[inline(always)]
-pub fn pinhole_rays<L: Lanes>(
+pub fn pinhole_ray<L: Lanes>(
     l: L,
     camera: &CameraTable<Wide<L::Real>>,
     screen: [L::F; 2],
     jitter: [L::F; 2],
 ) -> CameraRays<L> {
-    let sx = L::mul_add(jitter[0], l.load(&camera.scale[0]), screen[0]);
-    let sy = L::mul_add(jitter[1], l.load(&camera.scale[1]), screen[1]);
+    let sx = L::mul_add(jitter[0], l.load(&camera.scale_x), screen[0]);
+    let sy = L::mul_add(jitter[1], l.load(&camera.scale_y), screen[1]);
     CameraRays { origin: load3(l, &camera.eye), direction: through(l, camera, sx, sy) }
 }
 
 /// The same from the point `on_lens` of the unit disk.
 #[inline(always)]
-pub fn lens_rays<L: Lanes>(
+pub fn lens_ray<L: Lanes>(
     l: L,
     camera: &CameraTable<Wide<L::Real>>,
     screen: [L::F; 2],
     jitter: [L::F; 2],
     on_lens: [L::F; 2],
 ) -> CameraRays<L> {
-    let (tau, radius) = (l.load(&camera.tau), l.load(&camera.focus_tau));
-    let sx = L::mul_add(jitter[0], l.load(&camera.scale[0]), screen[0]);
-    let sy = L::mul_add(jitter[1], l.load(&camera.scale[1]), screen[1]);
+    let (tau, radius) = (l.load(&camera.tau), l.load(&camera.lens_radius));
+    let sx = L::mul_add(jitter[0], l.load(&camera.scale_x), screen[0]);
+    let sy = L::mul_add(jitter[1], l.load(&camera.scale_y), screen[1]);
     let direction =
         through(l, camera, L::neg_mul_add(tau, on_lens[0], sx), L::neg_mul_add(tau, on_lens[1], sy));
     let origin = mul_add3::<L>(load3(l, &camera.u), radius * on_lens[0], load3(l, &camera.eye));

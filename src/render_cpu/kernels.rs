@@ -6,52 +6,27 @@
 
 use super::Isa;
 use super::lanes::{Instructions, Lanes4, Lanes8, Lanes16, Reference, Scalar};
-use super::path::{needs, trace};
+use super::path::trace;
 use super::record::record;
 use super::wide::WideTables;
 use super::work::{TileStats, Work};
+use crate::kernel::parts;
 use crate::record::PathRecord;
-use crate::render::Features;
-use crate::tables::{Real, Tables};
 use fearless_simd::{Level, Simd};
 
 /// Traces a tile.
 pub type Kernel<R> = Box<dyn Fn(&WideTables<R>, &mut Work) -> TileStats + Send + Sync>;
 
 /// Opaque spheres and a pinhole.
-const OPAQUE: u32 = 0;
+const OPAQUE: u32 = parts::NONE;
 /// Glass besides: the three spheres.
-const GLASS: u32 = needs::GLASS;
+const GLASS: u32 = parts::GLASS;
 /// All that finished pictures need: the book's last.
-const FINISHED: u32 = needs::GLASS | needs::LENS | needs::EXTREMES | needs::HIERARCHY;
+const FINISHED: u32 = parts::GLASS | parts::LENS | parts::EXTREMES | parts::HIERARCHY;
 /// Everything.
-const GENERAL: u32 = needs::ALL;
+const GENERAL: u32 = parts::ALL;
 
-/// The code that a job needs of a kernel.
-pub fn needs_of<R: Real>(features: &Features, tables: &Tables<R>) -> u32 {
-    let bit = |needed: bool, bit: u32| if needed { bit } else { 0 };
-    bit(!tables.two_root.is_empty() || features.dielectric, needs::GLASS)
-        | bit(features.lens, needs::LENS)
-        | bit(tables.is_extreme(), needs::EXTREMES)
-        | bit(tables.hierarchy.is_some(), needs::HIERARCHY)
-        | bit(features.stage_rules, needs::RULES)
-}
-
-/// What a kernel has code for, in words.
-pub fn contents(needed: u32) -> String {
-    let parts = [
-        (needs::GLASS, "glass"),
-        (needs::LENS, "lens"),
-        (needs::EXTREMES, "extremes"),
-        (needs::HIERARCHY, "hierarchy"),
-        (needs::RULES, "stage rules"),
-    ];
-    let present: Vec<&str> =
-        parts.iter().filter(|(bit, _)| needed & bit != 0).map(|(_, name)| *name).collect();
-    if present.is_empty() { "opaque spheres, pinhole".to_owned() } else { present.join(", ") }
-}
-
-/// The least kernel that has the code `needed`, at a level's own lane count; the general one at the others.
+/// The parts of the least kernel that has those `needed`, at a level's own lane count; the general one at the others.
 pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
     let variants: &[u32] = match (isa, lanes == isa.native_lanes()) {
         (Isa::Sse42 | Isa::Neon, true) => &[GLASS],
@@ -61,7 +36,7 @@ pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
     variants.iter().copied().find(|variant| within(needed, *variant)).unwrap_or(GENERAL)
 }
 
-/// A kernel of a level and lane count that has at least the code `needed`.
+/// A kernel of a level and lane count that has at least the parts `needed`.
 /// `None` if the processor lacks the level or the level has no such lane count.
 pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     let level = Level::new();
@@ -159,29 +134,29 @@ fn scalar<S: Simd, const FUSED: bool>(simd: S) -> Kernel<f32> {
     })
 }
 
-fn four<S: Instructions, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn four<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, NEEDS>(Lanes4(simd), tables, work),
+            || trace::<_, PARTS>(Lanes4(simd), tables, work),
         )
     })
 }
 
-fn eight<S: Instructions, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn eight<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, NEEDS>(Lanes8(simd), tables, work),
+            || trace::<_, PARTS>(Lanes8(simd), tables, work),
         )
     })
 }
 
-fn sixteen<S: Instructions, const NEEDS: u32>(simd: S) -> Kernel<f32> {
+fn sixteen<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |tables, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, NEEDS>(Lanes16(simd), tables, work),
+            || trace::<_, PARTS>(Lanes16(simd), tables, work),
         )
     })
 }

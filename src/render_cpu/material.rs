@@ -7,19 +7,33 @@
 //! Twin: shaders/material.wgsl
 
 use super::lanes::{Lanes, V3, dot, mul_add3, neg_mul_add3};
+use crate::kernel::LoadShading;
 use crate::stages::DielectricLaws;
 
-/// A material as its table row has it.
+/// A material as a shading record has it.
 #[derive(Clone, Copy)]
 pub struct Surface<L: Lanes> {
     /// Length of the unit vector's part; with a minus sign (also on 0) the direction is a reflection.
     pub weight: L::F,
     /// Refraction index; 0 if not glass.
-    pub index: L::F,
+    pub refraction_index: L::F,
     /// 1 / refraction index; 0 if not glass.
     pub inverse_index: L::F,
     /// Schlick's share at normal incidence.
-    pub normal_share: L::F,
+    pub f0: L::F,
+}
+
+/// The materials of shading records.
+#[inline(always)]
+pub fn surface_of<L: Lanes>(
+    record: &impl LoadShading<L::Real, Number = L::F, Vector = V3<L::F>>,
+) -> Surface<L> {
+    Surface {
+        weight: record.weight(),
+        refraction_index: record.refraction_index(),
+        inverse_index: record.inverse_index(),
+        f0: record.f0(),
+    }
 }
 
 /// Where light goes on.
@@ -42,21 +56,19 @@ pub struct Incidence<L: Lanes> {
     pub sine2: L::F,
 }
 
-impl<L: Lanes> Incidence<L> {
-    /// From the cosine of direction and outward normal.
-    #[inline(always)]
-    pub fn of(l: L, outward_cosine: L::F) -> Self {
-        let one = l.constant(1.0);
-        let cosine = L::min(one, L::abs(outward_cosine));
-        Incidence { cosine, sine2: L::neg_mul_add(cosine, cosine, one) }
-    }
+/// From the cosine of direction and outward normal, which rounding can make larger than 1.
+#[inline(always)]
+pub fn incidence_of<L: Lanes>(l: L, outward_cosine: L::F) -> Incidence<L> {
+    let one = l.constant(1.0);
+    let cosine = L::min(one, L::abs(outward_cosine));
+    Incidence { cosine, sine2: L::neg_mul_add(cosine, cosine, one) }
+}
 
-    /// From the squared sine.
-    #[inline(always)]
-    pub fn of_sine2(l: L, sine2: L::F) -> Self {
-        let sine2 = L::min(l.constant(1.0), sine2);
-        Incidence { cosine: L::sqrt(l.constant(1.0) - sine2), sine2 }
-    }
+/// From the squared sine, which rounding can make larger than 1.
+#[inline(always)]
+pub fn incidence_of_sine2<L: Lanes>(l: L, sine2: L::F) -> Incidence<L> {
+    let sine2 = L::min(l.constant(1.0), sine2);
+    Incidence { cosine: L::sqrt(l.constant(1.0) - sine2), sine2 }
 }
 
 /// Scatters at a surface that is a mirror, a metal or Lambertian, or, if `GLASS`, a dielectric.
@@ -83,8 +95,8 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
     let mut is_metal = reflects;
     let mut ratio = one;
     if GLASS {
-        let is_glass = L::lt(zero, surface.index);
-        ratio = L::select(front, surface.inverse_index, surface.index);
+        let is_glass = L::lt(zero, surface.refraction_index);
+        ratio = L::select(front, surface.inverse_index, surface.refraction_index);
         // Squared sine of the refracted ray's angle: above 1 Snell's law has no solution.
         let refracted_sine2 = ratio * ratio * sine2;
         let mut kept = is_glass;
@@ -92,7 +104,7 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
             kept = kept & !L::lt(one, refracted_sine2);
         }
         if laws == DielectricLaws::Schlick {
-            kept = kept & !L::lt(coin, reflectance(l, cosine, surface.normal_share));
+            kept = kept & !L::lt(coin, reflectance(l, cosine, surface.f0));
         }
         let inner_cosine = L::sqrt(L::abs(one - refracted_sine2));
         refracts = kept;
@@ -114,11 +126,11 @@ pub fn refracted<L: Lanes>(l: L, across: V3<L::F>, normal: V3<L::F>, ratio: L::F
 
 /// Schlick's approximation of the reflected share. (Section 11.4.)
 #[inline(always)]
-pub fn reflectance<L: Lanes>(l: L, cosine: L::F, normal_share: L::F) -> L::F {
+pub fn reflectance<L: Lanes>(l: L, cosine: L::F, f0: L::F) -> L::F {
     let one = l.constant(1.0);
     let x = one - cosine;
     let x2 = x * x;
-    L::mul_add(one - normal_share, x2 * x2 * x, normal_share)
+    L::mul_add(one - f0, x2 * x2 * x, f0)
 }
 
 /// A uniform direction on the side of `normal`: the first diffuse stage's rule. (Section 9.1.)

@@ -19,8 +19,9 @@ pub use isa::Isa;
 pub use record::{PathRecorder, record_path};
 
 use crate::film::{Film, FilmError};
+use crate::kernel::{Real, parts};
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy, panic_text};
-use crate::tables::{Real, Tables};
+use crate::tables::Tables;
 use kernels::Kernel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -205,13 +206,11 @@ impl Renderer for CpuRenderer {
     }
 
     fn kernel(&self) -> String {
-        let Some(job) = &self.job else { return String::new() };
         match (self.packets, &self.prepared) {
             (Some((isa, lanes)), Some(Prepared::Single(tables, _))) => {
-                let needed = kernels::needs_of(&job.features(), &tables.tables);
-                kernels::contents(kernels::offered(isa, lanes, needed))
+                parts::describe(kernels::offered(isa, lanes, tables.tables.features.parts()))
             }
-            (_, Some(_)) => kernels::contents(path::needs::ALL),
+            (_, Some(_)) => parts::describe(parts::ALL),
             (_, None) => String::new(),
         }
     }
@@ -235,7 +234,7 @@ impl Renderer for CpuRenderer {
                 let old = if let Some(Prepared::Single(wide, _)) = old { Some(wide.tables) } else { None };
                 let tables = self.threads.install(|| Tables::renewed(old.zip(before), job));
                 self.messages = tables.warnings().to_vec();
-                let needed = kernels::needs_of(&job.features(), &tables);
+                let needed = tables.features.parts();
                 let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
                     reason: format!("there is no kernel for {lanes} lanes of {isa}"),

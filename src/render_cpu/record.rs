@@ -9,9 +9,10 @@ use super::sphere::NONE;
 use super::wide::WideTables;
 use super::work::{DealtBlock, Work};
 use crate::film::PixelSum;
+use crate::kernel::Real;
 use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use crate::render::RenderJob;
-use crate::tables::{Real, Tables};
+use crate::tables::Tables;
 
 /// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as `isa` traces it; `None`: in
 /// `f64`.

@@ -3,6 +3,7 @@
 //! Twin: shaders/rng.wgsl
 
 use super::lanes::Lanes;
+use crate::render::{RenderSettings, SamplerKind};
 use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK};
 
 /// A bijection of 32 bits.
@@ -67,4 +68,28 @@ pub fn sobol_pair<L: Lanes>(l: L, counter: L::U, stream: L::U) -> [L::U; 2] {
 #[inline(always)]
 pub fn lens_stream_of<L: Lanes>(l: L, stream: L::U) -> L::U {
     stream + l.splat_u(LENS_BLOCK.wrapping_mul(GOLDEN_RATIO))
+}
+
+/// Two pairs of numbers of a path's next ray, the second of which matters `with_lens` alone. `counter` tells the sample, and
+/// `stream` the pixel, half and ray: see [`crate::sampling::stream_stride`].
+#[inline(always)]
+pub fn numbers<L: Lanes>(
+    l: L,
+    settings: &RenderSettings,
+    pixel: L::U,
+    counter: L::U,
+    stream: L::U,
+    with_lens: bool,
+) -> [[L::U; 2]; 2] {
+    match settings.sampler {
+        SamplerKind::Independent => {
+            let [a, b, c, d] = pcg4d(l, [pixel, counter, stream, l.splat_u(settings.seed)]);
+            [[a, b], [c, d]]
+        }
+        SamplerKind::Sobol => {
+            let first = sobol_pair(l, counter, stream);
+            let second = if with_lens { sobol_pair(l, counter, lens_stream_of(l, stream)) } else { first };
+            [first, second]
+        }
+    }
 }

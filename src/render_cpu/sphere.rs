@@ -3,8 +3,8 @@
 //! Twin: shaders/sphere.wgsl
 
 use super::lanes::{Lanes, V3, Wide, WideU, dot, load3, mul_add3, neg_mul_add3, splat3};
-use crate::tables::{AnchoredSphere, Roots};
-pub use crate::tables::{EYE, NONE};
+use crate::kernel::{AnchoredSphere, Roots};
+pub use crate::kernel::{EYE, NONE};
 
 /// Rays on their way. Directions have length 1.
 #[derive(Clone, Copy)]
@@ -182,12 +182,12 @@ pub fn anchored_root<L: Lanes>(
     let discriminant = L::neg_mul_add(k, bend, m_along * m_along);
     let mut leaves = L::eq_u(rays.left, number);
     let enters = L::eq_u(rays.inside, number);
-    if sphere.under_eye {
+    if sphere.is_under_eye() {
         leaves = leaves | (L::eq_u(rays.left, l.splat_u(EYE)) & L::lt(m_along, zero));
     }
     // From its own surface inwards a ray runs the chord 2b.
     let own_chord = (b + L::abs(b)) / k;
-    match sphere.roots {
+    match sphere.roots() {
         Roots::Nearer => {
             let q = b + L::copysign(L::sqrt(discriminant), b);
             l.exclude(leaves, L::key(-(L::max(c, zero) / q)))

@@ -3,7 +3,8 @@
 
 use super::lanes::{MAX_LANES, Wide};
 use super::sphere::WideSphere;
-use crate::tables::{CameraTable, Real, Tables};
+use crate::kernel::{CameraTable, ROW_COLUMNS, Real};
+use crate::tables::Tables;
 
 /// Tables, and the parts of them that are read in every step.
 #[derive(Clone, Debug)]
@@ -20,14 +21,8 @@ pub struct WideTables<R> {
     pub sky_middle: [Wide<R>; 3],
     /// `tables.sky_slope`.
     pub sky_slope: [Wide<R>; 3],
-    /// `tables.is_eye_on_surface()`.
-    pub is_eye_on_surface: bool,
-    /// `tables.is_eye_in_cavity()`.
-    pub is_eye_in_cavity: bool,
-    /// `tables.is_extreme()`.
-    pub is_extreme: bool,
     /// The first of `tables.rows` by column, for kernels that hold a column in a register.
-    pub columns: Box<[Wide<R>; 16]>,
+    pub columns: Box<[Wide<R>; ROW_COLUMNS]>,
 }
 
 impl<R: Real> WideTables<R> {
@@ -38,7 +33,7 @@ impl<R: Real> WideTables<R> {
             spheres.iter().enumerate().map(wide).collect()
         };
         let listed = if tables.hierarchy.is_some() { &[][..] } else { &tables.two_root };
-        let mut columns = Box::new([Wide::default(); 16]);
+        let mut columns = Box::new([Wide::default(); ROW_COLUMNS]);
         for (index, row) in tables.rows.iter().take(MAX_LANES).enumerate() {
             for (column, number) in columns.iter_mut().zip(row.0) {
                 column.0[index] = number;
@@ -51,9 +46,6 @@ impl<R: Real> WideTables<R> {
             sky_middle: tables.sky_middle.map(Wide::splat),
             sky_slope: tables.sky_slope.map(Wide::splat),
             columns,
-            is_eye_on_surface: tables.is_eye_on_surface(),
-            is_eye_in_cavity: tables.is_eye_in_cavity(),
-            is_extreme: tables.is_extreme(),
             tables,
         }
     }

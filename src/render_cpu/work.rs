@@ -2,8 +2,8 @@
 
 use super::lanes::WideU;
 use crate::film::PixelSum;
-use crate::render::{RenderSettings, SamplerKind};
-use crate::sampling::{SampleBlock, half_key, key_in_half};
+use crate::render::RenderSettings;
+use crate::sampling::{HalfKey, SampleBlock};
 
 /// Rows of the film within a tile: those of the first half, then those of the second.
 pub type TileRows<'film> = Vec<&'film mut [PixelSum]>;
@@ -34,8 +34,8 @@ impl TileStats {
 #[derive(Clone, Copy, Debug)]
 pub struct DealtBlock {
     half: u32,
-    /// What the Sobol sampler's keys in this half are made from; `None` for the independent sampler.
-    half_key: Option<u32>,
+    /// What the sampler's keys in this half are made from.
+    half_key: HalfKey,
     counter: u32,
     step: u32,
     /// The counter after the last sample.
@@ -45,14 +45,13 @@ pub struct DealtBlock {
 impl DealtBlock {
     /// The blocks that samples `range` consist of.
     pub fn of_range(range: std::ops::Range<u64>, settings: &RenderSettings, limit: u32) -> Vec<DealtBlock> {
-        let is_sobol = settings.sampler == SamplerKind::Sobol;
         SampleBlock::split(range, settings.half_count() as u32, limit)
             .into_iter()
             .map(|block| {
                 let (counter, step) = block.counter(settings);
                 DealtBlock {
                     half: block.half,
-                    half_key: is_sobol.then(|| half_key(settings.seed, block.half)),
+                    half_key: HalfKey::new(settings, block.half),
                     counter,
                     step,
                     end: counter.wrapping_add(step.wrapping_mul(block.count)),
@@ -224,7 +223,7 @@ impl<'film> Work<'film> {
             lanes.step.0[lane] = block.step;
             lanes.end.0[lane] = block.end;
             lanes.pixel.0[lane] = pixel;
-            lanes.key.0[lane] = block.half_key.map_or(0, |half_key| key_in_half(half_key, pixel));
+            lanes.key.0[lane] = block.half_key.of_pixel(pixel);
         }
         retired
     }

@@ -7,8 +7,9 @@ use super::options::DrillPoint;
 use super::prepared::{Prepared, turns_over_lists};
 use super::readback::{Receipt, Told};
 use super::schedule::{Blocks, Budget};
-use super::{Fault, GpuRenderer, Overrides, failed};
+use super::{Fault, GpuRenderer, failed};
 use crate::film::Film;
+use crate::kernel::Features;
 use crate::render::{RenderError, Stats};
 use crate::tables::Tables;
 use std::collections::{HashMap, VecDeque};
@@ -58,7 +59,7 @@ impl From<RenderError> for Broken {
 
 /// A dispatch with all that it binds.
 struct Work {
-    kernel: Overrides,
+    kernel: Features,
     pipeline: wgpu::ComputePipeline,
     scene: wgpu::BindGroup,
     film: wgpu::BindGroup,
@@ -110,7 +111,7 @@ pub(super) struct Dispatches {
     under_way: VecDeque<UnderWay>,
     last_done: Instant,
     /// By kernel, so that another view of a scene goes on at full speed.
-    budgets: HashMap<Overrides, Budget>,
+    budgets: HashMap<Features, Budget>,
     target: Duration,
     /// Turns of a thread, as the adapter counts them.
     turn_limit: u32,
@@ -153,23 +154,23 @@ impl Dispatches {
     }
 
     /// Whether a kernel was never run.
-    pub(super) fn is_new(&self, kernel: &Overrides) -> bool {
+    pub(super) fn is_new(&self, kernel: &Features) -> bool {
         !self.budgets.contains_key(kernel)
     }
 
-    fn budget(&mut self, kernel: &Overrides) -> &mut Budget {
+    fn budget(&mut self, kernel: &Features) -> &mut Budget {
         self.budgets.entry(*kernel).or_insert_with(|| Budget::new(self.target))
     }
 
     /// Turns of a thread in one dispatch.
-    fn turn_limit(&self, kernel: &Overrides) -> u32 {
+    fn turn_limit(&self, kernel: &Features) -> u32 {
         let shift = if kernel.aside { CAUTION_SHIFT * self.caution } else { 0 };
         (self.turn_limit >> shift).max(1)
     }
 
     /// Samples of a pixel that fit one dispatch however long their paths are, so that none need be put aside; `None` where
     /// that is not known, or not even one does.
-    pub(super) fn whole_samples(&self, kernel: &Overrides, tables: &Tables<f32>) -> Option<u64> {
+    pub(super) fn whole_samples(&self, kernel: &Features, tables: &Tables<f32>) -> Option<u64> {
         // A path may have a turn without a ray at its end, and there is one before the first.
         let turns = u64::from(tables.settings.max_depth) * (1 + turns_over_lists(kernel, tables)) + 1;
         let samples = u64::from(self.turn_limit - 1) / turns;
@@ -342,12 +343,12 @@ impl GpuRenderer {
                 (slab.first_row, slab.row_count)
             };
             let area = [settings.width, row_count];
-            let most = self.dispatches.whole_samples(&prepared.overrides, &prepared.scene.tables);
-            let most = most.filter(|_| !prepared.overrides.aside).unwrap_or(u64::MAX);
+            let most = self.dispatches.whole_samples(&prepared.features, &prepared.scene.tables);
+            let most = most.filter(|_| !prepared.features.aside).unwrap_or(u64::MAX);
             let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
             let mut left = Blocks::of_range(range.clone(), &settings, prepared.scene.tables.block_limit);
             loop {
-                let affordable = self.dispatches.budget(&prepared.overrides).paths();
+                let affordable = self.dispatches.budget(&prepared.features).paths();
                 let threads = (u64::from(tiles) * tile_pixels).min(self.gpu.adapter.busy_threads());
                 let samples = self.options.samples_per_dispatch.unwrap_or(affordable / threads).min(most);
                 let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
@@ -361,7 +362,7 @@ impl GpuRenderer {
                         return Err(RenderError::Cancelled.into());
                     }
                     let slot = self.dispatches.free_slot(&self.gpu, cancel)?;
-                    let affordable = self.dispatches.budget(&prepared.overrides).paths();
+                    let affordable = self.dispatches.budget(&prepared.features).paths();
                     let tile_limit =
                         (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
                     let tile_count = evenly(tiles - first_tile, tile_limit);
@@ -369,13 +370,13 @@ impl GpuRenderer {
                         first_tile,
                         tile_count,
                         block_count: blocks.len() as u32,
-                        turn_limit: self.dispatches.turn_limit(&prepared.overrides),
+                        turn_limit: self.dispatches.turn_limit(&prepared.features),
                         first_row,
                         row_count,
                         ..GpuDispatch::default()
                     };
                     let work = Work {
-                        kernel: prepared.overrides,
+                        kernel: prepared.features,
                         pipeline: prepared.kernel.pipeline.clone(),
                         scene: prepared.scene.group.clone(),
                         film: prepared.film.slabs[slab].group.clone(),

@@ -1,9 +1,10 @@
-//! Kernels: a shader specialised by override constants, compiled once for each set of them, on a thread of its
-//! own.
+//! Kernels: a shader specialised by pipeline overrides to what a job needs, compiled once for each set of features, on a
+//! thread of its own.
 
 use super::device::Gpu;
+use super::failed;
 use super::shader_source::{EntryPoint, source};
-use super::{Overrides, failed};
+use crate::kernel::Features;
 use crate::render::RenderError;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,8 +24,8 @@ pub struct Kernel {
     pub compile_time: Duration,
 }
 
-/// Entry point, overrides, probe.
-type Key = (EntryPoint, Overrides, u32);
+/// Entry point, features, probe.
+type Key = (EntryPoint, Features, u32);
 
 type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
 
@@ -42,8 +43,8 @@ pub struct Kernels {
 
 impl Kernels {
     /// Has a kernel compiled, if it is not, and does not wait for it.
-    pub fn begin(&mut self, gpu: &Gpu, entry_point: EntryPoint, overrides: &Overrides, probe: u32) {
-        self.slot(gpu, (entry_point, *overrides, probe));
+    pub fn begin(&mut self, gpu: &Gpu, entry_point: EntryPoint, features: &Features, probe: u32) {
+        self.slot(gpu, (entry_point, *features, probe));
     }
 
     fn slot(&mut self, gpu: &Gpu, key: Key) -> &mut Slot {
@@ -60,11 +61,11 @@ impl Kernels {
         &mut self,
         gpu: &Gpu,
         entry_point: EntryPoint,
-        overrides: &Overrides,
+        features: &Features,
         probe: u32,
         cancel: &AtomicBool,
     ) -> Result<Kernel, RenderError> {
-        let slot = self.slot(gpu, (entry_point, *overrides, probe));
+        let slot = self.slot(gpu, (entry_point, *features, probe));
         loop {
             match slot {
                 Slot::Done(kernel) => {
@@ -99,7 +100,7 @@ fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
     }
 }
 
-fn compiled(gpu: &Gpu, (entry_point, overrides, probe): Key, modules: &Modules) -> Result<Kernel, String> {
+fn compiled(gpu: &Gpu, (entry_point, features, probe): Key, modules: &Modules) -> Result<Kernel, String> {
     let start = Instant::now();
     let label = Some(entry_point.name());
     let module = {
@@ -115,8 +116,9 @@ fn compiled(gpu: &Gpu, (entry_point, overrides, probe): Key, modules: &Modules) 
             }
         }
     };
+    let overrides = features.overrides();
     let mut constants: Vec<(&str, f64)> =
-        overrides.constants().into_iter().map(|(name, value)| (name, value.value())).collect();
+        overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect();
     constants.push(("PROBE", f64::from(probe)));
     constants.push(("RECORD", f64::from(u8::from(entry_point == EntryPoint::PathRecord))));
     let pipeline = gpu.guarded(|| {

@@ -10,7 +10,6 @@ mod film_buffers;
 mod kernel;
 pub mod layout;
 mod options;
-mod overrides;
 mod prepared;
 mod readback;
 mod record;
@@ -25,7 +24,6 @@ pub use options::{
     BATCH_TARGET, Drill, DrillPoint, Fault, GpuError, GpuOptions, GpuReport, HierarchyKind,
     INTERACTIVE_TARGET,
 };
-pub use overrides::{Constant, Overrides};
 
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};

@@ -3,11 +3,12 @@
 use super::dispatches::TURN_LIMIT;
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
-use super::layout::{GpuAnchoredSphere, GpuJob, GpuRow, WORKGROUP_SIZE, tile_size};
+use super::layout::{GpuJob, WORKGROUP_SIZE, tile_size};
 use super::options::DrillPoint;
 use super::scene::SceneData;
 use super::shader_source::EntryPoint;
-use super::{GpuRenderer, HierarchyKind, Overrides, failed};
+use super::{GpuRenderer, HierarchyKind, failed};
+use crate::kernel::{Features, ROW_COLUMNS, words_of};
 use crate::render::{RenderError, RenderJob};
 use crate::stages::Surface;
 use crate::tables::Tables;
@@ -18,7 +19,7 @@ use std::time::{Duration, Instant};
 pub(super) struct Prepared {
     pub(super) job: RenderJob,
     pub(super) scene: SceneOnDevice,
-    pub(super) overrides: Overrides,
+    pub(super) features: Features,
     pub(super) kernel: Kernel,
     pub(super) film: FilmBuffers,
 }
@@ -63,7 +64,7 @@ impl GpuRenderer {
         let scene = match seen {
             Some((scene, _)) if follows => {
                 let data = GpuJob::new(&scene.tables, scene.node_count);
-                self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::bytes_of(&data));
+                self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::cast_slice(&words_of(&[data])));
                 self.renew_anchored(&scene);
                 self.report.hierarchy_time = Duration::ZERO;
                 scene
@@ -74,58 +75,55 @@ impl GpuRenderer {
                 self.scene_on_device(job)?
             }
         };
-        let overrides = self.overrides(job, &scene.tables);
-        self.check_lists(&overrides, &scene.tables).map_err(failed)?;
-        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &overrides, 0);
+        let features = self.features(&scene.tables);
+        self.check_lists(&features, &scene.tables).map_err(failed)?;
+        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &features, 0);
         self.messages.extend(scene.tables.warnings().iter().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.make_room(job).map_err(failed)?;
-        let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &overrides, 0, cancel)?;
+        let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &features, 0, cancel)?;
         self.gpu.faults.check().map_err(failed)?;
-        if self.dispatches.is_new(&overrides) {
+        if self.dispatches.is_new(&features) {
             self.gpu.expect_compiling();
         }
-        self.report.features = overrides.summary();
+        self.report.features = features.describe();
         self.report.compile_time = kernel.compile_time;
-        Ok(Prepared { job: job.clone(), scene, overrides, kernel, film })
+        Ok(Prepared { job: job.clone(), scene, features, kernel, film })
     }
 
     /// Where spheres are anchored depends on the eye.
     fn renew_anchored(&self, scene: &SceneOnDevice) {
         let tables = &scene.tables;
-        let anchored: Vec<GpuAnchoredSphere> = tables.anchored.iter().map(Into::into).collect();
+        let anchored = words_of(&tables.anchored);
         let first = tables.opaque.len() + tables.two_root.len();
-        let rows: Vec<GpuRow> = tables.rows[first..].iter().map(Into::into).collect();
+        let rows: Vec<[f32; ROW_COLUMNS]> = tables.rows[first..].iter().map(|row| row.0).collect();
         let queue = &self.gpu.queue;
         queue.write_buffer(&scene.anchored_buffer, 0, bytemuck::cast_slice(&anchored));
-        let offset = (first * size_of::<GpuRow>()) as u64;
+        let offset = (first * ROW_COLUMNS * size_of::<f32>()) as u64;
         queue.write_buffer(&scene.rows_buffer, offset, bytemuck::cast_slice(&rows));
     }
 
     /// Builds tables and hierarchy, while the kernel is compiled, and copies them to the device.
     fn scene_on_device(&mut self, job: &RenderJob) -> Result<SceneOnDevice, RenderError> {
         let tables = Tables::<f32>::new(job);
-        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.overrides(job, &tables), 0);
+        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&tables), 0);
         let begin = Instant::now();
         let data = SceneData::new(job, &tables, self.options.hierarchy).map_err(failed)?;
         self.report.hierarchy_time = tables.hierarchy_time + begin.elapsed();
         self.copied(tables, data).map_err(failed)
     }
 
-    fn overrides(&self, job: &RenderJob, tables: &Tables<f32>) -> Overrides {
-        let overrides = if self.options.specialise {
-            Overrides::specialised(job, tables)
-        } else {
-            Overrides::general(job, tables)
-        };
-        let cwbvh = overrides.hierarchy && self.options.hierarchy == HierarchyKind::Cwbvh;
-        let overrides = Overrides { cwbvh, ..overrides };
-        Overrides { aside: self.dispatches.whole_samples(&overrides, tables).is_none(), ..overrides }
+    fn features(&self, tables: &Tables<f32>) -> Features {
+        let needed = tables.features;
+        let features = if self.options.specialise { needed } else { needed.generalised() };
+        let cwbvh = features.hierarchy && self.options.hierarchy == HierarchyKind::Cwbvh;
+        let features = Features { cwbvh, ..features };
+        Features { aside: self.dispatches.whole_samples(&features, tables).is_none(), ..features }
     }
 
     /// Refuses lists that are longer than a driver's loops.
-    fn check_lists(&self, overrides: &Overrides, tables: &Tables<f32>) -> Result<(), String> {
-        let turns = turns_over_lists(overrides, tables);
+    fn check_lists(&self, features: &Features, tables: &Tables<f32>) -> Result<(), String> {
+        let turns = turns_over_lists(features, tables);
         if self.gpu.adapter.threads_in_step() > 1 && turns >= u64::from(TURN_LIMIT) {
             return Err(format!(
                 "each ray is tested against {turns} spheres, but loops of {} end after {TURN_LIMIT} turns; render this scene on the CPU",
@@ -168,13 +166,14 @@ impl GpuRenderer {
             }
             gpu.filled(label, data, wgpu::BufferUsages::STORAGE)
         };
-        let anchored: Vec<GpuAnchoredSphere> = tables.anchored.iter().map(Into::into).collect();
+        let anchored: Vec<[u32; 8]> = at_least_one(words_of(&tables.anchored).as_chunks().0.to_vec());
         let job = GpuJob::new(&tables, scene.node_count);
-        let job_buffer = gpu.filled("job", bytemuck::bytes_of(&job), wgpu::BufferUsages::UNIFORM)?;
+        let job_buffer =
+            gpu.filled("job", bytemuck::cast_slice(&words_of(&[job])), wgpu::BufferUsages::UNIFORM)?;
         let buffers = [
             storage("spheres", bytemuck::cast_slice(&scene.spheres))?,
             // At least one element of each, as the shader's types ask for.
-            storage("anchored spheres", bytemuck::cast_slice(&at_least_one(anchored)))?,
+            storage("anchored spheres", bytemuck::cast_slice(&anchored))?,
             storage("rows", bytemuck::cast_slice(&scene.rows))?,
             storage("nodes", bytemuck::cast_slice(&at_least_one(scene.nodes)))?,
         ];
@@ -211,8 +210,8 @@ impl GpuRenderer {
 }
 
 /// Turns of one ray's loops over lists. Twin: `turns_over_lists` in shaders/path.wgsl.
-pub(super) fn turns_over_lists(overrides: &Overrides, tables: &Tables<f32>) -> u64 {
-    let is_in_hierarchy = overrides.hierarchy && overrides.surface == Surface::Exact;
+pub(super) fn turns_over_lists(features: &Features, tables: &Tables<f32>) -> u64 {
+    let is_in_hierarchy = features.hierarchy && features.surface == Surface::Exact;
     let listed = if is_in_hierarchy { 0 } else { tables.opaque.len() + tables.two_root.len() };
     (tables.anchored.len() + listed) as u64
 }

@@ -2,11 +2,9 @@
 //!
 //! Twin: shaders/record.wgsl
 
-use super::layout::ASIDE_STRIDE;
-use super::shader_source::{RECORD_HEADER, RECORD_STRIDE};
 use crate::film::PixelSum;
+use crate::kernel::{ASIDE_STRIDE, NONE, RECORD_HEADER, RECORD_STRIDE};
 use crate::record::{PathRecord, RecordedHit, RecordedRay};
-use crate::tables::NONE;
 use glam::DVec3;
 
 /// Words before those in which the path is put aside.

@@ -1,8 +1,8 @@
 //! A scene's spheres, rows and hierarchy in the order in which the kernel reads them.
 
 use super::HierarchyKind;
-use super::layout::{GpuCwbvhNode, GpuNode, GpuRow};
-use super::shader_source::{CWBVH_STACK_SIZE, STACK_SIZE};
+use super::layout::GpuCwbvhNode;
+use crate::kernel::{CWBVH_STACK_SIZE, ROW_COLUMNS, STACK_SIZE, words_of};
 use crate::render::RenderJob;
 use crate::tables::Tables;
 use crate::tables::cwbvh::Cwbvh;
@@ -12,7 +12,7 @@ pub struct SceneData {
     /// Centre and squared radius.
     pub spheres: Vec<[f32; 4]>,
     /// By sphere, the huge ones last.
-    pub rows: Vec<GpuRow>,
+    pub rows: Vec<[f32; ROW_COLUMNS]>,
     /// By sphere, its index in the scene.
     pub scene_index: Vec<u32>,
     /// The hierarchy's nodes, and behind them each sphere's place in the list.
@@ -29,7 +29,7 @@ impl SceneData {
     pub fn new(job: &RenderJob, tables: &Tables<f32>, kind: HierarchyKind) -> Result<Self, String> {
         let mut data = SceneData {
             spheres: tables.opaque.iter().chain(&tables.two_root).copied().collect(),
-            rows: tables.rows.iter().map(Into::into).collect(),
+            rows: tables.rows.iter().map(|row| row.0).collect(),
             scene_index: tables.scene_index.clone(),
             nodes: Vec::new(),
             node_count: 0,
@@ -37,8 +37,9 @@ impl SceneData {
         let Some(hierarchy) = &tables.hierarchy else { return Ok(data) };
         let (depth, room) = match kind {
             HierarchyKind::Bvh2 => {
-                let nodes: Vec<GpuNode> = hierarchy.nodes.iter().map(Into::into).collect();
-                data.take_nodes(nodes.len(), bytemuck::cast_slice(&nodes), hierarchy.ranks.iter().copied());
+                let nodes = words_of(&hierarchy.nodes);
+                let count = hierarchy.nodes.len();
+                data.take_nodes(count, bytemuck::cast_slice(&nodes), hierarchy.ranks.iter().copied());
                 (hierarchy.depth(), STACK_SIZE)
             }
             HierarchyKind::Cwbvh => (data.take_cwbvh(job, tables, &hierarchy.ranks), CWBVH_STACK_SIZE),
@@ -55,7 +56,7 @@ impl SceneData {
     fn take_cwbvh(&mut self, job: &RenderJob, tables: &Tables<f32>, ranks: &[u32]) -> usize {
         let built = Cwbvh::build(tables.spheres_of_hierarchy(job), tables.origin);
         self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
-        let rows: Vec<GpuRow> = built.order.iter().map(|i| self.rows[*i as usize]).collect();
+        let rows: Vec<_> = built.order.iter().map(|i| self.rows[*i as usize]).collect();
         self.rows[..rows.len()].copy_from_slice(&rows);
         let scene_index: Vec<u32> = built.order.iter().map(|i| self.scene_index[*i as usize]).collect();
         self.scene_index[..scene_index.len()].copy_from_slice(&scene_index);

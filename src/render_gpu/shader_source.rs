@@ -1,28 +1,6 @@
-//! The shaders' text: constants that live in Rust, then the files in the order in which they use each other.
+//! The shaders' text: what Rust declares, then the files in the order in which they use each other.
 
-use super::layout::{ASIDE_STRIDE, ROOTS_MASK, UNDER_EYE, UNIFORM_ANCHORED, UNIFORM_SPHERES, WORKGROUP_SIZE};
-use super::overrides::{Constant, Overrides};
-use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
-use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
-use crate::stages::{DielectricLaws, Shading, Transfer};
-use crate::tables::hierarchy::{self, COUNT_MASK, LEAST_COMPONENT, ROUNDING_UNITS};
-use crate::tables::{EYE, NEAR_ZERO, NONE, Roots, cwbvh};
-use std::fmt::Write;
-
-/// Nodes that a traversal can have set aside: one a level.
-pub const STACK_SIZE: usize = hierarchy::DEPTH_LIMIT;
-
-/// The same for a compressed hierarchy.
-pub const CWBVH_STACK_SIZE: usize = cwbvh::DEPTH_LIMIT;
-
-/// Words of a probe's input and output.
-pub const PROBE_STRIDE: usize = 16;
-
-/// Words before the rays of a recorded path.
-pub const RECORD_HEADER: usize = 4;
-
-/// Words of a recorded ray.
-pub const RECORD_STRIDE: usize = 12;
+use crate::kernel::{self, tags};
 
 /// An entry point and what it is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -98,105 +76,33 @@ pub enum Probe {
     Camera,
     /// `fixed_point` and `wide_sum`.
     FixedPoint,
+    /// `incidence_of`, `incidence_of_sine2`, `hemisphere` and `strip_reflectance`.
+    Incidence,
+    /// `slabs_of` and `box_key`.
+    Box,
+    /// `four_hits`.
+    FourHits,
 }
 
-impl Probe {
-    const ALL: [(&'static str, Probe); 9] = [
-        ("PROBE_PCG4D", Probe::Pcg4d),
-        ("PROBE_SOBOL", Probe::Sobol),
-        ("PROBE_SIN_COS", Probe::SinCos),
-        ("PROBE_ROOTS", Probe::Roots),
-        ("PROBE_ANCHORED", Probe::Anchored),
-        ("PROBE_SURFACE", Probe::Surface),
-        ("PROBE_SCATTER", Probe::Scatter),
-        ("PROBE_CAMERA", Probe::Camera),
-        ("PROBE_FIXED_POINT", Probe::FixedPoint),
-    ];
-}
+tags::tags!(Probe {
+    Pcg4d = "PROBE_PCG4D",
+    Sobol = "PROBE_SOBOL",
+    SinCos = "PROBE_SIN_COS",
+    Roots = "PROBE_ROOTS",
+    Anchored = "PROBE_ANCHORED",
+    Surface = "PROBE_SURFACE",
+    Scatter = "PROBE_SCATTER",
+    Camera = "PROBE_CAMERA",
+    FixedPoint = "PROBE_FIXED_POINT",
+    Incidence = "PROBE_INCIDENCE",
+    Box = "PROBE_BOX",
+    FourHits = "PROBE_FOUR_HITS",
+});
 
-/// What the shader calls a way of shading.
-pub fn shading_tag(shading: Shading) -> u32 {
-    shading as u32
-}
-
-/// What the shader calls the laws of glass.
-pub fn laws_tag(laws: DielectricLaws) -> u32 {
-    laws as u32
-}
-
-/// What the shader calls a transfer.
-pub fn transfer_tag(transfer: Transfer) -> u32 {
-    transfer as u32
-}
-
-/// Constants, tags and overrides as WGSL.
+/// What is declared in Rust, as WGSL.
 pub fn prelude() -> String {
-    let mut text = String::new();
-    let mut unsigned = |name: &str, value: u32| {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "const {name} = {value:#x}u;");
-    };
-    unsigned("WORKGROUP_SIZE", WORKGROUP_SIZE);
-    unsigned("UNIFORM_SPHERES", UNIFORM_SPHERES as u32);
-    unsigned("UNIFORM_ANCHORED", UNIFORM_ANCHORED as u32);
-    unsigned("STACK_SIZE", STACK_SIZE as u32);
-    unsigned("CWBVH_STACK_SIZE", CWBVH_STACK_SIZE as u32);
-    unsigned("ASIDE_STRIDE", ASIDE_STRIDE);
-    unsigned("PROBE_STRIDE", PROBE_STRIDE as u32);
-    unsigned("RECORD_HEADER", RECORD_HEADER as u32);
-    unsigned("RECORD_STRIDE", RECORD_STRIDE as u32);
-    unsigned("NONE", NONE);
-    unsigned("EYE", EYE);
-    unsigned("ROOTS_NEARER", Roots::Nearer as u32);
-    unsigned("ROOTS_FARTHER", Roots::Farther as u32);
-    unsigned("ROOTS_MASK", ROOTS_MASK);
-    unsigned("UNDER_EYE", UNDER_EYE);
-    unsigned("COUNT_MASK", COUNT_MASK);
-    unsigned("GOLDEN_RATIO", GOLDEN_RATIO);
-    unsigned("LENS_BLOCK", LENS_BLOCK);
-    unsigned("INFINITE_KEY", f32::INFINITY.to_bits());
-    unsigned("MISS_KEY", u32::MAX);
-    unsigned("NEGATIVE_ZERO_BITS", (-0.0_f32).to_bits());
-    unsigned("RADIANCE_TOTAL_LIMIT_BITS", ((3.0 * RADIANCE_LIMIT * FIXED_POINT_SCALE) as f32).to_bits());
-    for shading in [Shading::ImageGradient, Shading::FirstHitRed, Shading::Normals, Shading::Path] {
-        let name = match shading {
-            Shading::ImageGradient => "SHADING_IMAGE_GRADIENT",
-            Shading::FirstHitRed => "SHADING_FIRST_HIT_RED",
-            Shading::Normals => "SHADING_NORMALS",
-            Shading::Path => "SHADING_PATH",
-        };
-        unsigned(name, shading_tag(shading));
-    }
-    unsigned("LAWS_REFRACT_ONLY", laws_tag(DielectricLaws::RefractOnly));
-    unsigned("LAWS_SCHLICK", laws_tag(DielectricLaws::Schlick));
-    unsigned("TRANSFER_GAMMA2", transfer_tag(Transfer::Gamma2));
-    unsigned("TRANSFER_LINEAR_ABOVE_GAMMA2", transfer_tag(Transfer::LinearAboveGamma2));
-    for (name, probe) in Probe::ALL {
-        unsigned(name, probe as u32);
-    }
-    let mut float = |name: &str, value: f64| {
-        let _ = writeln!(text, "const {name} = {:?}f;", value as f32);
-    };
-    float("UNIT_FLOAT_SCALE", 1.0 / 16_777_216.0);
-    float("FIXED_POINT_SCALE", FIXED_POINT_SCALE);
-    float("FIXED_POINT_MAX", f64::from(FIXED_POINT_MAX));
-    float("NEAR_ZERO", NEAR_ZERO);
-    float("LEAST_COMPONENT", LEAST_COMPONENT);
-    float("BOX_MARGIN", ROUNDING_UNITS * f64::from(f32::EPSILON) / 2.0);
-    float("CWBVH_MARGIN", cwbvh::ROUNDING_UNITS * f64::from(f32::EPSILON) / 2.0);
-    float("BOX_WIDENING", 1.0 + 4.0 * f64::from(f32::EPSILON));
-    for (index, coefficient) in sine_coefficients().into_iter().enumerate() {
-        float(&format!("SINE_{index}"), coefficient);
-    }
-    for (name, value) in Overrides::default().constants() {
-        let _ = match value {
-            Constant::Flag(flag) => writeln!(text, "override {name}: bool = {flag};"),
-            Constant::Number(number) => writeln!(text, "override {name}: u32 = {number}u;"),
-            Constant::Real(real) => writeln!(text, "override {name}: f32 = {real:?}f;"),
-        };
-    }
-    text.push_str("override PROBE: u32 = 0u;\noverride RECORD: bool = false;\n");
-    text
+    let own = "override PROBE: u32 = 0u;\noverride RECORD: bool = false;\n";
+    [kernel::wgsl(), tags::values::<Probe>(), own.to_owned()].join("\n")
 }
 
 /// The whole text of a shader.

@@ -6,9 +6,10 @@ use super::kernel::Kernel;
 use super::layout::{GpuDispatch, WORKGROUP_SIZE};
 use super::prepared::Prepared;
 use super::schedule::Blocks;
-use super::shader_source::{EntryPoint, PROBE_STRIDE, Probe, transfer_tag};
-use super::{GpuRenderer, Overrides, TURN_LIMIT, failed, readback, record};
+use super::shader_source::{EntryPoint, Probe};
+use super::{GpuRenderer, TURN_LIMIT, failed, readback, record};
 use crate::film::Film;
+use crate::kernel::{Features, PROBE_STRIDE, Tag};
 use crate::record::PathRecord;
 use crate::render::{RenderError, RenderJob};
 use crate::stages::Transfer;
@@ -26,7 +27,7 @@ impl GpuRenderer {
         transfer: Transfer,
     ) -> Result<Vec<u32>, RenderError> {
         self.with_prepared(job, &go_on(), |this, prepared| {
-            let kernel = this.small_kernel(EntryPoint::Resolve, &Overrides::default(), 0)?;
+            let kernel = this.small_kernel(EntryPoint::Resolve, &Features::default(), 0)?;
             let buffers = this.own_film(prepared)?;
             let (width, height) = (film.width(), film.height());
             let Some(sums_on_device) = buffers.sums_of_whole() else {
@@ -38,7 +39,7 @@ impl GpuRenderer {
             let order = GpuDispatch {
                 row_count: height,
                 sample_count: film.sample_count().min(u64::from(u32::MAX)) as u32,
-                transfer: transfer_tag(transfer),
+                transfer: transfer.tag(),
                 ..GpuDispatch::default()
             };
             this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
@@ -54,8 +55,8 @@ impl GpuRenderer {
     /// [`RenderError::Backend`].
     pub fn probe(&mut self, job: &RenderJob, probe: Probe, words: &[u32]) -> Result<Vec<u32>, RenderError> {
         self.with_prepared(job, &go_on(), |this, prepared| {
-            let overrides = Overrides { dielectric_laws: job.rules().dielectric, ..Overrides::default() };
-            let kernel = this.small_kernel(EntryPoint::Probe, &overrides, probe as u32)?;
+            let features = Features { dielectric_laws: job.rules().dielectric, ..Features::default() };
+            let kernel = this.small_kernel(EntryPoint::Probe, &features, probe as u32)?;
             let groups = (words.len() / PROBE_STRIDE).div_ceil(WORKGROUP_SIZE as usize) as u32;
             this.run(prepared, &prepared.film, &kernel, words, groups)
         })
@@ -73,7 +74,7 @@ impl GpuRenderer {
         index: u64,
     ) -> Result<PathRecord, RenderError> {
         self.with_prepared(job, &go_on(), |this, prepared| {
-            let kernel = this.small_kernel(EntryPoint::PathRecord, &prepared.overrides, 0)?;
+            let kernel = this.small_kernel(EntryPoint::PathRecord, &prepared.features, 0)?;
             let buffers = this.own_film(prepared)?;
             let settings = job.settings();
             let (blocks, _) =
@@ -111,10 +112,10 @@ impl GpuRenderer {
     fn small_kernel(
         &mut self,
         entry_point: EntryPoint,
-        overrides: &Overrides,
+        features: &Features,
         probe: u32,
     ) -> Result<Kernel, RenderError> {
-        self.kernels.get(&self.gpu, entry_point, overrides, probe, &go_on())
+        self.kernels.get(&self.gpu, entry_point, features, probe, &go_on())
     }
 
     /// Runs a kernel on `words` and returns what it made of them.

@@ -1,7 +1,7 @@
 //! Who renders a curve: a backend, or the plain C89 program.
 
 use super::data::{Curve, Measured, Run};
-use super::reference::Reference;
+use super::reference::{Reference, film_means};
 use crate::backends;
 use crate::cli::ReportBackend;
 use crate::control::{Control, ControlError};
@@ -178,11 +178,6 @@ impl<'a> Growing<'a> {
             rejected: self.rejected,
         }))
     }
-}
-
-/// The means of a film's pixels, linear RGB, row by row from the top.
-pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
-    (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
 }
 
 fn by_control(

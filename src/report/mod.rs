@@ -15,8 +15,9 @@ use crate::chart;
 use crate::cli::{JsonTarget, ReferenceChoice, ReportOptions};
 use crate::console;
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::{Film, check_writable, write_text};
-use crate::input;
+use crate::files;
+use crate::files::{check_writable, write_text};
+use crate::film::Film;
 use crate::interrupt::Interrupt;
 use crate::recipe::{Recipe, plain_name};
 use crate::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
@@ -292,7 +293,7 @@ const REPORT_LIMIT: u64 = 64 << 20;
 
 /// What is in `path`, if it was measured with the same settings.
 fn resumed(path: &Path, settings: &Settings) -> Option<Data> {
-    let data = parse(&input::read(path, "a report", REPORT_LIMIT).ok()?).ok()?;
+    let data = parse(&files::read(path, "a report", REPORT_LIMIT).ok()?).ok()?;
     (data.schema == SCHEMA && data.settings == *settings).then_some(data)
 }
 

@@ -1,12 +1,12 @@
 //! The pictures that errors are measured against, and the errors.
 
-use super::contender::film_means;
 use super::data::ReferenceUsed;
 use crate::backends::{self, BackendChoice};
 use crate::film::{Description, Film, checkpoint, key};
 use crate::progressive::PassSizer;
 use crate::recipe::{Recipe, file};
 use crate::render::{RenderJob, RenderSettings, SamplerKind};
+use crate::saved;
 use crate::stages::Transfer;
 use crate::statistics::flip::Appearance;
 use anyhow::{Context, Result, bail};
@@ -86,6 +86,11 @@ impl Reference {
     }
 }
 
+/// The means of a film's pixels, linear RGB, row by row from the top.
+pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
+    (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
+}
+
 /// As a screen shows it.
 fn appearance(means: &[[f64; 3]], transfer: Transfer, width: u32, height: u32) -> Appearance {
     let shown: Vec<[f64; 3]> = means
@@ -111,8 +116,7 @@ pub fn recipe_of(recipe: &Recipe) -> Recipe {
 /// # Errors
 /// A film of another picture.
 pub fn read(path: &Path, recipe: &Recipe) -> Result<Reference> {
-    let read = checkpoint::load(path)?;
-    let theirs = file::parse(read.description.recipe(), &path.display().to_string())?.job()?;
+    let (theirs, read) = saved::open_film(path)?;
     let mine = recipe_of(recipe).job()?;
     let is_same = theirs.scene() == mine.scene()
         && theirs.camera() == mine.camera()
@@ -128,8 +132,8 @@ pub fn read(path: &Path, recipe: &Recipe) -> Result<Reference> {
             recipe.settings.height
         );
     }
-    let about = read.description.get(key::BACKEND).unwrap_or("unknown").to_owned();
-    Reference::of_film(&recipe.name, &about, &read.film, recipe.rules.transfer)
+    let about = read.backend.as_deref().unwrap_or("unknown");
+    Reference::of_film(&recipe.name, about, &read.film, recipe.rules.transfer)
 }
 
 /// What a pass of a reference takes: progress is shown and Ctrl-C is seen between passes.
@@ -184,8 +188,7 @@ pub fn make(
 
 /// The film in `path`, if it is one of this job by this backend.
 fn kept(path: &Path, job: &RenderJob, about: &str) -> Option<Film> {
-    let read = checkpoint::load(path).ok()?;
-    let theirs = file::parse(read.description.recipe(), "the kept reference").ok()?.job().ok()?;
-    let is_same = theirs == *job && job.fits(&read.film) && read.description.get(key::BACKEND) == Some(about);
+    let (theirs, read) = saved::open_film(path).ok()?;
+    let is_same = theirs == *job && read.backend.as_deref() == Some(about);
     is_same.then_some(read.film)
 }

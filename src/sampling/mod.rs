@@ -44,13 +44,43 @@ pub fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
 }
 
 /// The part of [`pixel_key`] that pixels share.
-pub fn half_key(seed: u32, half: u32) -> u32 {
+fn half_key(seed: u32, half: u32) -> u32 {
     mix32(seed.wrapping_add(half.wrapping_mul(GOLDEN_RATIO)))
 }
 
 /// [`pixel_key`] from that part.
-pub fn key_in_half(half_key: u32, pixel: u32) -> u32 {
+fn key_in_half(half_key: u32, pixel: u32) -> u32 {
     mix32(half_key ^ pixel)
+}
+
+/// The part that pixels share of what tells a sampler's streams of numbers apart.
+#[derive(Clone, Copy, Debug)]
+pub struct HalfKey(Option<u32>);
+
+impl HalfKey {
+    /// Of a half of the film.
+    pub fn new(settings: &RenderSettings, half: u32) -> Self {
+        match settings.sampler {
+            SamplerKind::Independent => HalfKey(None),
+            SamplerKind::Sobol => HalfKey(Some(half_key(settings.seed, half))),
+        }
+    }
+
+    /// The stream of numbers for the camera's rays of a pixel: [`pixel_key`] for Sobol's, 0 where the pixel itself is
+    /// hashed.
+    #[inline(always)]
+    pub fn of_pixel(self, pixel: u32) -> u32 {
+        self.0.map_or(0, |half_key| key_in_half(half_key, pixel))
+    }
+}
+
+/// By how much a path's stream of numbers grows from ray to ray.
+#[inline(always)]
+pub fn stream_stride(sampler: SamplerKind) -> u32 {
+    match sampler {
+        SamplerKind::Independent => 1,
+        SamplerKind::Sobol => GOLDEN_RATIO,
+    }
 }
 
 /// The float in `[0, 1)` of a 32-bit number: its upper 24 bits, so that it is exact and never 1.

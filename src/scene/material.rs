@@ -39,7 +39,29 @@ pub struct NamedMaterial {
     pub material: Material,
 }
 
+/// A number or colour that a material has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Parameter {
+    /// A plain number.
+    Number(f64),
+    /// Linear RGB.
+    Colour(DVec3),
+}
+
 impl Material {
+    /// The book's words for all kinds.
+    pub const KINDS: [&'static str; 3] = ["lambertian", "metal", "dielectric"];
+
+    /// What scene files call its numbers and colours, in the order in which they are written.
+    pub fn parameters(&self) -> Vec<(&'static str, Parameter)> {
+        use Parameter::{Colour, Number};
+        match *self {
+            Material::Lambertian { albedo } => vec![("albedo", Colour(albedo))],
+            Material::Metal { albedo, fuzz } => vec![("albedo", Colour(albedo)), ("fuzz", Number(fuzz))],
+            Material::Dielectric { refraction_index } => vec![("refraction_index", Number(refraction_index))],
+        }
+    }
+
     /// The fuzz that acts: 0 for other materials, at most 1 for a metal.
     pub fn effective_fuzz(&self) -> f64 {
         match self {
@@ -59,9 +81,9 @@ impl Material {
     /// The book's word for it.
     pub fn kind(&self) -> &'static str {
         match self {
-            Material::Lambertian { .. } => "lambertian",
-            Material::Metal { .. } => "metal",
-            Material::Dielectric { .. } => "dielectric",
+            Material::Lambertian { .. } => Material::KINDS[0],
+            Material::Metal { .. } => Material::KINDS[1],
+            Material::Dielectric { .. } => Material::KINDS[2],
         }
     }
 

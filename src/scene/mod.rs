@@ -11,14 +11,12 @@ mod error;
 mod material;
 mod pick;
 mod sphere;
-mod suggest;
 
 pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, VFOV_LIMITS_DEGREES};
 pub use error::SceneError;
-pub use material::{Material, NamedMaterial};
+pub use material::{Material, NamedMaterial, Parameter};
 pub use pick::Pick;
 pub use sphere::Sphere;
-pub(crate) use suggest::{or_nearest, similar_names};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

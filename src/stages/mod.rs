@@ -8,7 +8,8 @@ mod table;
 
 pub use rules::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading, Surface, Transfer};
 
-use crate::scene::{Camera, Scene, or_nearest, similar_names};
+use crate::scene::{Camera, Scene};
+use crate::suggest::{or_nearest, similar_names};
 use std::fmt;
 use thiserror::Error;
 

@@ -28,7 +28,7 @@ pub use verdict::Verdict;
 use crate::backends::BackendChoice;
 use crate::cli::{JsonTarget, StressOptions};
 use crate::failure::{Failure, INTERRUPTED};
-use crate::film::check_writable;
+use crate::files::check_writable;
 use crate::interrupt::Interrupt;
 use crate::render_cpu::CpuOptions;
 use crate::terminal::{self, Display};

@@ -4,7 +4,8 @@
 //! builds the tree and lays its nodes out; here their boxes are set anew, so that none is smaller by rounding than
 //! what it holds.
 
-use super::hierarchy::{self, Bounded, build_tree};
+use super::hierarchy::{Bounded, build_tree};
+use crate::kernel::CWBVH_STACK_SIZE;
 use crate::scene::Sphere;
 use glam::{DVec3, Vec3A};
 use obvhs::Boundable;
@@ -13,15 +14,11 @@ use obvhs::bvh2::Bvh2;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 pub use obvhs::cwbvh::node::CwBvhNode;
 
-/// As [`hierarchy::ROUNDING_UNITS`], for boxes that are measured from the corner of a node: the distance to that
-/// corner is rounded by 2 units more, and a box reaches farther than what it holds by at most 1 / 127 of its node.
-pub const ROUNDING_UNITS: f64 = hierarchy::ROUNDING_UNITS + 4.0;
-
 /// Most spheres of a leaf: a node's marks have room for 3.
 const LEAF_SPHERES: u32 = 3;
 
 /// Most levels of a tree: what a traversal has room for.
-pub const DEPTH_LIMIT: usize = 24;
+pub const DEPTH_LIMIT: usize = CWBVH_STACK_SIZE;
 
 /// Largest bound.
 const BOUND_MAX: f64 = 255.0;
@@ -46,7 +43,58 @@ impl Cwbvh {
         let mut built = build_tree(&bounded, 1, wide, |built| built.depth() <= DEPTH_LIMIT);
         let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
         built.set_boxes(&boxes);
+        debug_assert_eq!(built.validate(&bounded), Ok(()));
         built
+    }
+
+    /// Checks what traversals take for granted: each node is the child of one, behind its parent; each of the `spheres`
+    /// is in one leaf, and within all boxes around that.
+    fn validate(&self, spheres: &[Bounded<'_, '_>]) -> Result<(), String> {
+        let (mut is_reached, mut is_held) = (vec![false; self.nodes.len()], vec![false; spheres.len()]);
+        // Every node with the boxes that it lies in.
+        let mut open = vec![(0_u32, Vec::new())];
+        while let Some((index, around)) = open.pop() {
+            let Some(node) = self.nodes.get(index as usize) else {
+                return Err(format!("node {index} is named, but there are {}", self.nodes.len()));
+            };
+            if std::mem::replace(&mut is_reached[index as usize], true) {
+                return Err(format!("node {index} has two parents"));
+            }
+            for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
+                let mut around: Vec<[DVec3; 2]> = around.clone();
+                around.push(corners(node, child));
+                if !node.is_leaf(child) {
+                    let child = node.child_node_index(child);
+                    if child <= index {
+                        return Err(format!("node {index} has the child {child}, which is not behind it"));
+                    }
+                    open.push((child, around));
+                    continue;
+                }
+                let (first, count) = node.child_primitives(child);
+                for place in first..first + count {
+                    let number = self.order.get(place as usize).copied().unwrap_or(u32::MAX);
+                    let Some(sphere) = spheres.get(number as usize) else {
+                        return Err(format!("node {index} names sphere {number} of {}", spheres.len()));
+                    };
+                    if std::mem::replace(&mut is_held[number as usize], true) {
+                        return Err(format!("sphere {number} is in two leaves"));
+                    }
+                    let (center, radius) = (sphere.center(), sphere.radius());
+                    let is_within = |[low, high]: &[DVec3; 2]| {
+                        low.cmplt(center - radius).all() && high.cmpgt(center + radius).all()
+                    };
+                    if !around.iter().all(is_within) {
+                        return Err(format!("sphere {number} reaches out of a box around node {index}"));
+                    }
+                }
+            }
+        }
+        match (is_reached.iter().position(|is| !is), is_held.iter().position(|is| !is)) {
+            (Some(node), _) => Err(format!("node {node} has no parent")),
+            (_, Some(sphere)) => Err(format!("sphere {sphere} is in no leaf")),
+            (None, None) => Ok(()),
+        }
     }
 
     /// Sets all boxes from those of the spheres in the order of the leaves.
@@ -79,6 +127,13 @@ impl Cwbvh {
         }
         depths.into_iter().max().unwrap_or(0)
     }
+}
+
+/// The corners of a child's box, without rounding.
+fn corners(node: &CwBvhNode, child: usize) -> [DVec3; 2] {
+    let local = node.local_child_aabb(child);
+    let unit = node.compute_extent().as_dvec3();
+    [local.min, local.max].map(|corner| node.p.as_dvec3() + corner.as_dvec3() * unit)
 }
 
 fn united(boxes: &[Aabb]) -> Aabb {
@@ -114,38 +169,9 @@ mod tests {
     use super::*;
     use crate::scene::builtin::field;
 
-    /// The corners of a child's box, without rounding.
-    fn corners(node: &CwBvhNode, child: usize) -> [DVec3; 2] {
-        let local = node.local_child_aabb(child);
-        let unit = node.compute_extent().as_dvec3();
-        [local.min, local.max].map(|corner| node.p.as_dvec3() + corner.as_dvec3() * unit)
-    }
-
     fn check(spheres: &[Sphere]) {
         let built = Cwbvh::build(spheres, DVec3::ZERO);
-        let mut held = vec![0; spheres.len()];
-        // Every node with the boxes that it lies in.
-        let mut open = vec![(0_u32, Vec::new())];
-        while let Some((index, around)) = open.pop() {
-            let node = &built.nodes[index as usize];
-            for child in (0..8).filter(|child| !node.is_child_empty(*child)) {
-                let mut around: Vec<[DVec3; 2]> = around.clone();
-                around.push(corners(node, child));
-                if !node.is_leaf(child) {
-                    open.push((node.child_node_index(child), around));
-                    continue;
-                }
-                let (first, count) = node.child_primitives(child);
-                for number in &built.order[first as usize..(first + count) as usize] {
-                    held[*number as usize] += 1;
-                    let Sphere { center, radius, .. } = spheres[*number as usize];
-                    for [low, high] in &around {
-                        assert!(low.cmplt(center - radius).all() && high.cmpgt(center + radius).all());
-                    }
-                }
-            }
-        }
-        assert!(held.iter().all(|count| *count == 1), "each sphere is in one leaf");
+        assert_eq!(built.validate(&Bounded::all(spheres, &DVec3::ZERO)), Ok(()));
     }
 
     #[test]
@@ -162,5 +188,29 @@ mod tests {
         }
         // All at one place.
         check(&[field(1).0.spheres[0]; 40]);
+    }
+
+    /// What is done to a tree, and a part of what the check must say.
+    type Damage = (&'static str, fn(&mut Cwbvh));
+
+    #[test]
+    fn damaged_nodes_are_refused() {
+        let spheres = field(500).0.spheres;
+        let bounded = Bounded::all(&spheres, &DVec3::ZERO);
+        let whole = Cwbvh::build(&spheres, DVec3::ZERO);
+        let damages: [Damage; 6] = [
+            ("two leaves", |tree| tree.order[0] = tree.order[1]),
+            ("names sphere", |tree| tree.order[0] = 1 << 20),
+            ("reaches out of", |tree| tree.nodes[0].p.x += 1.0),
+            ("not behind it", |tree| tree.nodes[0].child_base_idx = 0),
+            ("but there are", |tree| tree.nodes[0].child_base_idx = 5000),
+            ("reaches out of", |tree| tree.nodes[1].child_max_y = [0; 8]),
+        ];
+        for (expected, damage) in damages {
+            let mut damaged = whole.clone();
+            damage(&mut damaged);
+            let message = damaged.validate(&bounded).expect_err(expected);
+            assert!(message.contains(expected), "{message}");
+        }
     }
 }

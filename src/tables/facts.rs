@@ -1,7 +1,8 @@
 //! What follows from a scene alone, whoever looks at it: spheres that others cover, and layers so thin that rounding
 //! may show.
 
-use super::groups::{Groups, UNIT};
+use super::groups::Groups;
+use crate::kernel::HALF_EPSILON;
 use crate::render::RenderJob;
 use crate::scene::{Material, Scene, Sphere};
 use glam::DVec3;
@@ -173,7 +174,7 @@ fn unresolved(layer: Layer, job: &RenderJob, groups: &Groups) -> Option<Unresolv
     let limits = spheres.map(|Sphere { center, radius, .. }| {
         let coordinate = (center - groups.origin).abs().max_element() + radius;
         let distance = center.distance(job.camera().look_from);
-        UNIT * (LAYER_UNITS * coordinate).max(DISTANCE_UNITS * distance)
+        HALF_EPSILON * (LAYER_UNITS * coordinate).max(DISTANCE_UNITS * distance)
     });
     let limit = limits[0].max(limits[1]);
     let is_glass = |sphere: &Sphere| matches!(job.scene().material_of(sphere), Material::Dielectric { .. });

@@ -2,13 +2,11 @@
 //! rounded.
 
 use super::facts::Facts;
+use crate::kernel::{HALF_EPSILON, Roots};
 use crate::render::RenderJob;
 use crate::scene::{Camera, Material, Sphere};
 use crate::stages::Surface;
 use glam::DVec3;
-
-/// Half a unit in the last place of 1, in `f32`.
-pub(super) const UNIT: f64 = f32::EPSILON as f64 / 2.0;
 
 /// A sphere is anchored when rounding at its radius exceeds this share of the smallest length near its surface. At
 /// that point the perpendicular form's distances are off by some `1e-4` of that length.
@@ -16,7 +14,7 @@ const ANCHOR_SHARE: f64 = 5e-5;
 
 /// What touches a much larger sphere counts as so many times smaller than it is where one of the two is glass. A ray that
 /// leaves the one near there may start beyond the other's surface by as much as rounding moves it, and then misses it.
-const TOUCHING_SHARE: f64 = 5.0;
+const TOUCHING_SHARE: f64 = 50.0;
 
 /// Spheres touch where they cross, or where so many units of rounding part them.
 const TOUCHING_UNITS: f64 = 16.0;
@@ -37,19 +35,6 @@ const GRID_RATIO: f64 = 256.0;
 
 /// The eye is on a surface when the distance between them is rounding in `f64`: this many units in the last place.
 const ON_SURFACE_UNITS: f64 = 4.0;
-
-/// Which roots of an anchored sphere count.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u32)]
-pub enum Roots {
-    /// The nearer: no ray is inside of it. One that rounding puts inside meets it where it starts.
-    Nearer = 0,
-    /// Both.
-    Both = 1,
-    /// The farther: it is opaque and holds the eye, so that every ray is inside of it and meets it, whatever
-    /// rounding says.
-    Farther = 2,
-}
 
 /// A sphere that is seen from a point of its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,13 +151,13 @@ fn reaches_into(sphere: &Sphere, cavity: &Sphere) -> bool {
 /// Whether the surfaces cross, or are closer than rounding tells.
 fn touch(a: &Sphere, b: &Sphere) -> bool {
     let apart = a.center.distance(b.center);
-    let margin = TOUCHING_UNITS * UNIT * a.radius.max(b.radius);
+    let margin = TOUCHING_UNITS * HALF_EPSILON * a.radius.max(b.radius);
     apart <= a.radius + b.radius + margin && apart >= (a.radius - b.radius).abs() - margin
 }
 
 /// Whether rounding moves a hit by more than a share of the sphere that shows.
 fn is_speck(sphere: &Sphere, eye: &Eye) -> bool {
-    UNIT * eye.position.distance(sphere.center) > 5e-4 * sphere.radius
+    HALF_EPSILON * eye.position.distance(sphere.center) > 5e-4 * sphere.radius
 }
 
 /// A point near what the eye is nearest to, on a grid; 0 where coordinates are small enough as they are.
@@ -205,7 +190,7 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
     eye: &Eye,
     is_opaque: &impl Fn(&Sphere) -> bool,
 ) -> Vec<Anchored> {
-    let needs_anchor = |radius: f64, length: f64| UNIT * radius > ANCHOR_SHARE * length;
+    let needs_anchor = |radius: f64, length: f64| HALF_EPSILON * radius > ANCHOR_SHARE * length;
     let is_special = |s: &Sphere| (is_opaque(s) && eye.is_inside(s)) || eye.height(s) == 0.0;
     let has_glass = shown().any(|(_, s)| !is_opaque(s));
     let share = if has_glass { TOUCHING_SHARE } else { 1.0 };
@@ -222,8 +207,14 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         .into_iter()
         .filter_map(|(index, sphere)| {
             let height = positive(eye.height(sphere).abs());
-            let detail = Detail::near(shown, sphere, is_opaque);
-            let length = detail.map_or(f64::INFINITY, |detail| detail.length);
+            let detail = Detail::near(shown, sphere, |_, size| size);
+            let contact = Detail::near(shown, sphere, |other, size| {
+                let leaks = !(is_opaque(other) && is_opaque(sphere)) && touch(sphere, other);
+                if leaks { size / TOUCHING_SHARE } else { f64::INFINITY }
+            });
+            let lengths = [detail, contact].into_iter().flatten().map(|detail| detail.length);
+            let length = lengths.fold(f64::INFINITY, f64::min);
+            let detail = detail.or(contact);
             if !is_special(sphere) && !needs_anchor(sphere.radius, length.min(height)) {
                 return None;
             }
@@ -257,19 +248,18 @@ struct Detail {
 }
 
 impl Detail {
-    /// `None` where all lengths are so large that they leave the sphere as it is.
+    /// `None` where all lengths are so large that they leave the sphere as it is. `counted` says what a sphere's length
+    /// counts as.
     fn near<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         shown: impl Fn() -> I,
         sphere: &Sphere,
-        is_opaque: &impl Fn(&Sphere) -> bool,
+        counted: impl Fn(&Sphere, f64) -> f64,
     ) -> Option<Self> {
-        let relevant = UNIT / ANCHOR_SHARE * sphere.radius;
+        let relevant = HALF_EPSILON / ANCHOR_SHARE * sphere.radius;
         let lengths = || {
             shown().filter(|(_, other)| other.radius < TOUCHING_SHARE * relevant).map(|(_, other)| {
                 let away = (other.center.distance(sphere.center) - sphere.radius).abs();
-                let size = other.radius.max(away);
-                let leaks = !(is_opaque(other) && is_opaque(sphere)) && touch(sphere, other);
-                (if leaks { size / TOUCHING_SHARE } else { size }, other.center)
+                (counted(other, other.radius.max(away)), other.center)
             })
         };
         let length = lengths().map(|(length, _)| length).fold(relevant, f64::min);

@@ -3,7 +3,8 @@
 //! obvhs builds the tree; here it is laid out for the kernels, and its boxes are made wide enough that rounding
 //! never hides a hit that testing every sphere would find.
 
-use super::{Real, parted};
+use super::parted;
+use crate::kernel::{BOX_MARGIN, COUNT_MASK, Node, Real, STACK_SIZE};
 use crate::scene::Sphere;
 use glam::DVec3;
 use obvhs::aabb::Aabb;
@@ -13,35 +14,11 @@ use obvhs::bvh2::node::Bvh2Node;
 use obvhs::{Boundable, BvhBuildParams};
 use std::time::Duration;
 
-/// The bits of [`Node::count`] that hold the number of spheres.
-pub const COUNT_MASK: u32 = (1 << 29) - 1;
-
 /// Most levels of a tree: what a traversal has room for.
-pub const DEPTH_LIMIT: usize = 64;
+pub const DEPTH_LIMIT: usize = STACK_SIZE;
 
 /// Most spheres of a leaf.
 const LEAF_SPHERES: u32 = 8;
-
-/// Rounding in the test of a sphere and of a box, relative to the largest coordinate that takes part, is below
-/// this many units of `2^-24`.
-pub const ROUNDING_UNITS: f64 = 8.0;
-
-/// A direction's component counts as no smaller than this, so that its inverse is finite.
-pub const LEAST_COMPONENT: f64 = 1e-18;
-
-/// A box and what it holds.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-pub struct Node<R> {
-    /// Lowest corner.
-    pub min: [R; 3],
-    /// First sphere of a leaf, or the first of two children that stand side by side.
-    pub first: u32,
-    /// Highest corner.
-    pub max: [R; 3],
-    /// Spheres of a leaf; else 0, or'ed with the axis that parts the children in bits 30 and 31.
-    pub count: u32,
-}
 
 /// Nodes, the root first.
 #[derive(Clone, Debug)]
@@ -85,8 +62,7 @@ impl Bounded<'_, '_> {
 impl Boundable for Bounded<'_, '_> {
     fn aabb(&self) -> Aabb {
         let (center, radius) = (self.center(), self.radius());
-        let unit = f64::from(f32::EPSILON) / 2.0;
-        let reach = radius + ROUNDING_UNITS * unit * (radius + center.abs().max_element());
+        let reach = radius + BOX_MARGIN * (radius + center.abs().max_element());
         let below = |x: f64| (x as f32).next_down();
         let above = |x: f64| (x as f32).next_up();
         let vector = |v: DVec3, f: fn(f64) -> f32| glam::Vec3A::new(f(v.x), f(v.y), f(v.z));
@@ -110,9 +86,9 @@ impl<R: Real> Hierarchy<R> {
                 let axis =
                     if node.is_leaf() { 0 } else { parting_axis(&tree.nodes, node.first_index as usize) };
                 Node {
-                    min: corner(aabb.min),
+                    low: corner(aabb.min),
                     first: node.first_index,
-                    max: corner(aabb.max),
+                    high: corner(aabb.max),
                     count: node.prim_count | axis,
                 }
             })

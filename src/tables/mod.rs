@@ -6,16 +6,15 @@ mod facts;
 mod groups;
 pub mod hierarchy;
 mod parted;
-mod real;
-
-pub use camera::CameraTable;
-pub use groups::Roots;
-pub use real::{Real, Row};
+mod validate;
 
 use crate::film::FIXED_POINT_SCALE;
+use crate::kernel::{
+    AnchoredSphere, CameraTable, Features, Real, Roots, Row, ShadingRecord, SortedSpheres, UNDER_EYE,
+};
 use crate::render::{RenderJob, RenderSettings};
 use crate::scene::{Material, Scene, Sphere};
-use crate::stages::{Rules, Surface};
+use crate::stages::Surface;
 use facts::Facts;
 use glam::DVec3;
 use groups::{Anchored, Groups};
@@ -26,23 +25,6 @@ use std::time::{Duration, Instant};
 /// Spheres from which on there is a hierarchy. On generated fields at 8 lanes the list was faster with 4 spheres
 /// and the hierarchy with 48, by a tenth; between 12 and 32 they were alike.
 const HIERARCHY_MIN_SPHERES: usize = 24;
-
-/// In place of a sphere's number: no sphere.
-pub const NONE: u32 = u32::MAX;
-
-/// Below this squared length, the normal plus a unit vector is a rounding error, and the normal stands in.
-pub const NEAR_ZERO: f64 = 1e-14;
-
-/// Where a ray starts in place of a sphere that it leaves: at an eye on the surface of one.
-pub const EYE: u32 = u32::MAX - 1;
-
-/// Between these refraction indices a refracted direction is good to rounding when it is worked out from the cosine of
-/// incidence; beyond them the critical angle is lost in its rounding.
-const GENTLE_INDICES: [f64; 2] = [0.25, 4.0];
-
-/// In glass that a path does not leave, each of so many rays may move the angle of incidence by a rounding error and
-/// still the critical angle is held to 1e-6.
-const GENTLE_DEPTH: u32 = 64;
 
 /// A job's spheres, materials, camera and sky for a kernel of precision `R`.
 ///
@@ -60,9 +42,7 @@ pub struct Tables<R> {
     pub hierarchy: Option<Hierarchy<R>>,
     /// Wall time that building it took.
     pub hierarchy_time: Duration,
-    /// By row, what shading needs: centre or anchor, 1/radius | albedo, weight of the unit vector (with a minus
-    /// sign where the direction is a reflection) | radius, refraction index (0: not glass), its inverse,
-    /// Schlick's share at normal incidence | the anchor's inward unit normal, 1 if anchored, 2 if every ray is inside.
+    /// By row, what shading needs: a [`ShadingRecord`].
     pub rows: Vec<Row<R>>,
     /// By row, the sphere's index in the scene.
     pub scene_index: Vec<u32>,
@@ -76,34 +56,13 @@ pub struct Tables<R> {
     pub block_limit: u32,
     /// Size, depth, sampler, seed, halves.
     pub settings: RenderSettings,
-    /// The rules in force.
-    pub rules: Rules,
-    /// A sphere is small beside its distance: where a ray meets it is told by the way across the ray, not along it.
-    pub has_specks: bool,
-    /// Glass whose critical angle must be known better than from a rounded cosine, or for many rays.
-    pub has_steep_glass: bool,
+    /// What the job needs of a kernel.
+    pub features: Features,
     /// What coordinates are measured from, in the scene's.
     pub origin: DVec3,
     groups: Groups,
     facts: Arc<Facts>,
     warnings: Vec<String>,
-}
-
-/// A sphere as seen from a point of its surface: `anchor` is that point, near what is looked at, `inward` the unit
-/// vector from there to the centre, `curvature` the inverse of the radius.
-#[derive(Clone, Copy, Debug)]
-pub struct AnchoredSphere<R> {
-    /// A point of the surface.
-    pub anchor: [R; 3],
-    /// Unit vector from the anchor to the centre.
-    pub inward: [R; 3],
-    /// 1 / radius.
-    pub curvature: R,
-    /// Which of the distances to it count.
-    pub roots: Roots,
-    /// Whether the eye is a point of the surface, and on its outer side: rays that start at [`EYE`] and go outwards
-    /// leave it, the others meet it where they start.
-    pub under_eye: bool,
 }
 
 impl<R: Real> Tables<R> {
@@ -159,9 +118,7 @@ impl<R: Real> Tables<R> {
             sky_slope: rounded((top - bottom) / 2.0),
             block_limit: block_limit(scene.sky.bottom.max(scene.sky.top).max_element()),
             settings,
-            rules: *job.rules(),
-            has_specks: false,
-            has_steep_glass: has_steep_glass(job),
+            features: Features::default(),
             origin: groups.origin,
             groups: Groups::default(),
             facts,
@@ -195,7 +152,6 @@ impl<R: Real> Tables<R> {
         let settings = *job.settings();
         self.camera = CameraTable::new(job.camera(), settings.width, settings.height, groups.origin);
         self.settings = settings;
-        self.has_steep_glass = has_steep_glass(job);
         self.hierarchy_time = Duration::ZERO;
         self.see(job, groups);
         true
@@ -207,8 +163,7 @@ impl<R: Real> Tables<R> {
         let listed = self.opaque.len() + self.two_root.len();
         self.rows.truncate(listed);
         self.scene_index.truncate(listed);
-        self.anchored =
-            groups.anchored.iter().map(|a| AnchoredSphere::new(scene, a, groups.origin)).collect();
+        self.anchored = groups.anchored.iter().map(|a| anchored_sphere(scene, a, groups.origin)).collect();
         for (anchored, sphere) in groups.anchored.iter().zip(&self.anchored) {
             self.rows.push(shading_row(scene, anchored.index, groups.origin, Some(sphere)));
             self.scene_index.push(anchored.index);
@@ -217,33 +172,30 @@ impl<R: Real> Tables<R> {
             // A ray that hits nothing looks up row 0 and ignores it.
             self.rows.push(Row::default());
         }
-        self.has_specks = groups.has_specks;
         self.warnings = if job.rules().surface == Surface::Exact {
             self.facts.warnings(job, &groups)
         } else {
             Vec::new()
         };
         self.groups = groups;
+        self.features = Features::of(job, &self.sorted());
+        debug_assert_eq!(self.validate(job), Ok(()));
+    }
+
+    /// What features ask of how the spheres are sorted.
+    fn sorted(&self) -> SortedSpheres<'_, R> {
+        SortedSpheres {
+            opaque_count: self.opaque.len(),
+            two_root_count: self.two_root.len(),
+            anchored: &self.anchored,
+            has_hierarchy: self.hierarchy.is_some(),
+            has_specks: self.groups.has_specks,
+        }
     }
 
     /// What single precision does not hold of the scene, with the numbers and what to do.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
-    }
-
-    /// Whether a kernel needs code that few scenes do: anchored spheres, specks, steep glass.
-    pub fn is_extreme(&self) -> bool {
-        !self.anchored.is_empty() || self.has_specks || self.has_steep_glass
-    }
-
-    /// Whether rays from the camera start on a surface.
-    pub fn is_eye_on_surface(&self) -> bool {
-        self.anchored.iter().any(|sphere| sphere.under_eye)
-    }
-
-    /// Whether all rays are inside a sphere that no light passes.
-    pub fn is_eye_in_cavity(&self) -> bool {
-        self.anchored.iter().any(|sphere| sphere.roots == Roots::Farther)
     }
 
     /// Memory that grows with the number of spheres.
@@ -268,36 +220,21 @@ impl<R: Real> Tables<R> {
     }
 }
 
-impl<R: Real> AnchoredSphere<R> {
-    fn new(scene: &Scene, anchored: &Anchored, origin: DVec3) -> Self {
-        let sphere = &scene.spheres[anchored.index as usize];
-        let towards = (anchored.near - sphere.center).try_normalize().unwrap_or(DVec3::Y);
-        let center = sphere.center - origin;
-        let foot = if anchored.under_eye { anchored.near - origin } else { center + towards * sphere.radius };
-        let anchor: [R; 3] = rounded(foot);
-        let [x, y, z] = anchor.map(R::to_f64);
-        let inward = (center - DVec3::new(x, y, z)).normalize();
-        AnchoredSphere {
-            anchor,
-            inward: rounded(inward),
-            curvature: R::from_f64(1.0 / sphere.radius),
-            roots: anchored.roots,
-            under_eye: anchored.under_eye,
-        }
+/// The sphere as its anchor sees it.
+fn anchored_sphere<R: Real>(scene: &Scene, anchored: &Anchored, origin: DVec3) -> AnchoredSphere<R> {
+    let sphere = &scene.spheres[anchored.index as usize];
+    let towards = (anchored.near - sphere.center).try_normalize().unwrap_or(DVec3::Y);
+    let center = sphere.center - origin;
+    let foot = if anchored.under_eye { anchored.near - origin } else { center + towards * sphere.radius };
+    let anchor: [R; 3] = rounded(foot);
+    let [x, y, z] = anchor.map(R::to_f64);
+    let inward = (center - DVec3::new(x, y, z)).normalize();
+    AnchoredSphere {
+        anchor,
+        curvature: R::from_f64(1.0 / sphere.radius),
+        inward: rounded(inward),
+        flags: anchored.roots as u32 | if anchored.under_eye { UNDER_EYE } else { 0 },
     }
-}
-
-/// Whether the angles of glass matter more than a rounded cosine tells.
-fn has_steep_glass(job: &RenderJob) -> bool {
-    let many_rays = job.settings().max_depth > GENTLE_DEPTH;
-    let [least, most] = GENTLE_INDICES;
-    job.rules().surface == Surface::Exact
-        && job.scene().materials.iter().any(|named| match named.material {
-            Material::Dielectric { refraction_index } => {
-                many_rays || !(least..=most).contains(&refraction_index)
-            }
-            _ => false,
-        })
 }
 
 fn shading_row<R: Real>(
@@ -312,29 +249,23 @@ fn shading_row<R: Real>(
         Material::Metal { albedo, fuzz } => (albedo, -fuzz.clamp(0.0, 1.0), 0.0),
         Material::Dielectric { refraction_index } => (DVec3::ONE, -0.0, refraction_index),
     };
-    let normal_share = ((1.0 - refraction_index) / (1.0 + refraction_index)).powi(2);
+    let f0 = ((1.0 - refraction_index) / (1.0 + refraction_index)).powi(2);
     let inverse_index = if refraction_index > 0.0 { 1.0 / refraction_index } else { 0.0 };
+    let anchoring = |sphere: &AnchoredSphere<R>| if sphere.roots() == Roots::Farther { 2.0 } else { 1.0 };
     let r = R::from_f64;
-    let [x, y, z] = anchored.map_or_else(|| rounded(sphere.center - origin), |a| a.anchor);
-    let [mx, my, mz] = anchored.map_or([R::default(); 3], |a| a.inward);
-    Row([
-        x,
-        y,
-        z,
-        r(1.0 / sphere.radius),
-        r(albedo.x),
-        r(albedo.y),
-        r(albedo.z),
-        r(weight),
-        r(sphere.radius),
-        r(refraction_index),
-        r(inverse_index),
-        r(normal_share),
-        mx,
-        my,
-        mz,
-        r(anchored.map_or(0.0, |a| if a.roots == Roots::Farther { 2.0 } else { 1.0 })),
-    ])
+    ShadingRecord {
+        reference: anchored.map_or_else(|| rounded(sphere.center - origin), |a| a.anchor),
+        curvature: r(1.0 / sphere.radius),
+        albedo: rounded(albedo),
+        weight: r(weight),
+        radius: r(sphere.radius),
+        refraction_index: r(refraction_index),
+        inverse_index: r(inverse_index),
+        f0: r(f0),
+        inward: anchored.map_or([R::default(); 3], |a| a.inward),
+        anchoring: r(anchored.map_or(0.0, anchoring)),
+    }
+    .into()
 }
 
 fn rounded<R: Real>(v: DVec3) -> [R; 3] {

@@ -7,7 +7,7 @@ pub use display::Display;
 use crate::cli::JsonTarget;
 use crate::console;
 use crate::failure::output_failure;
-use crate::film::write_text;
+use crate::files::write_text;
 use anyhow::{Context, Result, anyhow};
 use serde::Serialize;
 use std::io;

@@ -5,11 +5,11 @@
 
 use crate::common::*;
 use glam::{DMat3, DVec3};
-use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
+use weekender::kernel::CameraTable;
+use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, Wide};
 use weekender::scene::builtin::{LeftSphere, three_spheres};
 use weekender::scene::{Camera, Scene, SceneError, Sky};
-use weekender::tables::CameraTable;
 
 /// A sky whose three channels tell which way a ray goes up.
 const SKY: Sky = Sky { bottom: DVec3::new(0.0, 1.0, 0.5), top: DVec3::new(1.0, 0.0, 0.5) };
@@ -136,10 +136,10 @@ fn pixel_error<L: Lanes>(l: L, camera: &Camera) -> f64 {
         let (turn, radius) = (random.within(0.0, std::f64::consts::TAU), random.unit().sqrt());
         let on_lens = [radius * turn.cos(), radius * turn.sin()].map(|u| f64::from(u as f32));
         let (rays, shift) = if tau > 0.0 {
-            let rays = lens_rays(l, &table, corner, in_pixel, on_lens.map(|u| l.constant(u)));
+            let rays = lens_ray(l, &table, corner, in_pixel, on_lens.map(|u| l.constant(u)));
             (rays, on_lens.map(|u| tau * u / pixel))
         } else {
-            (pinhole_rays(l, &table, corner, in_pixel), [0.0; 2])
+            (pinhole_ray(l, &table, corner, in_pixel), [0.0; 2])
         };
         let found = pixel_of(camera, width, height, vector::<L>(rays.direction));
         // The lens moves the origin by `F tau xi`, so the direction points as far back at the focus distance.

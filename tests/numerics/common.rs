@@ -4,13 +4,13 @@ use glam::DVec3;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
+use weekender::kernel::Real;
 use weekender::render::{RenderJob, RenderSettings, Renderer, Stats};
 use weekender::render_cpu::lanes::{Lanes, V3, Wide, dot, splat3};
 use weekender::render_cpu::sphere::{NONE, Rays};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::scene::{Camera, Material, Scene};
 use weekender::stages::Rules;
-use weekender::tables::Real;
 
 /// Numbers for a test, the same every time (SplitMix64).
 pub struct Random(u64);

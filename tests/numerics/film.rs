@@ -3,16 +3,15 @@
 use crate::common::*;
 use glam::DVec3;
 use weekender::film::Film;
+use weekender::kernel::parts;
 use weekender::render::{RenderJob, RenderSettings};
 use weekender::render_cpu::lanes::Scalar;
-use weekender::render_cpu::path::{needs, trace};
+use weekender::render_cpu::path::trace;
 use weekender::render_cpu::wide::WideTables;
 use weekender::render_cpu::work::{DealtBlock, TileStats, Work, dealing_order};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
 use weekender::scene::{Camera, Sky};
 use weekender::tables::Tables;
-
-const GENERAL: u32 = needs::GLASS | needs::LENS | needs::EXTREMES | needs::HIERARCHY | needs::RULES;
 
 /// Traces tables as they are, in one tile of at most 256 pixels a side.
 pub fn trace_tables(tables: &Tables<f32>, film: &mut Film, samples: std::ops::Range<u64>) -> TileStats {
@@ -22,7 +21,7 @@ pub fn trace_tables(tables: &Tables<f32>, film: &mut Film, samples: std::ops::Ra
     let rows =
         film.halves_mut().iter_mut().flat_map(|half| half.chunks_mut(settings.width as usize)).collect();
     let mut work = Work::new(&blocks, &order, [0, 0], settings.height, rows);
-    let stats = trace::<_, GENERAL>(Scalar::<false>, &WideTables::new(tables.clone()), &mut work);
+    let stats = trace::<_, { parts::ALL }>(Scalar::<false>, &WideTables::new(tables.clone()), &mut work);
     film.record(samples, stats.rejected).unwrap();
     stats
 }

@@ -4,14 +4,15 @@
 use crate::common::*;
 use crate::film::trace_tables;
 use glam::DVec3;
+use weekender::kernel::Real;
 use weekender::render::RenderSettings;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, Wide, WideU};
 use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, near_root, nearest_root, surface_point};
 use weekender::scene::Sphere;
 use weekender::scene::builtin::{BOOK_CAMERA, book};
+use weekender::tables::Tables;
 use weekender::tables::hierarchy::Hierarchy;
-use weekender::tables::{Real, Tables};
 
 /// Spheres of sizes over many powers of ten, some touching, some at one place.
 fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> Vec<Sphere> {

@@ -2,16 +2,17 @@
 
 use crate::common::*;
 use glam::DVec3;
+use weekender::kernel::Real;
 use weekender::render::RenderJob;
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, dot};
-use weekender::render_cpu::material::{Incidence, Surface, scatter};
+use weekender::render_cpu::material::{Surface, incidence_of, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, near_root, nearest_root,
     surface_point,
 };
 use weekender::scene::Camera;
 use weekender::stages::{DielectricLaws, Rules};
-use weekender::tables::{Real, Tables};
+use weekender::tables::Tables;
 
 const FUSED: Scalar<true> = Scalar;
 const UNFUSED: Scalar<false> = Scalar;
@@ -299,9 +300,9 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
     let cosine = -dot::<L>(rays.direction, point.outward);
     let surface = Surface::<L> {
         weight: l.constant(-0.0),
-        index: l.constant(1.5),
+        refraction_index: l.constant(1.5),
         inverse_index: l.constant(1.0 / 1.5),
-        normal_share: l.constant(0.04),
+        f0: l.constant(0.04),
     };
     let zero = v3(l, DVec3::ZERO);
     let bounced = scatter::<L, true>(
@@ -310,7 +311,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
         DielectricLaws::RefractOnly,
         rays.direction,
         point.outward,
-        &Incidence::of(l, cosine),
+        &incidence_of(l, cosine),
         l.mask(1),
         zero,
         zero.x,
@@ -364,9 +365,9 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
     };
     let surface = Surface::<L> {
         weight: l.constant(-0.0),
-        index: l.constant(1.5),
+        refraction_index: l.constant(1.5),
         inverse_index: l.constant(1.0 / 1.5),
-        normal_share: l.constant(0.04),
+        f0: l.constant(0.04),
     };
     let zero = l.constant(0.0);
     let rounded_center = vector::<L>(v3(l, center));
@@ -386,7 +387,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
             DielectricLaws::Schlick,
             rays.direction,
             inward,
-            &Incidence::of(l, cosine),
+            &incidence_of(l, cosine),
             l.mask(0),
             v3(l, DVec3::ZERO),
             l.constant(0.999_999),

@@ -4,7 +4,7 @@ use crate::common::*;
 use glam::DVec3;
 use weekender::render::{RenderSettings, SamplerKind};
 use weekender::render_cpu::lanes::Scalar;
-use weekender::render_cpu::material::{Incidence, Surface, reflectance, scatter};
+use weekender::render_cpu::material::{Surface, incidence_of, reflectance, scatter};
 use weekender::scene::{Camera, Material, Sky};
 use weekender::stages::DielectricLaws;
 
@@ -157,9 +157,9 @@ fn grazing<const FUSED: bool>() {
         for front in [false, true] {
             let surface = Surface::<Scalar<FUSED>> {
                 weight: -0.0,
-                index: index as f32,
+                refraction_index: index as f32,
                 inverse_index: (1.0 / index) as f32,
-                normal_share: share,
+                f0: share,
             };
             // The largest coin there is.
             let coin = weekender::sampling::unit_float(u32::MAX);
@@ -172,7 +172,7 @@ fn grazing<const FUSED: bool>() {
                     laws,
                     direction,
                     normal,
-                    &Incidence::of(l, 0.0),
+                    &incidence_of(l, 0.0),
                     front,
                     zero,
                     coin,

@@ -4,11 +4,12 @@ use crate::common::*;
 use crate::film::trace_tables;
 use glam::DVec3;
 use weekender::film::Film;
+use weekender::kernel::Roots;
 use weekender::render::{RenderJob, RenderSettings};
 use weekender::scene::builtin::{LeftSphere, field, three_spheres};
 use weekender::scene::{Camera, Material, Scene, Sky};
+use weekender::tables::Tables;
 use weekender::tables::hierarchy::{DEPTH_LIMIT, Hierarchy};
-use weekender::tables::{Roots, Tables};
 
 type Ball = (DVec3, f64, Material);
 
@@ -33,6 +34,7 @@ fn as_list_and_hierarchy(job: &RenderJob, samples: u64) -> Film {
     let tables = Tables::<f32>::new(job);
     let [mut listed, mut boxed] = [job.new_film(), job.new_film()];
     assert!(tables.hierarchy.is_some(), "there is a hierarchy");
+    assert_eq!(tables.validate(job), Ok(()));
     trace_tables(&tables, &mut boxed, 0..samples);
     trace_tables(&Tables::as_list(job), &mut listed, 0..samples);
     assert_eq!(listed, boxed, "list and hierarchy");
@@ -349,7 +351,7 @@ fn what_a_closed_ball_hides_is_left_out() {
     let camera = Camera { look_from: DVec3::Z * 0.1, look_at: DVec3::X, ..Camera::BOOK };
     let tables = Tables::<f32>::new(&job(&scene, camera, size(2, 2)));
     assert_eq!(tables.scene_index, [1, 0]);
-    assert_eq!(tables.anchored[0].roots, Roots::Farther);
+    assert_eq!(tables.anchored[0].roots(), Roots::Farther);
 }
 
 /// A copy that is covered closes nothing.
@@ -459,6 +461,6 @@ fn specks_are_shaded_as_balls_are() {
         let balls = [(DVec3::new(0.0, 0.0, -1.0), radius, lambertian(0.5))];
         let camera = Camera { vfov_degrees: 0.01, ..Camera::BOOK };
         let tables = Tables::<f32>::new(&job(&under_white_sky(&balls), camera, size(2, 2)));
-        assert!(tables.has_specks || radius > 5e-5, "{radius:e}");
+        assert!(tables.features.specks || radius > 5e-5, "{radius:e}");
     }
 }

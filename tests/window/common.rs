@@ -1,11 +1,13 @@
 //! A window without a display, and how to use it.
 
-use eframe::egui::{self, Modifiers, PointerButton, Pos2};
+use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
+use std::path::Path;
 use std::time::{Duration, Instant};
 use weekender::app::{Command, Window};
 use weekender::cli::{self, Request};
+use weekender::output::OutputFormat;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -21,14 +23,23 @@ pub fn window(arguments: &str) -> Window {
 }
 
 pub fn open_sized(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
+    sized(window(arguments), size)
+}
+
+fn sized(window: Window, size: [f32; 2]) -> Harness<'static, Window> {
     Harness::builder()
         .with_size(size)
         .with_step_dt(1.0 / 60.0)
-        .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), window(arguments))
+        .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), window)
 }
 
 pub fn open(arguments: &str) -> Harness<'static, Window> {
-    let mut harness = open_sized(arguments, [1280.0, 1400.0]);
+    opened(window(arguments))
+}
+
+/// A window after its first frames.
+pub fn opened(window: Window) -> Harness<'static, Window> {
+    let mut harness = sized(window, [1280.0, 1400.0]);
     harness.run_steps(2);
     harness
 }
@@ -56,8 +67,34 @@ pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
     }
 }
 
+/// Whether the picture on the screen is the document's, at its full size, with so many samples per pixel.
 pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
-    move |window| window.shown().is_some_and(|(samples, divisor)| samples >= at_least && divisor == 1)
+    move |window| {
+        let is_enough = |(samples, divisor)| samples >= at_least && divisor == 1;
+        window.is_up_to_date() && window.shown().is_some_and(is_enough)
+    }
+}
+
+/// Presses the primary button there, or lets it go.
+pub fn hold(harness: &mut Harness<'_, Window>, pos: Pos2, pressed: bool) {
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+    harness.event(egui::Event::PointerMoved(pos));
+    harness.step();
+    harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+    harness.step();
+}
+
+/// Saves through the path box and waits for the file.
+pub fn save(harness: &mut Harness<'_, Window>, format: OutputFormat, path: &Path) {
+    send(harness, Command::Save(format));
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    let saved = format!("Saved {}", path.display());
+    until(harness, &saved, |window| window.messages().contains(&saved));
 }
 
 pub fn send(harness: &mut Harness<'_, Window>, command: Command) {
@@ -75,6 +112,16 @@ pub fn control<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> 
 
 pub fn middle(harness: &Harness<'_, Window>) -> Pos2 {
     harness.get_by_label("Picture").rect().center()
+}
+
+/// Drags with the primary button, in small steps.
+pub fn drag_from(harness: &mut Harness<'_, Window>, from: Pos2, by: egui::Vec2) {
+    hold(harness, from, true);
+    for step in 1..=10 {
+        harness.event(egui::Event::PointerMoved(from + by * (step as f32 / 10.0)));
+        harness.step();
+    }
+    hold(harness, from + by, false);
 }
 
 pub fn drag(harness: &mut Harness<'_, Window>, button: PointerButton, modifiers: Modifiers) {

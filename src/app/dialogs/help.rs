@@ -1,6 +1,6 @@
 //! Keys and mouse.
 
-use super::Outcome;
+use super::outcome::Outcome;
 use crate::app::command::{Command, Group};
 use eframe::egui::{self, RichText, Ui};
 

@@ -1,14 +1,22 @@
 //! What stands before the window until it is answered or closed.
 
 mod help;
+mod outcome;
 mod palette;
 mod path_box;
+mod purpose;
 
 pub use palette::Palette;
-pub use path_box::{Chosen, PathBox, Purpose};
+pub use path_box::PathBox;
+pub use purpose::Purpose;
 
-use super::window::Window;
+use super::answers::Answers;
+use super::command::Command;
+use super::facts::Facts;
 use eframe::egui::{Id, Modal, Ui};
+use outcome::Outcome;
+use path_box::Chosen;
+use std::path::PathBuf;
 
 /// The dialog that is open.
 pub enum Dialog {
@@ -20,29 +28,69 @@ pub enum Dialog {
     Path(PathBox),
 }
 
-/// What a dialog wants after a frame.
-pub(super) enum Outcome {
-    Stay,
-    Close,
+/// The dialog that is open, if one is, and the system's file dialog.
+#[derive(Default)]
+pub struct Dialogs {
+    open: Option<Dialog>,
+    browsed: Answers<(Purpose, Chosen)>,
 }
 
-impl Window {
-    pub(super) fn dialogs(&mut self, ui: &mut Ui) {
-        let Some(mut dialog) = self.dialog.take() else { return };
+impl Dialogs {
+    /// Whether one is open.
+    pub fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
+    /// Opens one, in place of another.
+    pub fn open(&mut self, dialog: Dialog) {
+        self.open = Some(dialog);
+    }
+
+    /// Draws it. Returns a file that was named, and what for.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        facts: &Facts,
+        commands: &mut Vec<Command>,
+    ) -> Option<(Purpose, PathBuf)> {
+        let dialog = self.open.as_mut()?;
         let room = ui.ctx().content_rect().size();
         let modal = Modal::new(Id::unique("dialog")).show(ui.ctx(), |ui| {
             let width = if matches!(dialog, Dialog::Help) { 700.0 } else { 560.0 };
             ui.set_max_width((room.x - 40.0).min(width));
-            match &mut dialog {
-                Dialog::Palette(palette) => palette.ui(self, ui),
+            match dialog {
+                Dialog::Palette(palette) => palette.ui(ui, facts, commands),
                 Dialog::Help => help::ui(ui, (room.y - 140.0).max(100.0)),
-                Dialog::Path(path_box) => path_box.ui(self, ui),
+                Dialog::Path(path_box) => path_box.ui(ui, &self.browsed),
             }
         });
-        // Another dialog may have been asked for in this one.
-        let is_open = matches!(modal.inner, Outcome::Stay) && !modal.should_close();
-        if is_open && self.dialog.is_none() {
-            self.dialog = Some(dialog);
+        if modal.should_close() || !matches!(modal.inner, Outcome::Stay) {
+            self.open = None;
+        }
+        match modal.inner {
+            Outcome::Named(purpose, path) => Some((purpose, path)),
+            Outcome::Stay | Outcome::Close => None,
+        }
+    }
+
+    /// What the system's file dialog has said: a file and what for, or, in words, that there was no dialog.
+    pub fn browsed(&mut self) -> Option<Result<(Purpose, PathBuf), &'static str>> {
+        match self.browsed.take()? {
+            (_, Chosen::NoDialog) => {
+                Some(Err("The system has shown no file dialog; type the file's name in the box"))
+            }
+            (purpose, Chosen::Path(path)) => {
+                if matches!(self.open, Some(Dialog::Path(_))) {
+                    self.open = None;
+                }
+                match PathBox::chosen(purpose, path) {
+                    Ok(path) => Some(Ok((purpose, path))),
+                    Err(asks) => {
+                        self.open = Some(Dialog::Path(asks));
+                        None
+                    }
+                }
+            }
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The command palette: type a part of a name, Enter.
 
-use super::Outcome;
+use super::outcome::Outcome;
 use crate::app::command::Command;
+use crate::app::facts::Facts;
 use crate::app::menu::line;
-use crate::app::window::Window;
 use eframe::egui::{self, Key, Modifiers, RichText, Ui};
 
 /// What was typed, and which line is chosen.
@@ -37,7 +37,7 @@ impl Palette {
         Palette { text, chosen: 0 }
     }
 
-    pub(super) fn ui(&mut self, window: &mut Window, ui: &mut Ui) -> Outcome {
+    pub(super) fn ui(&mut self, ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) -> Outcome {
         ui.set_width(ui.available_width());
         let (up, down, enter) = ui.input_mut(|input| {
             (
@@ -54,22 +54,22 @@ impl Palette {
         if response.changed() {
             self.chosen = 0;
         }
-        let commands = matching(&self.text);
-        let last = commands.len().saturating_sub(1);
+        let found = matching(&self.text);
+        let last = found.len().saturating_sub(1);
         if down {
             self.chosen = (self.chosen + 1).min(last);
         }
         if up {
             self.chosen = self.chosen.saturating_sub(1);
         }
-        let mut run = enter.then(|| commands.get(self.chosen).copied()).flatten();
+        let mut run = enter.then(|| found.get(self.chosen).copied()).flatten();
         ui.add_space(6.0);
         egui::ScrollArea::vertical().max_height(360.0).auto_shrink([false, true]).show(ui, |ui| {
-            if commands.is_empty() {
-                ui.label(RichText::new("No command is called so").color(ui.visuals().weak_text_color()));
+            if found.is_empty() {
+                ui.label(RichText::new("No command matches").color(ui.visuals().weak_text_color()));
             }
-            for (index, command) in commands.iter().enumerate() {
-                let useless = window.useless(*command);
+            for (index, command) in found.iter().enumerate() {
+                let useless = facts.useless(*command);
                 let button = line(ui, *command, index == self.chosen);
                 let response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
                 let response = response.on_disabled_hover_text(useless.unwrap_or_default());
@@ -83,7 +83,7 @@ impl Palette {
         });
         match run {
             Some(command) => {
-                window.send(command);
+                commands.push(command);
                 Outcome::Close
             }
             None => Outcome::Stay,

@@ -1,82 +1,13 @@
 //! A file's name, to be typed here or chosen in the system's dialog, where there is one.
 
-use super::Outcome;
-use crate::app::files::Message;
-use crate::app::window::Window;
-use crate::output::OutputFormat;
+use super::outcome::Outcome;
+use super::purpose::Purpose;
+use crate::app::answers::Answers;
 use crate::recipe::plain_name;
 use eframe::egui::{self, Key, RichText, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
-
-/// What the file is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Purpose {
-    /// To be opened.
-    Open,
-    /// To be written.
-    Save(OutputFormat),
-    /// To be written with the scene.
-    SaveScene,
-    /// To be written with the plot's points.
-    SavePlot,
-    /// To be compared with.
-    Reference,
-}
-
-impl Purpose {
-    fn title(self) -> &'static str {
-        match self {
-            Purpose::Open => "Open",
-            Purpose::Save(OutputFormat::Png) => "Save picture as PNG",
-            Purpose::Save(OutputFormat::P6) => "Save picture as PPM",
-            Purpose::Save(OutputFormat::Exr) => "Save film as EXR",
-            Purpose::SaveScene => "Save scene file",
-            Purpose::SavePlot => "Save error against time as CSV",
-            Purpose::Reference => "Load reference film",
-        }
-    }
-
-    fn button(self) -> &'static str {
-        match self {
-            Purpose::Open | Purpose::Reference => "Open",
-            _ => "Save",
-        }
-    }
-
-    fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save(_) | Purpose::SaveScene | Purpose::SavePlot)
-    }
-
-    fn endings(self) -> &'static [&'static str] {
-        match self {
-            Purpose::Open => &["png", "ppm", "exr", "toml"],
-            Purpose::Save(OutputFormat::Png) => &["png"],
-            Purpose::Save(OutputFormat::P6) => &["ppm"],
-            Purpose::Save(OutputFormat::Exr) | Purpose::Reference => &["exr"],
-            Purpose::SaveScene => &["toml"],
-            Purpose::SavePlot => &["csv"],
-        }
-    }
-}
-
-impl Purpose {
-    /// A name with the ending that belongs to it.
-    fn with_ending(self, path: PathBuf) -> PathBuf {
-        let is_known = path
-            .extension()
-            .is_some_and(|ending| self.endings().iter().any(|known| ending.eq_ignore_ascii_case(known)));
-        match self.endings() {
-            [ending] if self.is_saving() && !is_known => {
-                let mut name = path.into_os_string();
-                name.push(format!(".{ending}"));
-                PathBuf::from(name)
-            }
-            _ => path,
-        }
-    }
-}
 
 /// The box, with what was typed.
 pub struct PathBox {
@@ -119,7 +50,7 @@ impl PathBox {
         if named != path && named.exists() { Err(PathBox::of(purpose, &named)) } else { Ok(named) }
     }
 
-    pub(super) fn ui(&mut self, window: &mut Window, ui: &mut Ui) -> Outcome {
+    pub(super) fn ui(&mut self, ui: &mut Ui, browsed: &Answers<(Purpose, Chosen)>) -> Outcome {
         ui.set_width(ui.available_width());
         ui.heading(self.purpose.title());
         ui.add_space(6.0);
@@ -148,8 +79,7 @@ impl PathBox {
                 .on_disabled_hover_text("Type a file's name first")
                 .clicked();
             if let Some(path) = path.filter(|_| is_pressed || is_enter) {
-                window.use_path(self.purpose, path, ui.ctx());
-                outcome = Outcome::Close;
+                outcome = Outcome::Named(self.purpose, path);
             }
             if ui.button("Cancel").clicked() {
                 outcome = Outcome::Close;
@@ -160,7 +90,7 @@ impl PathBox {
                 .on_hover_text("The system's own dialog, where there is one")
                 .on_disabled_hover_text("The system's dialog is open");
             if browse.clicked() {
-                self.browse(window, ui.ctx());
+                self.browse(browsed, ui.ctx());
             }
         });
         outcome
@@ -196,9 +126,9 @@ impl PathBox {
     }
 
     /// Opens the system's dialog on a thread of its own: it may take as long as it likes.
-    fn browse(&mut self, window: &Window, context: &egui::Context) {
+    fn browse(&mut self, browsed: &Answers<(Purpose, Chosen)>, context: &egui::Context) {
         let (purpose, text) = (self.purpose, self.text.clone());
-        let (sender, context) = (window.messages.0.clone(), context.clone());
+        let answer = browsed.answer(context);
         let browsing = Arc::new(());
         self.browsing = Arc::downgrade(&browsing);
         let choose = move || {
@@ -212,16 +142,11 @@ impl PathBox {
             let chosen =
                 if purpose.is_saving() { dialog.set_file_name(name).save_file() } else { dialog.pick_file() };
             drop(browsing);
-            let answer = match chosen {
-                Some(path) => Some(Chosen::Path(path)),
-                None if begin.elapsed() < SEEN => Some(Chosen::NoDialog),
-                None => None,
-            };
-            if let Some(answer) = answer {
-                // A window that has been closed wants no name.
-                let _ = sender.send(Message::Chosen(purpose, answer));
+            match chosen {
+                Some(path) => answer.give((purpose, Chosen::Path(path))),
+                None if begin.elapsed() < SEEN => answer.give((purpose, Chosen::NoDialog)),
+                None => answer.wake(),
             }
-            context.request_repaint();
         };
         // Without a thread there is no dialog, and the box is still there.
         let _ = std::thread::Builder::new().name("file dialog".into()).spawn(choose);
@@ -242,6 +167,7 @@ fn place_of(path: &Path) -> (Option<PathBuf>, String) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::output::OutputFormat;
 
     fn typed(purpose: Purpose, text: &str) -> Option<PathBuf> {
         PathBox::of(purpose, Path::new(text)).path()

@@ -1,31 +1,31 @@
 //! The lens: how blurred, and where it is sharp.
 
-use super::{Group, Reset};
+use super::reset::Reset;
+use crate::app::facts::Facts;
+use crate::app::model::document::Document;
 use crate::app::widgets::{About, check, slider};
-use crate::app::window::Window;
 use crate::scene::Camera;
 use eframe::egui::{self, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Lens", ui, reset: Some(Reset { is_changed, reset }) };
+pub(super) const RESET: Reset = Reset { is_changed, reset };
 
 fn lens(camera: &Camera) -> (f64, Option<f64>) {
     (camera.defocus_angle_degrees, camera.focus_distance)
 }
 
-fn is_changed(window: &Window) -> bool {
-    lens(&window.document().camera) != lens(&window.document().origin.recipe.camera)
+fn is_changed(document: &Document) -> bool {
+    lens(&document.camera) != lens(&document.origin.recipe.camera)
 }
 
-fn reset(window: &mut Window) {
-    let (angle, focus) = lens(&window.document().origin.recipe.camera);
-    let camera = &mut window.document_mut().camera;
+fn reset(document: &mut Document) {
+    let (angle, focus) = lens(&document.origin.recipe.camera);
+    let camera = &mut document.camera;
     camera.defocus_angle_degrees = angle;
     camera.focus_distance = focus;
 }
 
-fn ui(window: &mut Window, ui: &mut Ui) {
-    let no_rays = super::camera::useless(window);
-    let camera = &mut window.document_mut().camera;
+pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
+    let no_rays = facts.no_rays();
     let defocus = About::new(
         "Defocus angle",
         "Angle of the cone from the focus point to the lens, degrees; 0 is a pinhole (defocus_angle)",

@@ -4,58 +4,73 @@ mod camera;
 mod lens;
 mod output;
 mod render;
+mod reset;
 mod stop;
 
-use super::window::Window;
+use super::command::Command;
+use super::facts::Facts;
+use super::model::document::Document;
+use super::model::remembered::Remembered;
 use eframe::egui::{self, RichText, Ui};
+use reset::Reset;
 
-/// A group of controls.
-struct Group {
-    name: &'static str,
-    /// Draws it.
-    ui: fn(&mut Window, &mut Ui),
-    /// How it is made as the stage has it, if a stage has anything to say in it.
-    reset: Option<Reset>,
-}
-
-/// How a group is made as the stage has it.
-struct Reset {
-    /// Whether anything in it differs from the stage.
-    is_changed: fn(&Window) -> bool,
-    reset: fn(&mut Window),
-}
-
-const GROUPS: [Group; 5] = [camera::GROUP, lens::GROUP, render::GROUP, stop::GROUP, output::GROUP];
-
-pub fn ui(window: &mut Window, ui: &mut Ui) {
-    if let Some(reason) = window.invalid.clone() {
+/// Draws the groups.
+pub fn ui(
+    ui: &mut Ui,
+    document: &mut Document,
+    remembered: &mut Remembered,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) {
+    if let Some(reason) = &facts.invalid {
         let text = RichText::new(reason).color(ui.visuals().error_fg_color);
         ui.add(egui::Label::new(text).wrap());
         ui.add_space(4.0);
     }
-    for group in &GROUPS {
-        let id = ui.make_persistent_id(("group", group.name));
-        let state = egui::collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, true);
-        state
-            .show_header(ui, |ui| {
-                ui.label(RichText::new(group.name).strong());
-                let Some(Reset { is_changed, reset }) = &group.reset else { return };
-                let is_changed = is_changed(window);
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    let button = ui
-                        .add_enabled(is_changed, egui::Button::new("Reset").small())
-                        .on_hover_text("As the stage has it")
-                        .on_disabled_hover_text("Nothing here differs from the stage")
-                        .accessible_name(format!("Reset {}", group.name.to_lowercase()));
-                    if button.clicked() {
-                        reset(window);
-                    }
-                });
-            })
-            .body_unindented(|ui| {
-                ui.add_space(2.0);
-                (group.ui)(window, ui);
+    group(ui, "Camera", Some(&camera::RESET), document, |ui, document| {
+        camera::ui(ui, &mut document.camera, &mut remembered.bookmarks, facts, commands);
+    });
+    group(ui, "Lens", Some(&lens::RESET), document, |ui, document| {
+        lens::ui(ui, &mut document.camera, facts);
+    });
+    group(ui, "Render", Some(&render::RESET), document, |ui, document| {
+        render::ui(ui, &mut document.settings, remembered, facts);
+    });
+    group(ui, "Stop", Some(&stop::RESET), document, |ui, document| {
+        stop::ui(ui, &mut document.stop, facts);
+    });
+    group(ui, "Output", None, document, |ui, _| output::ui(ui, commands));
+}
+
+/// A group of controls that can be folded. `reset` is missing where a stage has nothing to say.
+fn group(
+    ui: &mut Ui,
+    name: &str,
+    reset: Option<&Reset>,
+    document: &mut Document,
+    body: impl FnOnce(&mut Ui, &mut Document),
+) {
+    let id = ui.make_persistent_id(("group", name));
+    let state = egui::collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, true);
+    state
+        .show_header(ui, |ui| {
+            ui.label(RichText::new(name).strong());
+            let Some(Reset { is_changed, reset }) = reset else { return };
+            let is_changed = is_changed(document);
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                let button = ui
+                    .add_enabled(is_changed, egui::Button::new("Reset").small())
+                    .on_hover_text("As the stage has it")
+                    .on_disabled_hover_text("Nothing here differs from the stage")
+                    .accessible_name(format!("Reset {}", name.to_lowercase()));
+                if button.clicked() {
+                    reset(document);
+                }
             });
-        ui.add_space(6.0);
-    }
+        })
+        .body_unindented(|ui| {
+            ui.add_space(2.0);
+            body(ui, document);
+        });
+    ui.add_space(6.0);
 }

@@ -1,14 +1,10 @@
 //! What becomes of the picture.
 
-use super::Group;
 use crate::app::command::Command;
-use crate::app::window::Window;
 use crate::output::OutputFormat;
 use eframe::egui::{self, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Output", ui, reset: None };
-
-fn ui(window: &mut Window, ui: &mut Ui) {
+pub(super) fn ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         for (name, command) in [
@@ -19,7 +15,7 @@ fn ui(window: &mut Window, ui: &mut Ui) {
         ] {
             let response = ui.button(name).on_hover_text(command.help());
             if response.accessible_name(format!("Save {name}")).clicked() {
-                window.send(command);
+                commands.push(command);
             }
         }
     });
@@ -27,6 +23,6 @@ fn ui(window: &mut Window, ui: &mut Ui) {
     let width = ui.available_width();
     let button = egui::Button::new(command.name()).min_size(egui::vec2(width, 0.0));
     if ui.add(button).on_hover_text(command.help()).clicked() {
-        window.send(command);
+        commands.push(command);
     }
 }

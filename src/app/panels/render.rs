@@ -1,36 +1,37 @@
 //! Who renders, and how.
 
-use super::{Group, Reset};
-use crate::app::device::{Device, core_count, lane_counts};
+use super::reset::Reset;
+use crate::app::facts::Facts;
+use crate::app::model::device::{Device, core_count, lane_counts};
+use crate::app::model::document::Document;
+use crate::app::model::remembered::Remembered;
 use crate::app::widgets::{About, check, control, under_name, whole};
-use crate::app::window::Window;
-use crate::render::{DEPTH_LIMIT, SIZE_LIMIT, SamplerKind};
+use crate::render::{DEPTH_LIMIT, RenderSettings, SIZE_LIMIT, SamplerKind};
 use crate::stages::Shading;
 use eframe::egui::{self, ComboBox, DragValue, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Render", ui, reset: Some(Reset { is_changed, reset }) };
+pub(super) const RESET: Reset = Reset { is_changed, reset };
 
-fn is_changed(window: &Window) -> bool {
-    window.document().settings != window.document().origin.recipe.settings
+fn is_changed(document: &Document) -> bool {
+    document.settings != document.origin.recipe.settings
 }
 
-fn reset(window: &mut Window) {
-    let settings = window.document().origin.recipe.settings;
-    window.document_mut().settings = settings;
+fn reset(document: &mut Document) {
+    document.settings = document.origin.recipe.settings;
 }
 
-fn ui(window: &mut Window, ui: &mut Ui) {
-    device(window, ui);
-    lanes_and_threads(window, ui);
-    size(window, ui);
-    let shading = window.document().rules().shading;
-    let no_rays = super::camera::useless(window);
+pub(super) fn ui(ui: &mut Ui, settings: &mut RenderSettings, remembered: &mut Remembered, facts: &Facts) {
+    device(ui, &mut remembered.device);
+    lanes_and_threads(ui, remembered);
+    size(ui, settings);
+    let rules = facts.document().rules();
+    let shading = rules.shading;
+    let no_rays = facts.no_rays();
     let one_ray =
         (shading != Shading::Path).then_some("In this stage a ray sees no further than its first hit");
-    let no_chance = (!window.document().rules().antialiasing && shading != Shading::Path)
+    let no_chance = (!rules.antialiasing && shading != Shading::Path)
         .then_some("In this stage nothing depends on chance");
 
-    let settings = &mut window.document_mut().settings;
     let mut depth = u64::from(settings.max_depth);
     let about = About::new("Depth", "Most rays of a path, the camera's included (max_depth)");
     whole(ui, about.useless_if(no_rays.or(one_ray)), &mut depth, 1..=u64::from(DEPTH_LIMIT), 0.2);
@@ -62,8 +63,7 @@ fn ui(window: &mut Window, ui: &mut Ui) {
     check(ui, about, &mut settings.estimate_error);
 }
 
-fn device(window: &mut Window, ui: &mut Ui) {
-    let chosen = window.remembered_mut().device;
+fn device(ui: &mut Ui, chosen: &mut Device) {
     let about = About::new("Device", "Who traces. Switching does not restart: the same film goes on (G)");
     control(ui, about, |ui| {
         ComboBox::from_id_salt("device")
@@ -72,10 +72,10 @@ fn device(window: &mut Window, ui: &mut Ui) {
             .show_ui(ui, |ui| {
                 for device in Device::ALL {
                     let reason = device.unavailable();
-                    let button = egui::Button::selectable(device == chosen, device.label());
+                    let button = egui::Button::selectable(device == *chosen, device.label());
                     let response = ui.add_enabled(reason.is_none(), button).on_hover_text(device.long_help());
                     if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() {
-                        window.remembered_mut().device = device;
+                        *chosen = device;
                         ui.close();
                     }
                 }
@@ -84,8 +84,7 @@ fn device(window: &mut Window, ui: &mut Ui) {
     });
 }
 
-fn lanes_and_threads(window: &mut Window, ui: &mut Ui) {
-    let remembered = window.remembered_mut();
+fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
     let scalar = (remembered.device == Device::Reference).then_some("The reference traces one ray at a time");
     let not_cpu =
         (remembered.device == Device::Gpu).then_some("The graphics adapter has lanes and threads of its own");
@@ -122,8 +121,7 @@ fn lanes_and_threads(window: &mut Window, ui: &mut Ui) {
     });
 }
 
-fn size(window: &mut Window, ui: &mut Ui) {
-    let settings = &mut window.document_mut().settings;
+fn size(ui: &mut Ui, settings: &mut RenderSettings) {
     let about = About::new("Size", "Width and height, pixels");
     under_name(ui, about, |ui| {
         ui.horizontal(|ui| {

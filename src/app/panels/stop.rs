@@ -1,27 +1,28 @@
 //! When the render ends: the first condition that is met.
 
-use super::{Group, Reset};
-use crate::app::document::Stop;
+use super::reset::Reset;
+use crate::app::facts::Facts;
+use crate::app::model::document::Document;
 use crate::app::widgets::{About, check, limit};
-use crate::app::window::Window;
+use crate::progressive::Stop;
 use crate::render::SAMPLE_LIMIT;
 use eframe::egui::{DragValue, Ui};
 
-pub(super) const GROUP: Group = Group { name: "Stop", ui, reset: Some(Reset { is_changed, reset }) };
+pub(super) const RESET: Reset = Reset { is_changed, reset };
 
-fn is_changed(window: &Window) -> bool {
-    window.document().stop != Stop::for_recipe(&window.document().origin.recipe)
+fn is_changed(document: &Document) -> bool {
+    document.stop != document.origin.usual_stop()
 }
 
-fn reset(window: &mut Window) {
-    window.document_mut().stop = Stop::for_recipe(&window.document().origin.recipe);
+fn reset(document: &mut Document) {
+    document.stop = document.origin.usual_stop();
 }
 
-fn ui(window: &mut Window, ui: &mut Ui) {
-    let one_half = (!window.document().settings.estimate_error)
+pub(super) fn ui(ui: &mut Ui, stop: &mut Stop, facts: &Facts) {
+    let document = facts.document();
+    let one_half = (!document.settings.estimate_error)
         .then_some("The film has one half, which tells no error: switch on Estimate error");
-    let usual = window.document().origin.recipe.samples_per_pixel;
-    let stop = &mut window.document_mut().stop;
+    let usual = document.origin.recipe.samples_per_pixel;
 
     let mut has_samples = stop.samples.is_some();
     let mut samples = stop.samples.unwrap_or(usual);

@@ -1,83 +1,95 @@
 //! What stands in the picture's place: the picture, what it is compared with, scales, marks and words on it.
 
-use super::{MARK, Zoom};
-use crate::app::compare::Mode;
+use super::placement::{Placement, Zoom};
+use crate::app::facts::Facts;
+use crate::app::model::document::Document;
+use crate::app::model::view::Mode;
+use crate::app::paths::Paths;
+use crate::app::texture::Texture;
 use crate::app::theme;
-use crate::app::window::Window;
 use crate::heat::{HeatScale, colour_at};
 use crate::progressive::Phase;
 use eframe::egui::{
     self, Align2, Color32, CornerRadius, FontId, Pos2, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2,
     vec2,
 };
+use std::time::{Duration, Instant};
 
 const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 
-pub(super) fn paint(window: &mut Window, ui: &Ui, room: Rect, rect: Rect) {
+/// How long the mark of a click stays.
+const MARK: Duration = Duration::from_millis(1600);
+
+/// What there is to draw.
+pub struct Pictures<'a> {
+    /// The picture or a layer of it, and by how much that is smaller.
+    pub main: Option<(&'a mut Texture, u32)>,
+    /// Whether the film has a picture.
+    pub has_film: bool,
+    /// The second picture, by how much it is smaller, and its title.
+    pub second: Option<(&'a mut Texture, u32, String)>,
+    /// Paths that are drawn over it.
+    pub paths: &'a Paths,
+}
+
+/// Draws the picture in `room`, at `rect`.
+pub(super) fn paint(
+    ui: &Ui,
+    [room, rect]: [Rect; 2],
+    placement: &Placement,
+    divider: f32,
+    pictures: Pictures<'_>,
+    document: &Document,
+    facts: &Facts,
+) {
     let painter = ui.painter().with_clip_rect(room);
-    let options = |divisor: u32, times: f32| {
+    let options = |divisor: u32| {
         // At 100 % and above a pixel is a square; a preview's are no pixels of the picture.
-        if divisor == 1 && times >= 1.0 - 1e-4 { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
+        let is_square = divisor == 1 && placement.times() >= 1.0 - 1e-4;
+        if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     };
-    let times = window.viewport.last_times;
     let context = ui.ctx();
-    let other = window
-        .compare
-        .tracer
-        .as_mut()
-        .and_then(|tracer| tracer.shown_mut())
-        .map(|shown| (shown.texture.id(context, options(shown.divisor, times)), shown.document.title()));
-    let layer = window.viewport.show.layer().and_then(|layer| window.layers.shown_mut(layer));
-    let shown = match layer {
-        Some(layer) => Some((layer.texture.id(context, options(layer.divisor, times)), layer.divisor)),
-        None => window
-            .main
-            .shown_mut()
-            .map(|shown| (shown.texture.id(context, options(shown.divisor, times)), shown.divisor)),
-    };
+    let Pictures { main, has_film, second, paths } = pictures;
+    let second = second.map(|(texture, divisor, title)| (texture.id(context, options(divisor)), title));
+    let main = main.map(|(texture, divisor)| (texture.id(context, options(divisor)), divisor));
     // The hole is a point smaller, so that no line stays free between the two.
-    let hole = if shown.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
+    let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::surround(ui));
-    if let Some((texture, _)) = shown {
+    if let Some((texture, _)) = main {
         painter.image(texture, rect, WHOLE, Color32::WHITE);
     }
-    let divisor = shown.map_or(1, |(_, divisor)| divisor);
     let font = TextStyle::Body.resolve(ui.style());
-    if window.compare.mode == Some(Mode::Wipe)
-        && let Some((texture, title)) = other
+    let view = &facts.model.view;
+    if view.mode() == Some(Mode::Wipe)
+        && let Some((texture, title)) = second
     {
-        paint_wipe(window, ui, &painter, rect, texture, &title, &font);
+        let whose = if view.has_other_camera(document) { ", with its own camera" } else { "" };
+        let titles = [document.title(), format!("{title}{whose}")];
+        paint_wipe(ui, &painter, rect, divider, texture, &titles);
     }
-    let is_difference = window.compare.mode == Some(Mode::Difference);
-    let scale = if is_difference { Some(HeatScale::ERROR) } else { window.viewport.show.scale() };
+    let is_difference = view.mode() == Some(Mode::Difference);
+    let scale = if is_difference { Some(HeatScale::ERROR) } else { view.show().scale() };
     if let Some(scale) = scale {
         paint_scale(ui, &painter, rect.intersect(room), &scale);
     }
-    if divisor > 1 {
+    let corners = rect.intersect(room);
+    if let Some((_, divisor @ 2..)) = main {
         let text = format!("preview 1/{divisor}");
-        badge(ui, &painter, rect.intersect(room).left_top() + vec2(8.0, 8.0), Align2::LEFT_TOP, &text, &font);
+        badge(ui, &painter, corners.left_top() + vec2(8.0, 8.0), Align2::LEFT_TOP, &text, &font);
     }
-    if window.main.shown().is_none() {
-        let text = match (&window.invalid, &window.main.status().phase) {
+    if !has_film {
+        let text = match (&facts.invalid, &facts.status.phase) {
             (Some(reason), _) | (None, Phase::Failed(reason)) => reason.as_str(),
             _ => "preparing…",
         };
         let colour = ui.visuals().weak_text_color();
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font.clone(), colour);
     }
-    if let Zoom::Times(times) = window.viewport.zoom {
+    if let Zoom::Times(times) = placement.zoom() {
         let text = format!("{:.0} %", 100.0 * times);
-        badge(
-            ui,
-            &painter,
-            rect.intersect(room).right_top() + vec2(-8.0, 8.0),
-            Align2::RIGHT_TOP,
-            &text,
-            &font,
-        );
+        badge(ui, &painter, corners.right_top() + vec2(-8.0, 8.0), Align2::RIGHT_TOP, &text, &font);
     }
-    window.paths.paint(&window.document, ui, &painter, rect);
-    paint_mark(window, ui, &painter, rect, &font);
+    paths.paint(document, ui, &painter, rect);
 }
 
 /// Fills `room` but for `hole`: where a processor draws, each pixel that is drawn twice is time lost.
@@ -96,16 +108,15 @@ fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32)
     }
 }
 
+/// Draws the second picture right of the divider, and what each side is.
 fn paint_wipe(
-    window: &Window,
     ui: &Ui,
     painter: &egui::Painter,
     rect: Rect,
+    share: f32,
     texture: egui::TextureId,
-    theirs: &str,
-    font: &FontId,
+    [mine, theirs]: &[String; 2],
 ) {
-    let share = window.compare.divider;
     let x = rect.left() + rect.width() * share;
     let right = Rect::from_min_max(pos2(x, rect.top()), rect.max);
     let uv = Rect::from_min_max(pos2(share, 0.0), pos2(1.0, 1.0));
@@ -123,9 +134,9 @@ fn paint_wipe(
     let y = rect.top().max(painter.clip_rect().top()) + 8.0;
     // Names that would reach beyond the picture stay within it.
     let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
-    badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, &window.document.title(), font);
-    let whose = if window.compare.has_other_camera(&window.document) { ", with its own camera" } else { "" };
-    badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, &format!("{theirs}{whose}"), font);
+    let font = TextStyle::Body.resolve(ui.style());
+    badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, mine, &font);
+    badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, theirs, &font);
 }
 
 /// The colours of a heat map with what they mean.
@@ -196,17 +207,55 @@ fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str,
     painter.galley(rect.min + vec2(7.0, 3.0), galley, ui.visuals().strong_text_color());
 }
 
-fn paint_mark(window: &mut Window, ui: &Ui, painter: &egui::Painter, rect: Rect, font: &FontId) {
-    let Some(mark) = &window.viewport.mark else { return };
-    let age = mark.since.elapsed();
-    if age > MARK {
-        window.viewport.mark = None;
-        return;
+/// What a click has found, for a moment.
+pub(super) struct Mark {
+    /// Place in the picture, `0..=1` from the upper left.
+    pub place: [f64; 2],
+    /// What is said of it.
+    pub text: String,
+    /// When it was clicked.
+    pub since: Instant,
+}
+
+impl Mark {
+    /// Draws it; false once its time is over.
+    pub fn paint(&self, ui: &Ui, room: Rect, rect: Rect) -> bool {
+        let age = self.since.elapsed();
+        if age > MARK {
+            return false;
+        }
+        let painter = &ui.painter().with_clip_rect(room);
+        let at = rect.min + vec2(self.place[0] as f32, self.place[1] as f32) * rect.size();
+        painter.circle_stroke(at, 9.0, Stroke::new(3.0, Color32::from_black_alpha(130)));
+        painter.circle_stroke(at, 9.0, Stroke::new(1.5, Color32::WHITE));
+        painter.circle_filled(at, 1.5, Color32::WHITE);
+        let font = TextStyle::Body.resolve(ui.style());
+        badge(ui, painter, at + vec2(14.0, 0.0), Align2::LEFT_CENTER, &self.text, &font);
+        ui.ctx().request_repaint_after(MARK - age);
+        true
     }
-    let at = rect.min + vec2(mark.place[0] as f32, mark.place[1] as f32) * rect.size();
-    painter.circle_stroke(at, 9.0, Stroke::new(3.0, Color32::from_black_alpha(130)));
-    painter.circle_stroke(at, 9.0, Stroke::new(1.5, Color32::WHITE));
-    painter.circle_filled(at, 1.5, Color32::WHITE);
-    badge(ui, painter, at + vec2(14.0, 0.0), Align2::LEFT_CENTER, &mark.text, font);
-    ui.ctx().request_repaint_after(MARK - age);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+
+    #[test]
+    fn each_side_of_a_wipe_has_its_own_title() {
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 400.0));
+        let titles = ["mine", "theirs"].map(str::to_owned);
+        let harness = Harness::builder().with_size(rect.size()).build_ui(|ui| {
+            let painter = ui.painter().with_clip_rect(rect);
+            paint_wipe(ui, &painter, rect, 0.25, egui::TextureId::default(), &titles);
+        });
+        let left_of = |title: &str| {
+            let place = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) if text.galley.text() == title => Some(text.pos.x),
+                _ => None,
+            });
+            place.unwrap() < 200.0
+        };
+        assert_eq!([left_of("mine"), left_of("theirs")], [true, false]);
+    }
 }

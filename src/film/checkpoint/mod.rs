@@ -20,8 +20,8 @@ pub use read::{load, read};
 pub use write::save;
 pub(crate) use write::write;
 
-use super::{Checksum, Description, Film, FilmError, PixelSum, SampleRanges, WriteError, replace_file};
-use crate::input::InputError;
+use super::{Checksum, Description, Film, FilmError, PixelSum, SampleRanges};
+use crate::files::InputError;
 use crate::memory::MemoryError;
 use exr::prelude::SampleType;
 use std::path::PathBuf;

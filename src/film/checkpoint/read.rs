@@ -5,8 +5,8 @@ use super::{
     CheckpointError, Description, FILM_ATTRIBUTE, Film, FilmError, FilmFile, MAGIC, PixelSum, Plane,
     RECIPE_ATTRIBUTE, mean,
 };
+use crate::files::{self, InputError};
 use crate::film::SIZE_LIMIT;
-use crate::input::{self, InputError};
 use exr::block::UncompressedBlock;
 use exr::block::reader::{ChunksReader, Reader};
 use exr::meta::BlockDescription;
@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// [`CheckpointError`], each with what to do.
 pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
-    let (file, length) = input::open(path)?;
+    let (file, length) = files::open(path)?;
     read(BufReader::new(file), length, path)
 }
 

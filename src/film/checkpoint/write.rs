@@ -1,7 +1,8 @@
 //! Writing a film file.
 
 use super::head::{Head, Texts, comments};
-use super::{Description, FILM_ATTRIBUTE, Film, Plane, RECIPE_ATTRIBUTE, WriteError, mean, replace_file};
+use super::{Description, FILM_ATTRIBUTE, Film, Plane, RECIPE_ATTRIBUTE, mean};
+use crate::files::{WriteError, replace_file};
 use exr::block::writer::ChunksWriter;
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::meta::BlockDescription;

@@ -1,6 +1,6 @@
 //! What can be wrong with a scene file, with the line where it is.
 
-use crate::input::InputError;
+use crate::files::InputError;
 use crate::memory::MemoryError;
 use crate::recipe::{SamplesError, SceneNameError};
 use crate::render::JobError;

@@ -2,7 +2,7 @@
 
 use crate::film::Checksum;
 use crate::scene::builtin::is_field;
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, Parameter, Scene};
 use glam::DVec3;
 
 /// Fields of so many spheres are named where a recipe stands in a picture: listing a million takes seconds and a
@@ -24,11 +24,17 @@ pub(super) fn mark(scene: &Scene) -> String {
     add(&vector(scene.sky.top));
     for named in &scene.materials {
         named.name.bytes().for_each(|byte| add(&[u64::from(byte)]));
-        match named.material {
-            Material::Lambertian { albedo } => add(&[&[1][..], &vector(albedo)].concat()),
-            Material::Metal { albedo, fuzz } => add(&[&[2, fuzz.to_bits()][..], &vector(albedo)].concat()),
-            Material::Dielectric { refraction_index } => add(&[3, refraction_index.to_bits()]),
+        let kind = Material::KINDS.iter().position(|kind| *kind == named.material.kind());
+        let mut words = vec![kind.map_or(0, |kind| kind as u64 + 1)];
+        let (mut numbers, mut colours) = (Vec::new(), Vec::new());
+        for (_, parameter) in named.material.parameters() {
+            match parameter {
+                Parameter::Number(number) => numbers.push(number.to_bits()),
+                Parameter::Colour(colour) => colours.extend(vector(colour)),
+            }
         }
+        words.extend(numbers.into_iter().chain(colours));
+        add(&words);
     }
     for sphere in &scene.spheres {
         add(&vector(sphere.center));

@@ -2,7 +2,7 @@
 
 use super::error::{FileError, Reason, Step, find_place, line_and_column};
 use super::named;
-use crate::input;
+use crate::files;
 use crate::memory;
 use crate::recipe::{DEFAULT_SAMPLES_PER_PIXEL, Recipe};
 use crate::render::{DEPTH_LIMIT, JobError, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
@@ -30,7 +30,7 @@ const VALUE_BYTES: u64 = 260;
 /// [`FileError`] for a file that cannot be read, is malformed, or of which no picture can be made.
 pub fn load(path: &Path) -> Result<Recipe, FileError> {
     let label = path.display().to_string();
-    let bytes = input::read(path, "a scene file", FILE_LIMIT)?;
+    let bytes = files::read(path, "a scene file", FILE_LIMIT)?;
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();

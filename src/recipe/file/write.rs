@@ -2,7 +2,7 @@
 
 use super::named::{mark, name_of};
 use crate::recipe::Recipe;
-use crate::scene::{Camera, Material, Scene, Sphere};
+use crate::scene::{Camera, Parameter, Scene, Sphere};
 use crate::stages::Rules;
 use glam::DVec3;
 use std::fmt::Write;
@@ -107,15 +107,11 @@ fn write_materials(out: &mut String, scene: &Scene) -> std::fmt::Result {
     }
     writeln!(out, "\n[materials]")?;
     for named in &scene.materials {
-        let keys = match named.material {
-            Material::Lambertian { albedo } => format!("albedo = {}", vector(albedo)),
-            Material::Metal { albedo, fuzz } => {
-                format!("albedo = {}, fuzz = {}", vector(albedo), number(fuzz))
-            }
-            Material::Dielectric { refraction_index } => {
-                format!("refraction_index = {}", number(refraction_index))
-            }
-        };
+        let keys = named.material.parameters().into_iter().map(|(key, parameter)| match parameter {
+            Parameter::Number(value) => format!("{key} = {}", number(value)),
+            Parameter::Colour(colour) => format!("{key} = {}", vector(colour)),
+        });
+        let keys = keys.collect::<Vec<_>>().join(", ");
         writeln!(out, "{} = {{ kind = \"{}\", {keys} }}", key(&named.name), named.material.kind())?;
     }
     Ok(())

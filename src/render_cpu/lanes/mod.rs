@@ -16,7 +16,7 @@ pub use scalar::{Reference, Scalar};
 pub use simd::{Lanes4, Lanes8, Lanes16};
 pub use vector::{V3, dot, load3, mul_add3, neg_mul_add3, select3, splat3};
 
-use crate::tables::{Real, Row};
+use crate::kernel::{Real, Row, UNIT_FLOAT_SCALE};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// Largest lane count, for buffers on the stack.
@@ -172,7 +172,7 @@ impl<R: Copy> Wide<R> {
 /// A float in `[0, 1)` from the upper 24 bits.
 #[inline(always)]
 pub fn unit_float<L: Lanes>(l: L, u: L::U) -> L::F {
-    L::float_of(L::shr(u, 8)) * l.constant(1.0 / 16_777_216.0)
+    L::float_of(L::shr(u, 8)) * l.constant(UNIT_FLOAT_SCALE)
 }
 
 /// The polynomial of [`crate::sampling::sin_cos_turns`].

@@ -1,7 +1,7 @@
 //! One lane: scalar code of the packets' precision, and the `f64` reference.
 
 use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
-use crate::tables::Row;
+use crate::kernel::Row;
 use std::num::Wrapping;
 
 /// One lane of `f32`. `FUSED` says whether the level it runs at has fused multiply and add; on one that has not,

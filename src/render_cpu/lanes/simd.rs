@@ -2,7 +2,7 @@
 
 use super::instructions::{Instructions, transpose4};
 use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
-use crate::tables::Row;
+use crate::kernel::Row;
 use fearless_simd::prelude::*;
 use fearless_simd::{
     f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,

@@ -7,42 +7,28 @@
 //!
 //! Twin: shaders/path.wgsl
 
+mod collect;
 mod draw;
-mod rows;
-mod simpler;
+mod records;
+mod send;
 mod single;
 
 pub use single::SinglePath;
 
 use super::bvh::{EMPTY_STACK, Stack, traverse};
-use super::camera::{lens_rays, pinhole_rays, screen};
-use super::lanes::{Lanes, V3, dot, mul_add3, select3};
-use super::material::{Incidence, Scatter, Surface, hemisphere, refracted, scatter};
-use super::sphere::{EYE, NONE, Nearest, Rays, Spheres, anchored_root, book_root, near_root, nearest_root};
+use super::lanes::{Lanes, V3, select3};
+use super::sphere::{
+    NONE, Nearest, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, book_point, book_root,
+    near_root, nearest_root, speck_surface_point, surface_point,
+};
 use super::wide::WideTables;
 use super::work::{LaneBlocks, TileStats, Work};
-use crate::film::{FIXED_POINT_SCALE, RADIANCE_LIMIT};
-use crate::stages::{Diffuse, Shading, Surface as SurfaceRule};
-use crate::tables::{NEAR_ZERO, Tables};
-use draw::{Draw, draw, has_lens, strides};
-use rows::{Rows, hit_points, is_cavity};
-use simpler::{shown_at_hit, strip_reflectance};
-
-/// Code that a kernel may carry, as bits of its constant parameter.
-pub mod needs {
-    /// Spheres with both roots, and refraction.
-    pub const GLASS: u32 = 1;
-    /// A lens of some size.
-    pub const LENS: u32 = 2;
-    /// What few scenes need: anchored spheres, specks, steep glass.
-    pub const EXTREMES: u32 = 4;
-    /// The hierarchy.
-    pub const HIERARCHY: u32 = 8;
-    /// Stage rules.
-    pub const RULES: u32 = 16;
-    /// Everything.
-    pub const ALL: u32 = 31;
-}
+use crate::kernel::{LoadShading, parts};
+use crate::stages::Surface;
+use collect::collect;
+use draw::Draw;
+use records::HitRecords;
+use send::send_on;
 
 /// Packets that take turns. In a prototype with 16 lanes, fewer left the processor waiting (2: -10 %, 1: -35 %) and
 /// more gained nothing; not measured again here.
@@ -94,30 +80,30 @@ impl<L: Lanes> Packet<L> {
     }
 }
 
-/// Traces all of `work` with the code that `NEEDS` names; the job must need no other.
+/// Traces all of `work` with the code that `PARTS` names; the job must need no other.
 #[inline(always)]
-pub fn trace<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> TileStats {
+pub fn trace<L: Lanes, const PARTS: u32>(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> TileStats {
     let mut packets: [Packet<L>; PACKETS] =
         [Packet::idle(l), Packet::idle(l), Packet::idle(l), Packet::idle(l)];
     let mut stats = TileStats::default();
     let mut stack = EMPTY_STACK;
-    shade::<L, NEEDS>(l, wide, &mut packets, work, &mut stats);
+    shade::<L, PARTS>(l, wide, &mut packets, work, &mut stats);
     loop {
         let mut alive = 0;
         for packet in &mut packets {
-            alive |= intersect::<L, NEEDS>(l, wide, packet, &mut stack, &mut stats);
+            alive |= intersect::<L, PARTS>(l, wide, packet, &mut stack, &mut stats);
         }
         if alive == 0 {
             return stats;
         }
         stats.offered_lanes += (PACKETS * L::WIDTH) as u64;
-        shade::<L, NEEDS>(l, wide, &mut packets, work, &mut stats);
+        shade::<L, PARTS>(l, wide, &mut packets, work, &mut stats);
     }
 }
 
 /// Ends the paths of packets or sends them on.
 #[inline(always)]
-fn shade<L: Lanes, const NEEDS: u32>(
+fn shade<L: Lanes, const PARTS: u32>(
     l: L,
     wide: &WideTables<L::Real>,
     packets: &mut [Packet<L>],
@@ -125,16 +111,16 @@ fn shade<L: Lanes, const NEEDS: u32>(
     stats: &mut TileStats,
 ) {
     for packet in &mut *packets {
-        collect::<L, NEEDS>(l, wide, packet, work, stats);
+        collect::<L, PARTS>(l, wide, packet, work, stats);
     }
     for packet in packets {
-        send_on::<L, NEEDS>(l, wide, packet);
+        send_on::<L, PARTS>(l, wide, packet);
     }
 }
 
 /// Finds what the rays of a packet meet first. Returns the lanes that are alive.
 #[inline(always)]
-fn intersect<L: Lanes, const NEEDS: u32>(
+fn intersect<L: Lanes, const PARTS: u32>(
     l: L,
     wide: &WideTables<L::Real>,
     packet: &mut Packet<L>,
@@ -149,7 +135,8 @@ fn intersect<L: Lanes, const NEEDS: u32>(
     stats.rays += u64::from(L::bits(active).count_ones());
     let (rays, tables) = (&packet.rays, &wide.tables);
     let mut nearest = Nearest::nothing(l);
-    let book_t_min = if NEEDS & needs::RULES != 0 { tables.rules.surface.smallest_distance() } else { None };
+    let book_t_min =
+        if PARTS & parts::RULES != 0 { tables.features.surface.smallest_distance() } else { None };
     if let Some(t_min) = book_t_min {
         let t_min = l.constant(t_min);
         for sphere in wide.opaque.iter().chain(&wide.two_root) {
@@ -162,10 +149,10 @@ fn intersect<L: Lanes, const NEEDS: u32>(
             nearest.take(near_root(l, rays, &sphere), sphere.number);
         }
         match &tables.hierarchy {
-            Some(hierarchy) if NEEDS & needs::HIERARCHY != 0 => {
+            Some(hierarchy) if PARTS & parts::HIERARCHY != 0 => {
                 traverse(l, hierarchy, &tables.two_root, rays, active, stack, &mut nearest);
             }
-            _ if NEEDS & needs::GLASS != 0 => {
+            _ if PARTS & parts::GLASS != 0 => {
                 for sphere in &wide.two_root {
                     let sphere = Spheres::load(l, sphere);
                     nearest.take(nearest_root(l, rays, &sphere), sphere.number);
@@ -173,7 +160,7 @@ fn intersect<L: Lanes, const NEEDS: u32>(
             }
             _ => {}
         }
-        if NEEDS & needs::EXTREMES != 0 {
+        if PARTS & parts::EXTREMES != 0 {
             let one = l.splat_u(1);
             let mut number = l.splat_u((tables.opaque.len() + tables.two_root.len()) as u32);
             for sphere in &tables.anchored {
@@ -186,189 +173,37 @@ fn intersect<L: Lanes, const NEEDS: u32>(
     alive
 }
 
-/// Adds the light that arrives, ends paths, starts the next sample where one has ended, and draws the numbers of
-/// the next rays.
+/// The points that were hit, where anything was.
 #[inline(always)]
-fn collect<L: Lanes, const NEEDS: u32>(
+fn hit_point<L: Lanes, const PARTS: u32>(
     l: L,
     wide: &WideTables<L::Real>,
-    packet: &mut Packet<L>,
-    work: &mut Work,
-    stats: &mut TileStats,
-) {
-    let (zero, tables) = (l.constant(0.0), &wide.tables);
-    let miss = L::eq_u(packet.nearest.sphere, l.splat_u(NONE));
-    let (stride, last) = strides(tables);
-    let is_last = L::eq_u(packet.stream, l.load_u(&packet.blocks.key) + l.splat_u(last));
-    let mut ended = miss | is_last | packet.absorbed;
-    let mut lit = miss & !packet.absorbed;
-    let height = packet.rays.direction.y;
-    let sky = |channel: usize| {
-        let (middle, slope) = (l.load(&wide.sky_middle[channel]), l.load(&wide.sky_slope[channel]));
-        L::max(zero, L::mul_add(slope, height, middle))
-    };
-    let mut light = V3 { x: sky(0), y: sky(1), z: sky(2) };
-    if NEEDS & needs::RULES != 0 && tables.rules.shading != Shading::Path {
-        light = shown_at_hit::<L, NEEDS>(l, wide, packet, miss, light);
-        lit = packet.alive;
-        ended = packet.alive;
+    packet: &Packet<L>,
+    record: &HitRecords<L>,
+) -> SurfacePoint<L> {
+    let (rays, features) = (&packet.rays, &wide.tables.features);
+    let t = packet.nearest.distance();
+    let (reference, curvature) = (record.reference(), record.curvature());
+    if PARTS & parts::RULES != 0 && features.surface != Surface::Exact {
+        return book_point(rays, t, reference, curvature);
     }
-    let radiance = light.times(packet.throughput);
-    let total = radiance.x + radiance.y + radiance.z;
-    let is_valid = L::lt(total, l.constant(3.0 * RADIANCE_LIMIT * FIXED_POINT_SCALE));
-    let counted = lit & packet.alive;
-    let invalid = L::bits(counted & !is_valid);
-    if invalid != 0 {
-        stats.rejected += u64::from(invalid.count_ones());
-    }
-    let added = counted & is_valid;
-    let mut add = |channel: usize, x: L::F| {
-        let sum = &mut packet.blocks.sums[channel];
-        L::store_u(l.load_u(sum) + l.keep(added, l.fixed_point(x)), sum);
-    };
-    add(0, radiance.x);
-    add(1, radiance.y);
-    add(2, radiance.z);
-
-    // Lanes whose path has ended go on to the next sample, or to the next block.
-    let next = packet.counter + l.load_u(&packet.blocks.step);
-    packet.counter = L::select_u(ended, next, packet.counter);
-    let at_end = L::eq_u(packet.counter, l.load_u(&packet.blocks.end));
-    let done = L::bits(ended & packet.alive & at_end);
-    if done != 0 {
-        deal(l, wide, packet, work, done);
-    }
-    packet.stream = L::select_u(ended, l.load_u(&packet.blocks.key), packet.stream + l.splat_u(stride));
-    packet.ended = ended;
-    packet.draw = draw::<L, NEEDS>(l, tables, packet);
-}
-
-/// Sends paths on, or the next ones from the camera where they have ended.
-#[inline(always)]
-fn send_on<L: Lanes, const NEEDS: u32>(l: L, wide: &WideTables<L::Real>, packet: &mut Packet<L>) {
-    let (zero, one) = (l.constant(0.0), l.constant(1.0));
-    let with_rules = NEEDS & needs::RULES != 0;
-    let (tables, rules) = (&wide.tables, &wide.tables.rules);
-    let (hit, ended) = (packet.nearest.sphere, packet.ended);
-    let direction = packet.rays.direction;
-
-    // What was hit, where, and from which side.
-    let rows = Rows::of(l, tables, hit);
-    let [red, green, blue, weight] = rows.columns(l, wide, 1);
-    let [_, index, inverse_index, normal_share] = rows.columns(l, wide, 2);
-    let point = hit_points::<L, NEEDS>(l, wide, packet, &rows);
-    let outward_cosine = dot::<L>(direction, point.outward);
-    let mut front = L::lt(outward_cosine, zero);
-    if !with_rules || rules.surface == SurfaceRule::Exact {
-        front = front & !L::eq_u(packet.rays.inside, hit);
-    }
-    if NEEDS & needs::EXTREMES != 0 && wide.is_eye_in_cavity {
-        front = front & !is_cavity(l, wide, &rows);
-    }
-    let normal = point.outward.scale(L::select(front, one, l.constant(-1.0)));
-
-    // One set of numbers serves the camera and the surface alike.
-    let [u0, u1] = packet.draw.pair;
-    let (sine, cosine) = (packet.draw.sine, packet.draw.cosine);
-    let rho = L::sqrt(u0 * (one - u0));
-    let rho = rho + rho;
-    let unit = V3 { x: rho * cosine, y: one - (u0 + u0), z: rho * sine };
-    let with_lens = has_lens::<L, NEEDS>(tables);
-    let jitter = match (tables.rules.antialiasing, with_lens) {
-        (false, _) => [l.constant(0.5); 2],
-        (true, false) => [u0, u1],
-        (true, true) => packet.draw.jitter,
-    };
-    let camera = if with_lens {
-        let lens_radius = L::sqrt(u0);
-        let on_lens = [lens_radius * cosine, lens_radius * sine];
-        lens_rays(l, &wide.camera, packet.screen, jitter, on_lens)
+    let radius = record.radius();
+    let mut point = if PARTS & parts::EXTREMES != 0 && features.specks {
+        speck_surface_point(l, rays, t, reference, curvature, radius)
     } else {
-        pinhole_rays(l, &wide.camera, packet.screen, jitter)
+        surface_point(l, rays, t, reference, curvature, radius)
     };
-
-    let incidence = Incidence::of(l, outward_cosine);
-    let surface = Surface { weight, index, inverse_index, normal_share };
-    let mut bounced = if NEEDS & needs::GLASS == 0 {
-        scatter::<L, false>(l, &surface, rules.dielectric, direction, normal, &incidence, front, unit, u0)
-    } else if NEEDS & needs::EXTREMES != 0 && tables.has_steep_glass {
-        scatter_steeply(l, tables, packet, &surface, normal, &incidence, front, unit)
-    } else {
-        scatter::<L, true>(l, &surface, rules.dielectric, direction, normal, &incidence, front, unit, u0)
-    };
-    let mut albedo = V3 { x: red, y: green, z: blue };
-    if with_rules {
-        if rules.diffuse == Diffuse::Hemisphere {
-            let is_lambertian = L::lt(zero, weight);
-            bounced.direction = select3::<L>(is_lambertian, hemisphere(l, normal, unit), bounced.direction);
-        }
-        if rules.reflectance_strips {
-            let reflectance = strip_reflectance(l, tables, l.load_u(&packet.blocks.pixel));
-            albedo = V3 { x: reflectance, y: reflectance, z: reflectance };
-        }
+    if PARTS & parts::EXTREMES != 0 && features.anchored {
+        let far = anchored_surface_point(l, rays, t, reference, record.inward(), curvature);
+        let is_anchored = L::lt(l.constant(0.0), record.anchoring());
+        point.position = select3::<L>(is_anchored, far.position, point.position);
+        point.outward = select3::<L>(is_anchored, far.outward, point.outward);
     }
-    let next = select3::<L>(ended, camera.direction, bounced.direction);
-    let length2 = dot::<L>(next, next);
-    let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
-    let next = select3::<L>(vanishes, normal, next);
-    let next = next.scale(one / L::sqrt(L::select(vanishes, one, length2)));
-    // A fuzzy reflection into the surface is absorbed.
-    packet.absorbed = bounced.is_metal & !L::lt(zero, dot::<L>(next, normal)) & !ended;
-    let inward = (front & bounced.refracts) | !(front | bounced.refracts);
-    let mut left = l.fill(ended | inward, hit);
-    if NEEDS & needs::EXTREMES != 0 && wide.is_eye_on_surface {
-        left = L::select_u(ended, l.splat_u(EYE), left);
-    }
-    packet.rays = Rays {
-        origin: select3::<L>(ended, camera.origin, point.position),
-        direction: next,
-        left,
-        inside: l.fill(ended | !inward, hit),
-    };
-    let throughput = packet.throughput.times(albedo);
-    packet.throughput = select3::<L>(ended, V3 { x: one, y: one, z: one }, throughput);
-}
-
-/// Scatters where the angle of incidence must be known better than from its cosine. A ray inside glass meets it under
-/// the angle under which it started: that is remembered, so that total reflection lasts.
-#[inline(always)]
-fn scatter_steeply<L: Lanes>(
-    l: L,
-    tables: &Tables<L::Real>,
-    packet: &mut Packet<L>,
-    surface: &Surface<L>,
-    normal: V3<L::F>,
-    incidence: &Incidence<L>,
-    front: L::M,
-    unit: V3<L::F>,
-) -> Scatter<L> {
-    let direction = packet.rays.direction;
-    let across = mul_add3::<L>(normal, incidence.cosine, direction);
-    let runs_own_chord = L::eq_u(packet.rays.inside, packet.nearest.sphere);
-    let is_known = runs_own_chord & L::lt(l.constant(0.0), surface.index);
-    let incidence = Incidence::of_sine2(l, L::select(is_known, packet.sine2, dot::<L>(across, across)));
-    let coin = packet.draw.pair[0];
-    let laws = tables.rules.dielectric;
-    let mut bounced = scatter::<L, true>(l, surface, laws, direction, normal, &incidence, front, unit, coin);
-    let through = refracted(l, across, normal, bounced.ratio, incidence.sine2);
-    bounced.direction = select3::<L>(bounced.refracts, through, bounced.direction);
-    let refracted_sine2 = bounced.ratio * bounced.ratio * incidence.sine2;
-    packet.sine2 = L::select(bounced.refracts, refracted_sine2, incidence.sine2);
-    bounced
+    point
 }
 
 /// Column and row from `x | y << 16`.
 #[inline(always)]
 fn pixel_position<L: Lanes>(l: L, pixel: L::U) -> [L::F; 2] {
     [L::float_of(pixel & l.splat_u(0xFFFF)), L::float_of(L::shr(pixel, 16))]
-}
-
-/// Deals the lanes `done` their next blocks of samples.
-#[inline(always)]
-fn deal<L: Lanes>(l: L, wide: &WideTables<L::Real>, packet: &mut Packet<L>, work: &mut Work, done: u32) {
-    let retired = work.deal(done, &mut packet.blocks);
-    packet.counter = L::select_u(l.mask(done), l.load_u(&packet.blocks.start), packet.counter);
-    packet.alive = packet.alive & !l.mask(retired);
-    let [x, y] = pixel_position(l, l.load_u(&packet.blocks.pixel));
-    packet.screen = screen(l, &wide.camera, x, y);
 }

@@ -1,11 +1,11 @@
 //! One path, step by step, by the code that traces packets.
 
-use super::{Packet, intersect, needs, shade};
+use super::{Packet, intersect, parts, shade};
+use crate::kernel::Real;
 use crate::render_cpu::bvh::{EMPTY_STACK, Stack};
 use crate::render_cpu::lanes::{Lanes, V3, Wide, WideU};
 use crate::render_cpu::wide::WideTables;
 use crate::render_cpu::work::{TileStats, Work};
-use crate::tables::Real;
 
 /// A packet of one lane, for a record of what it does.
 pub struct SinglePath<L: Lanes> {
@@ -18,7 +18,7 @@ impl<L: Lanes> SinglePath<L> {
     #[inline(always)]
     pub fn start(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> Self {
         let mut packet = Packet::idle(l);
-        shade::<L, { needs::ALL }>(
+        shade::<L, { parts::ALL }>(
             l,
             wide,
             std::slice::from_mut(&mut packet),
@@ -57,11 +57,11 @@ impl<L: Lanes> SinglePath<L> {
     #[inline(always)]
     pub fn advance(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) -> (u32, f64) {
         let mut stats = TileStats::default();
-        intersect::<L, { needs::ALL }>(l, wide, &mut self.packet, &mut self.stack, &mut stats);
+        intersect::<L, { parts::ALL }>(l, wide, &mut self.packet, &mut self.stack, &mut stats);
         let (mut sphere, mut distance) = (WideU::default(), Wide::default());
         L::store_u(self.packet.nearest.sphere, &mut sphere);
         L::store(self.packet.nearest.distance(), &mut distance);
-        shade::<L, { needs::ALL }>(l, wide, std::slice::from_mut(&mut self.packet), work, &mut stats);
+        shade::<L, { parts::ALL }>(l, wide, std::slice::from_mut(&mut self.packet), work, &mut stats);
         (sphere.0[0], distance.0[0].to_f64())
     }
 

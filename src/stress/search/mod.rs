@@ -7,7 +7,7 @@ mod shrink;
 use super::backend::Backend;
 use crate::backends::BackendChoice;
 use crate::cli::{ProgressChoice, StressOptions};
-use crate::film::write_text;
+use crate::files::write_text;
 use crate::recipe::{Recipe, file};
 use crate::render_cpu::CpuOptions;
 use crate::terminal::{self, Display};

@@ -78,7 +78,7 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
 }
 
 /// A file that is written but not yet in its place. Dropped, it is gone.
-pub(super) struct NewFile {
+pub(crate) struct NewFile {
     named: PathBuf,
     /// The file and its place; `None` if it has been written in place, to a device.
     pending: Option<(NamedTempFile, PathBuf)>,
@@ -122,7 +122,7 @@ impl NewFile {
 ///
 /// # Errors
 /// As [`check_writable`], and for pipes.
-pub fn check_film_writable(path: &Path) -> Result<(), WriteError> {
+pub fn check_replaceable(path: &Path) -> Result<(), WriteError> {
     if fs::metadata(path).is_ok_and(|found| is_pipe(&found)) {
         let reason = io::Error::new(ErrorKind::NotSeekable, "a film cannot go through a pipe");
         return Err(WriteError { path: path.to_owned(), reason });

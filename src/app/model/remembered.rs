@@ -1,6 +1,6 @@
 //! What the window remembers from one run to the next.
 
-use super::Device;
+use super::device::{self, Device};
 use crate::scene::Camera;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -105,9 +105,9 @@ impl Default for Remembered {
 impl Remembered {
     /// Takes out what this machine does not have, be it of another run or another version.
     pub fn mended(mut self) -> Self {
-        let lanes = super::device::lane_counts();
+        let lanes = device::lane_counts();
         self.lanes = self.lanes.filter(|count| lanes.contains(count));
-        self.threads = self.threads.filter(|count| (1..=super::device::core_count()).contains(count));
+        self.threads = self.threads.filter(|count| (1..=device::core_count()).contains(count));
         if self.device.unavailable().is_some() {
             self.device = Device::Cpu;
         }

@@ -1,28 +1,32 @@
 //! Each small function of the shaders against its twin: integers to the bit, floats in units of the last place.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
+mod boxes;
+#[path = "../gpu_common/mod.rs"]
 mod gpu_common;
+mod names;
+mod surfaces;
 
 use glam::DVec3;
 use gpu_common::gpu;
 use std::num::Wrapping;
 use weekender::film::FIXED_POINT_MAX;
+use weekender::kernel::{AnchoredSphere, CameraTable, PROBE_STRIDE};
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
-use weekender::render_cpu::camera::{lens_rays, pinhole_rays, screen};
+use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, V3, Wide};
-use weekender::render_cpu::material::{Incidence, Surface, reflectance, refracted, scatter};
+use weekender::render_cpu::material::{Surface, incidence_of, reflectance, refracted, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, anchored_root, anchored_surface_point, book_root, near_root, nearest_root,
     speck_surface_point, surface_point,
 };
-use weekender::render_gpu::shader_source::{PROBE_STRIDE, Probe};
+use weekender::render_gpu::shader_source::Probe;
 use weekender::render_gpu::{GpuOptions, GpuRenderer};
 use weekender::sampling::{
     GOLDEN_RATIO, LENS_BLOCK, laine_karras, mix32, pascal, pcg4d, pixel_key, sin_cos_turns, unit_float,
 };
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{DielectricLaws, Rules};
-use weekender::tables::{AnchoredSphere, CameraTable, Roots};
 
 /// The CPU's arithmetic, one lane, fused.
 type L = Scalar<true>;
@@ -296,8 +300,7 @@ fn anchored_spheres() {
             anchor: list(vector(&input, 8)),
             inward: list(vector(&input, 12)),
             curvature: float(&input, 11),
-            roots: [Roots::Nearer, Roots::Both, Roots::Farther][input[3] as usize % 3],
-            under_eye: false,
+            flags: input[3] % 3,
         };
         let rays = rays(&input);
         compare_keys(&mut roots, output[0], anchored_root(L, &rays, &sphere, Wrapping(1)), &input);
@@ -338,13 +341,13 @@ fn scattering() {
             words[14] = u32::from(front < 0.5);
             words
         }) {
-            let [weight, index, inverse_index, normal_share] = [0, 1, 2, 3].map(|i| float(&input, i));
-            let surface: Surface<L> = Surface { weight, index, inverse_index, normal_share };
+            let [weight, refraction_index, inverse_index, f0] = [0, 1, 2, 3].map(|i| float(&input, i));
+            let surface: Surface<L> = Surface { weight, refraction_index, inverse_index, f0 };
             let (cosine, coin) = (float(&input, 13), float(&input, 15));
             let (d, n, unit) = (vector(&input, 4), vector(&input, 7), vector(&input, 10));
             let front = input[14] != 0;
             let sent =
-                scatter::<L, true>(L, &surface, laws, d, n, &Incidence::of(L, cosine), front, unit, coin);
+                scatter::<L, true>(L, &surface, laws, d, n, &incidence_of(L, cosine), front, unit, coin);
             let flags = u32::from(sent.refracts) | u32::from(sent.is_metal) << 1;
             if output[3] != flags {
                 // A coin within rounding of the reflectance.
@@ -352,8 +355,8 @@ fn scattering() {
                 continue;
             }
             ulps.compare(&list(vector(&output, 0)), &list(sent.direction), 2.0);
-            ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, normal_share)], 1.0);
-            let sine2 = Incidence::of(L, cosine).sine2;
+            ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, f0)], 1.0);
+            let sine2 = incidence_of(L, cosine).sine2;
             ulps.compare(&list(vector(&output, 5)), &list(refracted(L, d, n, sent.ratio, sine2)), 2.0);
         }
         assert!(parted <= 2, "{parted} parted");
@@ -377,8 +380,8 @@ fn camera_rays() {
     }) {
         let [x, y, a, b, c, d] = [0, 1, 2, 3, 4, 5].map(|i| float(&input, i));
         let corner = screen(L, &camera, x, y);
-        let pinhole = pinhole_rays(L, &camera, corner, [a, b]);
-        let lens = lens_rays(L, &camera, corner, [a, b], [c, d]);
+        let pinhole = pinhole_ray(L, &camera, corner, [a, b]);
+        let lens = lens_ray(L, &camera, corner, [a, b], [c, d]);
         for (at, v) in [(0, pinhole.origin), (3, pinhole.direction), (6, lens.origin), (9, lens.direction)] {
             ulps.compare(&list(vector(&output, at)), &list(v), 4.0);
         }

@@ -1,6 +1,6 @@
-//! The precisions of tables.
+//! The precisions of records.
 
-/// A number of a table: `f32`, or `f64` for the reference.
+/// A number of a record: `f32`, or `f64` for the reference.
 pub trait Real: Copy + Default + Send + Sync + PartialOrd + std::fmt::Debug + 'static {
     /// The nearest number of this precision.
     fn from_f64(x: f64) -> Self;
@@ -39,8 +39,3 @@ impl Real for f64 {
         -self
     }
 }
-
-/// Sixteen numbers about one thing, a cache line in `f32`: what a winner is looked up by.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(C, align(64))]
-pub struct Row<R>(pub [R; 16]);

@@ -110,7 +110,7 @@ pub(super) fn follow_links(path: &Path) -> io::Result<PathBuf> {
 /// What tells a file from one that has taken its place, and from itself with other content: identity, length and
 /// time of change.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Stamp {
+pub(crate) struct Stamp {
     node: Node,
     length: u64,
     changed: Option<SystemTime>,

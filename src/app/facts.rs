@@ -1,0 +1,133 @@
+//! What panels show and do not change: the window as it was when the frame began.
+
+use super::command::Command;
+use super::model::Model;
+use super::model::device::Device;
+use super::model::document::Document;
+use super::model::show::Show;
+use super::model::view::Mode;
+use crate::progressive::{Phase, Status};
+use crate::stages::{Shading, Stage};
+use std::sync::Arc;
+
+/// The window as it was when the frame began.
+pub struct Facts {
+    /// What the user has chosen.
+    pub model: Model,
+    /// The numbers of the render.
+    pub status: Arc<Status>,
+    /// There is a change to take back.
+    pub can_undo: bool,
+    /// There is a change to make again.
+    pub can_redo: bool,
+    /// Why the document cannot be rendered.
+    pub invalid: Option<String>,
+}
+
+impl Facts {
+    /// The picture.
+    pub fn document(&self) -> &Document {
+        &self.model.document
+    }
+
+    /// Whether samples are being added.
+    pub fn is_working(&self) -> bool {
+        matches!(self.status.phase, Phase::Preparing | Phase::Tracing)
+    }
+
+    /// Why the document's camera does not matter.
+    pub fn no_rays(&self) -> Option<&'static str> {
+        (self.document().rules().shading == Shading::ImageGradient)
+            .then_some("This stage sends no rays: its picture is computed from the pixel's place alone")
+    }
+
+    /// Whether a command stands for how things are now.
+    pub fn is_on(&self, command: Command) -> bool {
+        let Model { view, remembered, document, .. } = &self.model;
+        match command {
+            Command::Show(show) => view.show() == show && (show != Show::Picture || view.mode().is_none()),
+            Command::Wipe => view.mode() == Some(Mode::Wipe) && !view.is_by_book(),
+            Command::BookArithmetic => view.mode().is_some() && view.is_by_book(),
+            Command::WipeDifference => view.mode() == Some(Mode::Difference),
+            Command::Controls => remembered.has_controls,
+            Command::Info => remembered.has_info,
+            Command::Plot => remembered.has_plot,
+            Command::FullScreen => self.model.is_full_screen,
+            Command::Theme(theme) => remembered.theme == theme,
+            Command::Device(device) => remembered.device == device,
+            Command::Stage(stage) => document.stage() == Some(stage),
+            Command::Extreme(case) => document.case() == Some(case),
+            _ => false,
+        }
+    }
+
+    /// Why a command can do nothing now, in words; `None` if it can.
+    pub fn useless(&self, command: Command) -> Option<String> {
+        let no = |reason: &str| Some(reason.to_owned());
+        let document = self.document();
+        match command {
+            Command::Undo if !self.can_undo => no("Nothing has been changed yet"),
+            Command::Redo if !self.can_redo => no("Nothing was taken back"),
+            Command::Home if document.camera == document.origin.recipe.camera => {
+                no("This is the stage's camera")
+            }
+            Command::Device(device) => device.unavailable(),
+            Command::SwitchDevice => Device::Gpu.unavailable(),
+            Command::Show(show) => self.useless_show(show),
+            Command::CopyPlot | Command::SavePlot if self.status.history.is_empty() => {
+                no("No error has been estimated yet")
+            }
+            Command::Wipe | Command::WipeDifference
+                if document.stage().is_none() && !document.origin.is_other_by_the_book() =>
+            {
+                no("Nothing is there to compare this picture with; choose a stage of the book")
+            }
+            Command::BookArithmetic if !document.origin.is_other_by_the_book() => {
+                no("This picture has the book's arithmetic already, or sends no rays; choose another")
+            }
+            Command::PreviousStage if neighbour(document, false).is_none() => no("This is the first stage"),
+            Command::NextStage if neighbour(document, true).is_none() => no("This is the last stage"),
+            _ => None,
+        }
+    }
+
+    /// Why a view shows nothing now.
+    pub fn useless_show(&self, show: Show) -> Option<String> {
+        let no = |reason: &str| Some(reason.to_owned());
+        let (settings, shading) = (self.document().settings, self.document().rules().shading);
+        match show {
+            Show::Error if !settings.estimate_error => no("The film has one half; switch on Estimate error"),
+            Show::Difference => match &self.model.view.reference {
+                None => no("Load a reference film first (File > Load reference film)"),
+                Some(film) if (film.width, film.height) != (settings.width, settings.height) => {
+                    let [width, height] = [film.width, film.height];
+                    Some(format!("The reference film is {width}x{height}; set the picture's size to that"))
+                }
+                Some(_) => None,
+            },
+            Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy if self.no_rays().is_some() => {
+                self.no_rays().map(str::to_owned)
+            }
+            Show::Bounces if shading != Shading::Path => {
+                no("In this stage a ray sees no further than its first hit: each path is one ray")
+            }
+            Show::Occupancy => match self.model.remembered.device {
+                Device::Gpu => no("The graphics adapter traces without packets; switch to the CPU"),
+                Device::Reference => {
+                    no("The reference traces one ray at a time, without packets; switch to the CPU")
+                }
+                Device::Cpu | Device::Both => None,
+            },
+            _ => None,
+        }
+    }
+}
+
+/// The stage after the document's or before it; after what is no stage comes the first.
+pub fn neighbour(document: &Document, is_next: bool) -> Option<&'static Stage> {
+    match document.stage() {
+        Some(stage) if is_next => stage.next(),
+        Some(stage) => stage.previous(),
+        None => Stage::ALL.first().filter(|_| is_next),
+    }
+}

@@ -1,0 +1,133 @@
+//! The command line that renders a document.
+
+use super::document::Document;
+use super::origin::Source;
+use std::fmt::Write;
+
+impl Document {
+    /// The command line that gives the same picture with `samples` samples per pixel, to the bit on the CPU.
+    pub fn command_line(&self, samples: u64, device: &str, adapter: Option<&str>) -> String {
+        let origin = &self.origin.recipe;
+        let mut line = String::from("weekender --batch");
+        // Writing to a string cannot fail.
+        let mut add = |flag: &str, value: &dyn std::fmt::Display| {
+            let _ = write!(line, " {flag}={}", quoted(&value.to_string()));
+        };
+        match &self.origin.source {
+            Source::Stage(stage) => add("--stage", &stage.id),
+            Source::Builtin => add("--scene", &origin.name),
+            Source::File(path) => add("--scene", &path.display()),
+            Source::Embedded | Source::Extreme(_) | Source::ByTheBook => {
+                add("--scene", &format!("{}.toml", origin.name))
+            }
+        }
+        let (mine, theirs) = (&self.settings, &origin.settings);
+        if (mine.width, mine.height) != (theirs.width, theirs.height) {
+            add("--size", &format!("{}x{}", mine.width, mine.height));
+        }
+        if mine.max_depth != theirs.max_depth {
+            add("--depth", &mine.max_depth);
+        }
+        if mine.sampler != theirs.sampler {
+            add("--sampler", &mine.sampler.name());
+        }
+        if mine.seed != theirs.seed {
+            add("--seed", &mine.seed);
+        }
+        if mine.estimate_error != theirs.estimate_error {
+            add("--estimate-error", &if mine.estimate_error { "on" } else { "off" });
+        }
+        let (camera, base) = (self.acting_camera(), &origin.camera);
+        for (flag, value, default) in [
+            ("--look-from", camera.look_from, base.look_from),
+            ("--look-at", camera.look_at, base.look_at),
+            ("--vup", camera.vup, base.vup),
+        ] {
+            if value != default {
+                add(flag, &format!("{},{},{}", value.x, value.y, value.z));
+            }
+        }
+        if camera.vfov_degrees != base.vfov_degrees {
+            add("--vfov", &camera.vfov_degrees);
+        }
+        if camera.defocus_angle_degrees != base.defocus_angle_degrees {
+            add("--defocus-angle", &camera.defocus_angle_degrees);
+        }
+        // There is no flag that takes a focus distance away, but one that says the same.
+        if camera.focus_distance != base.focus_distance {
+            add("--focus-distance", &camera.effective_focus_distance());
+        }
+        add("--samples", &samples);
+        if device != "cpu" {
+            add("--device", &device);
+        }
+        if let Some(adapter) = adapter {
+            add("--adapter", &adapter);
+        }
+        add("--out", &format!("{}.png", origin.name));
+        line
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=".contains(c);
+    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::cli::{Request, parse};
+    use crate::render::RenderJob;
+    use crate::scene::Camera;
+    use crate::stages::Stage;
+    use glam::DVec3;
+
+    /// What a command line renders.
+    fn job_of(line: &str) -> RenderJob {
+        match parse(line.split_whitespace().map(Into::into)).unwrap() {
+            Request::Batch(options) => options.renders[0].job.clone(),
+            other => panic!("{line}: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn the_command_line_gives_the_same_job() {
+        for stage in Stage::ALL {
+            let mut document = Document::new(Origin::of_stage(stage));
+            assert_eq!(
+                job_of(&document.command_line(4, "cpu", None)),
+                document.job(1).unwrap(),
+                "{}",
+                stage.id
+            );
+            document.camera.look_from = DVec3::new(-1.1, 1e-20, 1.0 / 3.0);
+            document.camera.look_at = DVec3::new(0.25, -7.0, 1e9);
+            document.camera.vup = DVec3::new(0.0, 1.0, -0.5);
+            document.camera.vfov_degrees = 33.3;
+            document.settings.width = 31;
+            document.settings.max_depth = 7;
+            document.settings.seed = 9;
+            document.settings.sampler = crate::render::SamplerKind::Independent;
+            document.settings.estimate_error = false;
+            for (defocus, focus) in [(0.0, Some(3.0)), (2.5, Some(3.0)), (2.5, None)] {
+                document.camera.defocus_angle_degrees = defocus;
+                document.camera.focus_distance = focus;
+                let line = document.command_line(4, "cpu", None);
+                let (theirs, mine) = (job_of(&line), document.job(1).unwrap());
+                let same_focus =
+                    |a: &Camera| Camera { focus_distance: Some(a.effective_focus_distance()), ..*a };
+                assert_eq!(same_focus(theirs.camera()), same_focus(mine.camera()), "{line}");
+                assert_eq!((theirs.settings(), theirs.rules()), (mine.settings(), mine.rules()), "{line}");
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_quoted_where_a_shell_needs_it() {
+        assert_eq!(quoted("a-b.toml"), "a-b.toml");
+        assert_eq!(quoted("my scene's.toml"), r"'my scene'\''s.toml'");
+    }
+}

@@ -1,0 +1,217 @@
+//! What stands in the picture's place: a view of the film, or the picture beside another one.
+
+use super::document::Document;
+use super::origin::Origin;
+use super::show::Show;
+use crate::progressive::{Reference, View};
+use crate::recipe::Recipe;
+use crate::stages::Stage;
+use std::sync::Arc;
+
+/// How two pictures are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// One at each side of a divider.
+    Wipe,
+    /// A heat map of where they differ.
+    Difference,
+}
+
+/// What the main picture is compared with.
+#[derive(Clone, Debug)]
+pub enum Other {
+    /// Another stage.
+    Stage(&'static Stage),
+    /// The same picture by the book's own arithmetic.
+    ByTheBook(Arc<Origin>),
+}
+
+impl PartialEq for Other {
+    /// Origins are never changed, so that it is enough to compare which one it is.
+    fn eq(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Other::Stage(a), Other::Stage(b)) => a == b,
+            (Other::ByTheBook(a), Other::ByTheBook(b)) => Arc::ptr_eq(a, b),
+            _ => false,
+        }
+    }
+}
+
+impl Other {
+    /// The origin of that picture.
+    pub fn origin(&self) -> Origin {
+        match self {
+            Other::Stage(stage) => Origin::of_stage(stage),
+            Other::ByTheBook(mine) => mine.by_the_book(),
+        }
+    }
+}
+
+/// What is looked at: one thing at a time.
+#[derive(Clone, Debug)]
+pub struct ViewState {
+    show: Show,
+    mode: Option<Mode>,
+    is_by_book: bool,
+    /// Compare with the next stage even where there is a pair.
+    pub is_with_next: bool,
+    /// Where the divider of a wipe stands, `0..=1` of the picture's width.
+    pub divider: f32,
+    /// A film to compare with.
+    pub reference: Option<Arc<Reference>>,
+}
+
+impl Default for ViewState {
+    fn default() -> Self {
+        ViewState {
+            show: Show::Picture,
+            mode: None,
+            is_by_book: false,
+            is_with_next: false,
+            divider: 0.5,
+            reference: None,
+        }
+    }
+}
+
+impl ViewState {
+    /// The view of the film.
+    pub fn show(&self) -> Show {
+        self.show
+    }
+
+    /// Whether and how two pictures are compared.
+    pub fn mode(&self) -> Option<Mode> {
+        self.mode
+    }
+
+    /// Whether the comparison is with the book's own arithmetic also where there is another stage.
+    pub fn is_by_book(&self) -> bool {
+        self.is_by_book
+    }
+
+    /// Shows a view of the film alone.
+    pub fn choose(&mut self, show: Show) {
+        self.mode = None;
+        self.show = show;
+    }
+
+    /// Shows the picture in place of another view of the film; a comparison goes on.
+    pub fn leave_show(&mut self) {
+        self.show = Show::Picture;
+    }
+
+    /// Starts a comparison, or ends it if it is this one.
+    pub fn toggle(&mut self, mode: Mode, is_by_book: bool) {
+        let is_on = self.mode == Some(mode) && self.is_by_book == is_by_book;
+        self.show = Show::Picture;
+        self.mode = if is_on { None } else { Some(mode) };
+        self.is_by_book = is_by_book;
+    }
+
+    /// Ends a comparison.
+    pub fn end_comparison(&mut self) {
+        self.mode = None;
+    }
+
+    /// How the film is resolved; `other` is the film of the second picture, once there is one.
+    pub fn of_film(&self, other: Option<&Arc<Reference>>) -> View {
+        match (self.mode, other, self.show, &self.reference) {
+            (Some(Mode::Difference), Some(other), ..) => View::Difference(Arc::clone(other)),
+            (_, _, Show::Error, _) => View::StandardError,
+            (_, _, Show::Difference, Some(reference)) => View::Difference(Arc::clone(reference)),
+            (_, _, Show::Occupancy, _) => View::Occupancy,
+            _ => View::Picture,
+        }
+    }
+
+    /// What `document` is to be compared with; `None` if it is not, or there is nothing.
+    pub fn compared(&self, document: &Document) -> Option<Other> {
+        self.mode.and_then(|_| self.other(document))
+    }
+
+    /// What `document` can be compared with; `None` if there is nothing.
+    fn other(&self, document: &Document) -> Option<Other> {
+        match document.stage().filter(|_| !self.is_by_book) {
+            Some(stage) => self.other_of(stage).map(Other::Stage),
+            None => {
+                let origin = &document.origin;
+                origin.is_other_by_the_book().then(|| Other::ByTheBook(Arc::clone(origin)))
+            }
+        }
+    }
+
+    /// Whether the camera is what `document` and the other picture differ in, so that each keeps its own.
+    pub fn has_other_camera(&self, document: &Document) -> bool {
+        !self.is_by_book && document.stage().is_some_and(|stage| self.is_of_cameras(stage))
+    }
+
+    /// The stage that `stage` is compared with.
+    pub fn other_of(&self, stage: &'static Stage) -> Option<&'static Stage> {
+        let pair = stage.pair.and_then(|id| Stage::find(id).ok());
+        let next = stage.next().or_else(|| stage.previous());
+        if self.is_with_next { next.or(pair) } else { pair.or(next) }
+    }
+
+    /// Whether the camera is what `stage` and the other differ in, so that each keeps its own.
+    pub fn is_of_cameras(&self, stage: &'static Stage) -> bool {
+        let mine = stage.recipe();
+        self.other_of(stage).is_some_and(|other| differ_in_camera(&mine, &other.recipe()))
+    }
+}
+
+/// Whether two pictures differ in nothing but the camera, so that it is what there is to compare.
+pub fn differ_in_camera(a: &Recipe, b: &Recipe) -> bool {
+    a.camera != b.camera && a.rules == b.rules && a.scene == b.scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::shown_cases;
+
+    #[test]
+    fn what_is_no_stage_is_compared_with_the_books_arithmetic() {
+        let mut view = ViewState::default();
+        for case in shown_cases() {
+            let mine = Document::new(Origin::of_case(case));
+            assert_eq!(view.other(&mine), Some(Other::ByTheBook(Arc::clone(&mine.origin))));
+        }
+        let stage = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        assert!(matches!(view.other(&stage), Some(Other::Stage(_))));
+        view.toggle(Mode::Wipe, true);
+        assert!(matches!(view.other(&stage), Some(Other::ByTheBook(_))));
+        let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
+        assert_eq!(view.other(&no_rays), None);
+    }
+
+    #[test]
+    fn every_stage_has_something_to_be_compared_with() {
+        let mut view = ViewState::default();
+        for stage in Stage::ALL {
+            view.is_with_next = false;
+            assert!(view.other_of(stage).is_some_and(|other| other != stage));
+            view.is_with_next = true;
+            assert!(view.other_of(stage).is_some_and(|other| other != stage));
+        }
+    }
+
+    #[test]
+    fn one_thing_at_a_time_is_looked_at() {
+        let film = Arc::new(Reference { width: 1, height: 1, means: vec![[0.0; 3]] });
+        let mut view = ViewState { reference: Some(Arc::clone(&film)), ..ViewState::default() };
+        view.choose(Show::Error);
+        assert_eq!((view.show(), view.of_film(None)), (Show::Error, View::StandardError));
+        view.toggle(Mode::Difference, false);
+        assert_eq!((view.show(), view.mode()), (Show::Picture, Some(Mode::Difference)));
+        assert_eq!(view.of_film(None), View::Picture, "until there is a second picture");
+        assert_eq!(view.of_film(Some(&film)), View::Difference(Arc::clone(&film)));
+        view.toggle(Mode::Wipe, false);
+        assert_eq!(view.of_film(Some(&film)), View::Picture);
+        view.toggle(Mode::Wipe, false);
+        assert_eq!(view.mode(), None);
+        view.toggle(Mode::Wipe, true);
+        view.choose(Show::Difference);
+        assert_eq!((view.mode(), view.of_film(None)), (None, View::Difference(film)));
+    }
+}

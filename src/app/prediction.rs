@@ -1,0 +1,93 @@
+//! When a render will have met its target, from the errors up to now.
+
+use crate::progressive::{NOISE_TARGET_FIRST_SAMPLES, Status};
+use crate::statistics::fit::{Point, Prediction, predict};
+
+/// Seconds from now beyond which nothing is told.
+pub const FARTHEST: f64 = 1e6;
+
+/// All estimates, the newest last.
+pub fn points(status: &Status) -> Vec<Point> {
+    let history = status.history.iter().map(|p| Point { time: p.trace_seconds, error: p.rmse_estimate });
+    let now = status.error.map(|error| Point { time: status.trace.as_secs_f64(), error: error.rmse });
+    history.chain(now).filter(|point| point.time > 0.0 && point.error > 0.0).collect()
+}
+
+/// In how many seconds from now the error will be at the target; `None` where it is, or where too little is known.
+pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
+    if status.samples_per_pixel < NOISE_TARGET_FIRST_SAMPLES || status.phase.is_over() {
+        return None;
+    }
+    let error = status.error?;
+    // A switch of backends bends the curve: only what the present one did tells how it goes on.
+    let backend = status.history.last().map(|point| point.backend);
+    let mut history: Vec<Point> = status
+        .history
+        .iter()
+        .rev()
+        .take_while(|point| {
+            Some(point.backend) == backend && point.samples_per_pixel >= NOISE_TARGET_FIRST_SAMPLES
+        })
+        .map(|point| Point { time: point.trace_seconds, error: point.rmse_estimate })
+        .collect();
+    history.reverse();
+    let now = Point { time: status.trace.as_secs_f64(), error: error.rmse };
+    let from_now = |time: f64| (time - now.time).max(0.0);
+    predict(&history, now, target?)
+        .map(|found| Prediction { time: from_now(found.time), range: found.range.map(from_now) })
+        .filter(|found| found.time < FARTHEST)
+}
+
+/// As "RMSE .005 in about 38 s (33 to 44)", while there is a target ahead.
+pub fn prediction_label(status: &Status, target: Option<f64>) -> Option<String> {
+    let prediction = prediction(status, target)?;
+    Some(format!("RMSE {} {}", target?, prediction_words(&prediction)))
+}
+
+/// As "in about 38 s (33 to 44)".
+pub fn prediction_words(prediction: &Prediction) -> String {
+    let [low, high] = prediction.range;
+    let about = whole(prediction.time);
+    if high < FARTHEST {
+        format!("in about {about} s ({} to {})", whole(low), whole(high))
+    } else {
+        format!("in about {about} s ({} or more)", whole(low))
+    }
+}
+
+fn whole(seconds: f64) -> String {
+    format!("{:.0}", seconds.ceil())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::ErrorEstimate;
+    use crate::progressive::Phase;
+    use std::time::Duration;
+
+    #[test]
+    fn a_prediction_without_an_end_says_so() {
+        let prediction = Prediction { time: 38.0, range: [31.0, f64::INFINITY] };
+        assert_eq!(prediction_words(&prediction), "in about 38 s (31 or more)");
+    }
+
+    #[test]
+    fn the_prediction_counts_from_now_and_tells_its_range() {
+        let mut status = Status {
+            samples_per_pixel: 100,
+            phase: Phase::Tracing,
+            trace: Duration::from_secs(10),
+            error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 0.0, rel_mse: 0.0 }),
+            ..Status::default()
+        };
+        let found = prediction(&status, Some(0.002)).unwrap();
+        assert!((found.time - 30.0).abs() < 1e-6, "{found:?}");
+        assert!(found.range[0] > 10.0 && found.range[1] < 90.0, "{found:?}");
+        assert!(prediction_words(&found).starts_with("in about 30 s ("), "{}", prediction_words(&found));
+        assert_eq!(prediction(&status, Some(0.01)), None);
+        assert_eq!(prediction(&status, None), None);
+        status.samples_per_pixel = 2;
+        assert_eq!(prediction(&status, Some(0.002)), None);
+    }
+}

@@ -1,0 +1,121 @@
+//! What is done with the answers of other threads.
+
+use super::command::Command;
+use super::files::Resumed;
+use super::model::device::Device;
+use super::model::document::Document;
+use super::model::origin::{Origin, Source};
+use super::model::show::Show;
+use super::window::Window;
+use crate::progressive::{Reference, Stop};
+use crate::saved::{Content, Opened};
+use eframe::egui;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+impl Window {
+    /// Takes what other threads have to say.
+    pub(super) fn receive(&mut self, context: &egui::Context) {
+        while let Some(outcome) = self.files.saved.take() {
+            match outcome {
+                Ok(path) => self.toasts.good(format!("Saved {}", path.display())),
+                Err(reason) => self.toasts.bad(format!("Not saved: {reason}")),
+            }
+        }
+        while let Some(outcome) = self.files.opened.take() {
+            match outcome {
+                Ok(opened) => self.show_opened(opened),
+                Err(reason) => self.toasts.bad(format!("Not opened: {reason}")),
+            }
+        }
+        while let Some(outcome) = self.files.resumed.take() {
+            match outcome {
+                Ok(resumed) => self.go_on(resumed),
+                Err(reason) => self.toasts.bad(format!("Not resumed: {reason}")),
+            }
+        }
+        while let Some(outcome) = self.files.references.take() {
+            match outcome {
+                Ok((path, reference)) => self.take_reference(path, reference),
+                Err(reason) => self.toasts.bad(format!("No reference: {reason}")),
+            }
+        }
+        while let Some(outcome) = self.dialogs.browsed() {
+            match outcome {
+                Ok((purpose, path)) => self.use_path(context, purpose, path),
+                Err(reason) => self.toasts.bad(reason),
+            }
+        }
+        self.tell_messages();
+    }
+
+    fn show_opened(&mut self, opened: Opened) {
+        let Opened { path, recipe, stage, content, .. } = opened;
+        let origin = match content {
+            Content::Scene => Origin::new(recipe.clone(), Source::File(path.clone())),
+            _ => Origin::guess(&recipe, stage),
+        };
+        let mut document = Document::new(origin);
+        document.camera = recipe.camera;
+        document.settings = recipe.settings;
+        if let Content::Picture { samples: Some(samples) } = content {
+            // A picture is restored as it was; a film goes on.
+            document.stop = Stop::at_samples(samples);
+        }
+        self.show_document(document);
+        self.toasts.good(format!("Opened {}", path.display()));
+        if let Content::Film(film) = content {
+            self.adopt(film);
+        }
+    }
+
+    fn go_on(&mut self, resumed: Resumed) {
+        let path = resumed.path.display();
+        if self.document().has_same_film(&resumed.begun) {
+            self.toasts.good(format!("Goes on with {path}"));
+            self.adopt(resumed.film);
+        } else {
+            self.toasts.bad(format!(
+                "Not resumed: the picture was changed before {path} had been read; open the file to go on with it"
+            ));
+        }
+    }
+
+    fn take_reference(&mut self, path: PathBuf, reference: Reference) {
+        let settings = self.document().settings;
+        if (reference.width, reference.height) == (settings.width, settings.height) {
+            self.model.view.reference = Some(Arc::new(reference));
+            self.send(Command::Show(Show::Difference));
+            self.toasts.good(format!("Difference to {}", path.display()));
+        } else {
+            self.toasts.bad(format!(
+                "No reference: {} is {}x{}, the picture {}x{}; set the picture's size to that",
+                path.display(),
+                reference.width,
+                reference.height,
+                settings.width,
+                settings.height
+            ));
+        }
+    }
+
+    /// Passes on what the render thread had to say.
+    fn tell_messages(&mut self) {
+        let status = self.main.status().clone();
+        let (run, told) = self.told_messages;
+        let told = if run == status.run { told } else { 0 };
+        self.told_messages = (status.run, status.messages.len());
+        let news: Vec<String> = status.messages.iter().skip(told).cloned().collect();
+        if !news.is_empty() {
+            // Whatever failed, the device that goes on is the chosen one now.
+            if let Some(info) = &status.backend
+                && let Some(device) = Device::ALL.into_iter().find(|device| device.name() == info.name)
+            {
+                self.model.remembered.device = device;
+            }
+            for message in news {
+                self.toasts.bad(message);
+            }
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! The picture beside the main one, for the wipe and the difference: another stage, or the same picture by the book's
+//! own arithmetic.
+
+use super::answers::Answers;
+use super::model::document::Document;
+use super::model::origin::Origin;
+use super::model::view::{Mode, Other, ViewState, differ_in_camera};
+use super::tracer::{Shown, Tracer, Want};
+use crate::progressive::{Reference, View};
+use crate::scene::Camera;
+use eframe::egui::Context;
+use std::sync::{Arc, Weak};
+
+/// The second picture.
+#[derive(Default)]
+pub struct Second {
+    /// Once there has been a second picture.
+    tracer: Option<Tracer>,
+    of: Option<(Other, Arc<Origin>)>,
+    /// Its film, as far as it was traced when it was asked for last.
+    film: Option<Arc<Reference>>,
+    films: Answers<(Arc<Origin>, Reference)>,
+    /// Lives as long as its film has not been read.
+    waiting: Weak<()>,
+}
+
+impl Second {
+    /// The picture.
+    pub fn shown_mut(&mut self) -> Option<&mut Shown> {
+        self.tracer.as_mut().and_then(Tracer::shown_mut)
+    }
+
+    /// The film, while the difference from it is looked at.
+    pub fn film(&self) -> Option<&Arc<Reference>> {
+        self.film.as_ref()
+    }
+
+    /// Whether what `document` is compared with has been pictured.
+    pub fn has_picture(&self, document: &Document, view: &ViewState) -> bool {
+        let shown = self.tracer.as_ref().and_then(Tracer::shown);
+        match (view.compared(document), &self.of, shown) {
+            (Some(wanted), Some((kept, origin)), Some(shown)) => {
+                wanted == *kept && Arc::ptr_eq(origin, &shown.document.origin)
+            }
+            _ => false,
+        }
+    }
+
+    pub fn pause(&self) {
+        if let Some(tracer) = &self.tracer {
+            tracer.pause();
+        }
+    }
+
+    pub fn resume(&self) {
+        if let Some(tracer) = &self.tracer {
+            tracer.resume();
+        }
+    }
+
+    /// Takes the film, where it has been read.
+    pub fn receive(&mut self) {
+        while let Some((origin, film)) = self.films.take() {
+            if self.of.as_ref().is_some_and(|(_, of)| Arc::ptr_eq(of, &origin)) {
+                self.film = Some(Arc::new(film));
+            }
+        }
+    }
+
+    /// Has the second picture rendered, if there is to be one; `want` is that of the main picture. Returns whether
+    /// there is one.
+    pub fn follow(&mut self, context: &Context, view: &ViewState, want: &Want<'_>) -> bool {
+        let Some(other) = view.compared(want.document) else {
+            if let Some(tracer) = &mut self.tracer {
+                tracer.abandon();
+            }
+            self.film = None;
+            return false;
+        };
+        let document = self.document_of(other, want.document);
+        if self.tracer.is_none() {
+            // Without a second thread there is no second picture, and nothing else is lost.
+            self.tracer = Tracer::new().ok();
+            if let Some(tracer) = &self.tracer {
+                tracer.wake(context);
+            }
+        }
+        let Some(tracer) = &mut self.tracer else { return false };
+        let is_new = tracer.poll(context).is_some();
+        // Both pictures end alike, so that what differs is not the noise.
+        let stop = document.stop;
+        let is_possible =
+            tracer.want(&Want { document: &document, stop, view: View::Picture, ..*want }).is_ok();
+        let is_full = tracer.is_full(&document);
+        let has_picture = tracer.shown().is_some_and(|shown| shown.document.has_same_film(&document));
+        let is_waiting = self.waiting.strong_count() > 0;
+        if view.mode() != Some(Mode::Difference) {
+            self.film = None;
+        } else if is_full && has_picture && !is_waiting && (is_new || self.film.is_none()) {
+            let question = Arc::new(());
+            self.waiting = Arc::downgrade(&question);
+            let (answer, origin) = (self.films.answer(context), Arc::clone(&document.origin));
+            tracer.inspect(move |film| {
+                let film = Reference::of(film);
+                drop(question);
+                answer.give((origin, film));
+            });
+        }
+        is_possible
+    }
+
+    fn document_of(&mut self, other: Other, mine: &Document) -> Document {
+        if self.of.as_ref().is_none_or(|(kept, _)| *kept != other) {
+            (self.of, self.film) = (None, None);
+        }
+        let (_, origin) = self.of.get_or_insert_with(|| {
+            let origin = Arc::new(other.origin());
+            (other, origin)
+        });
+        let (theirs, base) = (&origin.recipe, &mine.origin.recipe);
+        let mut settings = mine.settings;
+        if theirs.settings.max_depth != base.settings.max_depth {
+            settings.max_depth = theirs.settings.max_depth;
+        }
+        let usual_stop = origin.usual_stop();
+        let stop = if usual_stop == mine.origin.usual_stop() { mine.stop } else { usual_stop };
+        let camera = if differ_in_camera(base, theirs) {
+            camera_of(&mine.camera, &base.camera, &theirs.camera)
+        } else {
+            mine.camera
+        };
+        Document { camera, settings, stop, origin: Arc::clone(origin) }
+    }
+}
+
+/// My camera, but for that in which the stages' cameras differ.
+fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
+    fn choose<T: PartialEq>(mine: T, base: T, theirs: T) -> T {
+        if base == theirs { mine } else { theirs }
+    }
+    Camera {
+        look_from: choose(mine.look_from, base.look_from, theirs.look_from),
+        look_at: choose(mine.look_at, base.look_at, theirs.look_at),
+        vup: choose(mine.vup, base.vup, theirs.vup),
+        vfov_degrees: choose(mine.vfov_degrees, base.vfov_degrees, theirs.vfov_degrees),
+        defocus_angle_degrees: choose(
+            mine.defocus_angle_degrees,
+            base.defocus_angle_degrees,
+            theirs.defocus_angle_degrees,
+        ),
+        focus_distance: choose(mine.focus_distance, base.focus_distance, theirs.focus_distance),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::{Stage, Surface};
+    use crate::stress::shown_cases;
+
+    #[test]
+    fn the_others_camera_moves_along_but_keeps_its_own() {
+        let base = Camera::BOOK;
+        let theirs = Camera { vfov_degrees: 30.0, ..base };
+        let mine = Camera { look_from: glam::DVec3::Z, vfov_degrees: 80.0, ..base };
+        let camera = camera_of(&mine, &base, &theirs);
+        assert_eq!((camera.look_from, camera.vfov_degrees), (glam::DVec3::Z, 30.0));
+        assert_eq!(camera_of(&mine, &base, &base), mine);
+    }
+
+    #[test]
+    fn the_other_stage_is_seen_by_my_camera_unless_that_is_the_difference() {
+        let (mut second, view) = (Second::default(), ViewState::default());
+        let mut of_cameras = Vec::new();
+        for stage in Stage::ALL {
+            let mut mine = Document::new(Origin::of_stage(stage));
+            mine.camera.look_from += glam::DVec3::new(0.25, 0.5, 0.125);
+            let other = view.other_of(stage).unwrap();
+            let theirs = second.document_of(Other::Stage(other), &mine);
+            if view.is_of_cameras(stage) {
+                of_cameras.push(stage.id);
+                assert_ne!(theirs.camera, mine.camera, "{}", stage.id);
+            } else {
+                assert_eq!(theirs.camera, mine.camera, "{}", stage.id);
+            }
+        }
+        assert!(
+            of_cameras.contains(&"view-distant") && !of_cameras.contains(&"glass-schlick"),
+            "{of_cameras:?}"
+        );
+    }
+
+    #[test]
+    fn the_book_traces_the_same_picture_by_its_own_rules() {
+        let mut second = Second::default();
+        for case in shown_cases() {
+            let mine = Document::new(Origin::of_case(case));
+            let theirs = second.document_of(Other::ByTheBook(Arc::clone(&mine.origin)), &mine);
+            assert_eq!(theirs.rules().surface, Surface::Book, "{}", case.id);
+            assert_eq!(
+                (theirs.camera, theirs.settings, theirs.stop),
+                (mine.camera, mine.settings, mine.stop)
+            );
+        }
+    }
+}

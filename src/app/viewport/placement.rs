@@ -1,0 +1,177 @@
+//! Where the picture is drawn, and how large.
+
+use eframe::egui::{Pos2, Rect, Vec2};
+
+/// How large the picture is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Zoom {
+    /// As large as there is room.
+    Fit,
+    /// Pixels of the screen for one of the picture.
+    Times(f32),
+}
+
+const ZOOM_LIMITS: [f32; 2] = [0.05, 64.0];
+
+/// Where the picture is drawn, and how large.
+pub struct Placement {
+    zoom: Zoom,
+    /// Where the picture's middle is, points from the middle of the room.
+    pan: Vec2,
+    /// Pixels of the screen for one of the picture, as it was drawn last.
+    times: f32,
+    /// Where the picture was drawn last.
+    rect: Rect,
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Placement { zoom: Zoom::Fit, pan: Vec2::ZERO, times: 1.0, rect: Rect::ZERO }
+    }
+}
+
+impl Placement {
+    /// How large it is to be.
+    pub fn zoom(&self) -> Zoom {
+        self.zoom
+    }
+
+    /// Pixels of the screen for one of the picture, as it was drawn last.
+    pub fn times(&self) -> f32 {
+        self.times
+    }
+
+    /// Where the picture was drawn last, points.
+    pub fn rect(&self) -> Rect {
+        self.rect
+    }
+
+    /// The whole picture, as large as there is room.
+    pub fn fit(&mut self) {
+        self.zoom = Zoom::Fit;
+    }
+
+    /// One pixel on one of the screen.
+    pub fn actual_size(&mut self) {
+        self.zoom = Zoom::Times(1.0);
+        self.pan = Vec2::ZERO;
+    }
+
+    /// Zooms so that the middle of the room stays.
+    pub fn zoom_by(&mut self, factor: f32) {
+        let times = self.limited(factor);
+        self.pan *= times / self.times;
+        self.zoom = Zoom::Times(times);
+    }
+
+    /// Zooms so that what is at a point of the screen stays there.
+    pub fn zoom_at(&mut self, at: Pos2, factor: f32) {
+        let times = self.limited(factor);
+        let from_middle = at - self.rect.center();
+        self.pan += from_middle * (1.0 - times / self.times);
+        self.zoom = Zoom::Times(times);
+    }
+
+    /// Moves the picture.
+    pub fn pan_by(&mut self, points: Vec2) {
+        if self.zoom == Zoom::Fit {
+            self.zoom = Zoom::Times(self.times);
+        }
+        self.pan += points;
+    }
+
+    fn limited(&self, factor: f32) -> f32 {
+        let [low, high] = ZOOM_LIMITS;
+        (self.times * factor).clamp(low, high)
+    }
+
+    /// Where a picture of `size` pixels goes in `room`, on whole pixels of the screen.
+    pub fn place(&mut self, room: Rect, size: Vec2, pixels_per_point: f32) -> Rect {
+        let fitting = (room.width() / size.x).min(room.height() / size.y) * pixels_per_point;
+        self.times = match self.zoom {
+            Zoom::Fit => {
+                self.pan = Vec2::ZERO;
+                fitting
+            }
+            Zoom::Times(times) => times,
+        };
+        let rect = Rect::from_center_size(room.center() + self.pan, size * self.times / pixels_per_point);
+        let corner = (rect.min.to_vec2() * pixels_per_point).round() / pixels_per_point;
+        self.rect = Rect::from_min_size(corner.to_pos2(), rect.size());
+        self.rect
+    }
+
+    /// The whole pixel of a picture of `size` pixels that is under a point of the screen.
+    pub fn pixel_at(&self, at: Pos2, size: [u32; 2]) -> Option<[u32; 2]> {
+        if !self.rect.contains(at) || self.rect.width() <= 0.0 {
+            return None;
+        }
+        let along = (at - self.rect.min) / self.rect.size();
+        Some([
+            ((along.x * size[0] as f32) as u32).min(size[0] - 1),
+            ((along.y * size[1] as f32) as u32).min(size[1] - 1),
+        ])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::{pos2, vec2};
+
+    const ROOM: Rect = Rect { min: pos2(100.0, 50.0), max: pos2(900.0, 650.0) };
+    const SIZE: Vec2 = vec2(320.0, 180.0);
+
+    fn placed() -> Placement {
+        let mut placement = Placement::default();
+        placement.place(ROOM, SIZE, 1.0);
+        placement
+    }
+
+    /// The place of the picture that is at a point of the screen, pixels.
+    fn under(placement: &Placement, at: Pos2) -> Vec2 {
+        (at - placement.rect().min) / placement.times()
+    }
+
+    #[test]
+    fn a_zoom_at_the_pointer_leaves_there_what_is_there() {
+        for at in [pos2(150.0, 300.0), pos2(700.0, 200.0), ROOM.center(), pos2(880.0, 560.0)] {
+            let mut placement = placed();
+            for factor in [1.25, 3.0, 0.5, 1.7] {
+                let before = under(&placement, at);
+                placement.zoom_at(at, factor);
+                placement.place(ROOM, SIZE, 1.0);
+                let off = (under(&placement, at) - before) * placement.times();
+                // The corner is on a whole pixel.
+                assert!(off.length() < 1.5, "{at}, {factor}: off by {off} points");
+            }
+        }
+    }
+
+    #[test]
+    fn a_zoom_by_keys_leaves_the_middle_of_the_room_where_it_is() {
+        let mut placement = placed();
+        placement.pan_by(vec2(60.0, -20.0));
+        placement.place(ROOM, SIZE, 1.0);
+        for factor in [1.25, 2.0, 0.8] {
+            let before = under(&placement, ROOM.center());
+            placement.zoom_by(factor);
+            placement.place(ROOM, SIZE, 1.0);
+            let off = (under(&placement, ROOM.center()) - before) * placement.times();
+            assert!(off.length() < 1.5, "{factor}: off by {off} points");
+        }
+    }
+
+    #[test]
+    fn pixels_are_found_where_they_are_drawn() {
+        let mut placement = placed();
+        assert_eq!(placement.rect(), Rect::from_min_size(pos2(100.0, 125.0), vec2(800.0, 450.0)));
+        assert_eq!(placement.pixel_at(pos2(101.0, 126.0), [320, 180]), Some([0, 0]));
+        assert_eq!(placement.pixel_at(pos2(899.0, 126.0), [320, 180]), Some([319, 0]));
+        assert_eq!(placement.pixel_at(pos2(101.0, 574.0), [320, 180]), Some([0, 179]));
+        assert_eq!(placement.pixel_at(pos2(101.0, 580.0), [320, 180]), None);
+        placement.actual_size();
+        let rect = placement.place(ROOM, SIZE, 2.0);
+        assert_eq!((rect.center(), rect.size()), (ROOM.center(), vec2(160.0, 90.0)));
+    }
+}

@@ -1,0 +1,12 @@
+//! Files: read once it is known what they are and how long, written whole or not at all.
+
+mod identity;
+mod leftovers;
+mod read;
+mod replace;
+
+pub use identity::FileIdentity;
+pub(crate) use identity::Stamp;
+pub use read::{InputError, open, read};
+pub(crate) use replace::NewFile;
+pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};

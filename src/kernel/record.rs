@@ -1,0 +1,236 @@
+//! How a record is declared once: a macro that makes the Rust struct, its fields as data, and its text in WGSL.
+
+use super::Real;
+
+/// A type that host and shaders share.
+pub trait Shared: Copy {
+    /// What WGSL calls it, such as `vec3f`.
+    fn wgsl() -> String;
+    /// Appends it as the words that shaders read.
+    fn write(&self, words: &mut Vec<u32>);
+}
+
+/// A struct that host and shaders share, declared by [`record!`].
+pub trait Record: Shared {
+    /// Its fields, in order.
+    fn fields() -> Vec<Field>;
+
+    /// Its declaration in WGSL.
+    fn declaration() -> String {
+        let mut text = format!("struct {} {{\n", Self::wgsl());
+        for field in Self::fields() {
+            for line in field.docs {
+                text += &format!("    //{line}\n");
+            }
+            text += &format!("    {}: {},\n", field.name, field.wgsl);
+        }
+        text + "}\n"
+    }
+}
+
+/// A field of a [`Record`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// Its name, in Rust and in WGSL.
+    pub name: &'static str,
+    /// Its type in WGSL.
+    pub wgsl: String,
+    /// Bytes before it, in the Rust struct.
+    pub offset: usize,
+    /// Its docstring, line by line.
+    pub docs: &'static [&'static str],
+}
+
+/// The words of many records, as a shader's array has them.
+pub fn words_of<T: Shared>(items: &[T]) -> Vec<u32> {
+    let mut words = Vec::with_capacity(size_of_val(items) / size_of::<u32>());
+    items.iter().for_each(|item| item.write(&mut words));
+    words
+}
+
+/// Types that have a name in WGSL.
+macro_rules! shared {
+    ($($type:ty = $name:literal, $self:ident => $words:expr;)*) => {
+        $(impl Shared for $type {
+            fn wgsl() -> String {
+                $name.to_owned()
+            }
+            fn write(&$self, words: &mut Vec<u32>) {
+                words.extend($words);
+            }
+        })*
+    };
+}
+
+shared! {
+    u32 = "u32", self => [*self];
+    [u32; 2] = "vec2u", self => *self;
+    [u32; 4] = "vec4u", self => *self;
+    f32 = "f32", self => [self.to_bits()];
+    [f32; 2] = "vec2f", self => self.map(f32::to_bits);
+    [f32; 3] = "vec3f", self => self.map(f32::to_bits);
+    [f32; 4] = "vec4f", self => self.map(f32::to_bits);
+}
+
+impl<const N: usize> Shared for [[f32; 4]; N] {
+    fn wgsl() -> String {
+        format!("array<vec4f, {N}>")
+    }
+    fn write(&self, words: &mut Vec<u32>) {
+        self.iter().for_each(|item| item.write(words));
+    }
+}
+
+impl<T: Record, const N: usize> Shared for [T; N] {
+    fn wgsl() -> String {
+        format!("array<{}, {N}>", T::wgsl())
+    }
+    fn write(&self, words: &mut Vec<u32>) {
+        self.iter().for_each(|item| item.write(words));
+    }
+}
+
+/// Numbers by column, from which a packet loads a record's fields: one record a lane.
+pub trait Columns<R>: Sized {
+    /// A number of each lane's record.
+    type Number;
+    /// A vector of each lane's record.
+    type Vector;
+    /// Column `column`.
+    fn number(&self, column: usize) -> Self::Number;
+    /// Columns `column`, `column + 1` and `column + 2`.
+    fn vector(&self, column: usize) -> Self::Vector;
+}
+
+/// A field's type as a packet sees it.
+pub trait Shape<R> {
+    /// In a packet.
+    type Of<C: Columns<R>>;
+    /// Loads it from the column on at which it begins.
+    fn load<C: Columns<R>>(columns: &C, first: usize) -> Self::Of<C>;
+    /// Stores it from there on.
+    fn store(self, columns: &mut [R], first: usize);
+}
+
+impl<R: Real> Shape<R> for R {
+    type Of<C: Columns<R>> = C::Number;
+    #[inline(always)]
+    fn load<C: Columns<R>>(columns: &C, first: usize) -> C::Number {
+        columns.number(first)
+    }
+    fn store(self, columns: &mut [R], first: usize) {
+        columns[first] = self;
+    }
+}
+
+impl<R: Real> Shape<R> for [R; 3] {
+    type Of<C: Columns<R>> = C::Vector;
+    #[inline(always)]
+    fn load<C: Columns<R>>(columns: &C, first: usize) -> C::Vector {
+        columns.vector(first)
+    }
+    fn store(self, columns: &mut [R], first: usize) {
+        columns[first..first + 3].copy_from_slice(&self);
+    }
+}
+
+/// Declares a [`Record`]: an ordinary struct, with the name that it has in WGSL. A struct with a type parameter is one
+/// of numbers in either precision; shaders read that of `f32`. `as` after a field's type gives it another name in WGSL.
+/// With `loaded by`, packets load its fields by name.
+macro_rules! record {
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident<$real:ident> as $wgsl:literal, loaded by $loads:ident { $($fields:tt)* }
+    ) => {
+        record! { $(#[$meta])* pub struct $name<$real> as $wgsl { $($fields)* } }
+        loads! { $name<$real> by $loads { $($fields)* } }
+    };
+    (
+        $(#[$meta:meta])*
+        pub struct $name:ident $(<$real:ident>)? as $wgsl:literal {
+            $($(#[doc = $doc:literal])* pub $field:ident: $type:ty $(as $other:literal)?,)*
+        }
+    ) => {
+        $(#[$meta])*
+        #[repr(C)]
+        pub struct $name $(<$real>)? {
+            $($(#[doc = $doc])* pub $field: $type,)*
+        }
+
+        impl Shared for $name $(<single!($real)>)? {
+            fn wgsl() -> String {
+                $wgsl.to_owned()
+            }
+            fn write(&self, words: &mut Vec<u32>) {
+                $(self.$field.write(words);)*
+            }
+        }
+
+        impl Record for $name $(<single!($real)>)? {
+            fn fields() -> Vec<Field> {
+                $(type $real = f32;)?
+                vec![$(Field {
+                    name: stringify!($field),
+                    wgsl: named!(<$type as Shared>::wgsl() $(, $other.to_owned())?),
+                    offset: std::mem::offset_of!(Self, $field),
+                    docs: &[$($doc),*],
+                }),*]
+            }
+        }
+    };
+}
+
+/// The precision of shaders, whatever the name of the parameter that stands for it.
+macro_rules! single {
+    ($real:ident) => {
+        f32
+    };
+}
+
+/// The second, if there is one, else the first.
+macro_rules! named {
+    ($name:expr) => {
+        $name
+    };
+    ($name:expr, $other:expr) => {
+        $other
+    };
+}
+
+/// A trait by which packets load the fields of a record of numbers by name.
+macro_rules! loads {
+    (
+        $name:ident<$real:ident> by $loads:ident {
+            $($(#[doc = $doc:literal])* pub $field:ident: $type:ty,)*
+        }
+    ) => {
+        #[doc = concat!("The fields of a [`", stringify!($name), "`] a lane.")]
+        pub trait $loads<$real: Real>: Columns<$real> {
+            $(
+                $(#[doc = $doc])*
+                #[inline(always)]
+                fn $field(&self) -> <$type as Shape<$real>>::Of<Self> {
+                    <$type as Shape<$real>>::load(self, column_of!($name, $field))
+                }
+            )*
+        }
+
+        impl<$real: Real, C: Columns<$real>> $loads<$real> for C {}
+
+        impl<$real: Real> $name<$real> {
+            /// Its numbers, one after the other, into the first of `columns`.
+            pub fn store(self, columns: &mut [$real]) {
+                $(<$type as Shape<$real>>::store(self.$field, columns, column_of!($name, $field));)*
+            }
+        }
+    };
+}
+
+/// The column at which a field begins.
+macro_rules! column_of {
+    ($name:ident, $field:ident) => {
+        const { std::mem::offset_of!($name<f32>, $field) / size_of::<f32>() }
+    };
+}
+
+pub(super) use {column_of, loads, named, record, single};

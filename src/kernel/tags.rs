@@ -1,0 +1,107 @@
+//! Enumerations that shaders know by numbers.
+
+use super::ROOTS_MASK;
+use crate::render::SamplerKind;
+use crate::stages::{DielectricLaws, Shading, Surface, Transfer};
+use std::fmt::Write;
+
+/// An enumeration of which shaders know each value by a number.
+pub trait Tag: Copy + Eq + 'static {
+    /// All values.
+    const ALL: &'static [Self];
+    /// What shaders call it.
+    fn constant(self) -> &'static str;
+    /// Its number.
+    fn tag(self) -> u32;
+}
+
+/// Which roots of an anchored sphere count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Roots {
+    /// The nearer: no ray is inside of it. One that rounding puts inside meets it where it starts.
+    Nearer = 0,
+    /// Both.
+    Both = 1,
+    /// The farther: it is opaque and holds the eye, so that every ray is inside of it and meets it, whatever
+    /// rounding says.
+    Farther = 2,
+}
+
+impl Roots {
+    /// From the flags of an [`super::AnchoredSphere`].
+    #[inline(always)]
+    pub fn of_flags(flags: u32) -> Self {
+        match flags & ROOTS_MASK {
+            0 => Roots::Nearer,
+            1 => Roots::Both,
+            _ => Roots::Farther,
+        }
+    }
+}
+
+/// Gives each value of an enumeration its name in WGSL.
+macro_rules! tags {
+    ($type:ident { $($value:ident = $constant:literal),* $(,)? }) => {
+        impl $crate::kernel::Tag for $type {
+            const ALL: &'static [Self] = &[$($type::$value),*];
+            fn constant(self) -> &'static str {
+                match self {
+                    $($type::$value => $constant,)*
+                }
+            }
+            fn tag(self) -> u32 {
+                self as u32
+            }
+        }
+    };
+}
+
+pub(crate) use tags;
+
+tags!(Roots { Nearer = "ROOTS_NEARER", Both = "ROOTS_BOTH", Farther = "ROOTS_FARTHER" });
+
+tags!(Shading {
+    ImageGradient = "SHADING_IMAGE_GRADIENT",
+    FirstHitRed = "SHADING_FIRST_HIT_RED",
+    Normals = "SHADING_NORMALS",
+    Path = "SHADING_PATH",
+});
+
+tags!(DielectricLaws {
+    RefractOnly = "LAWS_REFRACT_ONLY",
+    TotalReflection = "LAWS_TOTAL_REFLECTION",
+    Schlick = "LAWS_SCHLICK",
+});
+
+tags!(Surface { Exact = "SURFACE_EXACT", Acne = "SURFACE_ACNE", Book = "SURFACE_BOOK" });
+
+tags!(Transfer {
+    Linear = "TRANSFER_LINEAR",
+    Gamma2 = "TRANSFER_GAMMA2",
+    LinearAboveGamma2 = "TRANSFER_LINEAR_ABOVE_GAMMA2",
+});
+
+tags!(SamplerKind { Independent = "SAMPLER_INDEPENDENT", Sobol = "SAMPLER_SOBOL" });
+
+/// The values of one enumeration in WGSL.
+pub(crate) fn values<T: Tag>() -> String {
+    T::ALL.iter().fold(String::new(), |mut text, value| {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "const {} = {}u;", value.constant(), value.tag());
+        text
+    })
+}
+
+/// All tags in WGSL.
+pub(super) fn wgsl() -> String {
+    [
+        values::<Roots>(),
+        values::<Shading>(),
+        values::<DielectricLaws>(),
+        values::<Surface>(),
+        values::<Transfer>(),
+        values::<SamplerKind>(),
+    ]
+    .concat()
+}

@@ -1,0 +1,132 @@
+//! What a ray brings back, and the next sample where its path has ended.
+
+use super::draw::{draw, last_stream, next_stream};
+use super::{HitRecords, Packet, hit_point, pixel_position};
+use crate::film::FIXED_POINT_SCALE;
+use crate::kernel::{NONE, RADIANCE_TOTAL_LIMIT, parts};
+use crate::render_cpu::camera::screen;
+use crate::render_cpu::lanes::{Lanes, V3, select3};
+use crate::render_cpu::wide::WideTables;
+use crate::render_cpu::work::{TileStats, Work};
+use crate::stages::Shading;
+
+/// Adds the light that arrives, ends paths, starts the next sample where one has ended, and draws the numbers of
+/// the next rays.
+#[inline(always)]
+pub(super) fn collect<L: Lanes, const PARTS: u32>(
+    l: L,
+    wide: &WideTables<L::Real>,
+    packet: &mut Packet<L>,
+    work: &mut Work,
+    stats: &mut TileStats,
+) {
+    let tables = &wide.tables;
+    let miss = L::eq_u(packet.nearest.sphere, l.splat_u(NONE));
+    let is_last = L::eq_u(packet.stream, last_stream(l, tables, packet));
+    let mut ended = miss | is_last | packet.absorbed;
+    let mut lit = miss & !packet.absorbed;
+    let mut light = shade_miss(l, wide, packet.rays.direction.y);
+    if PARTS & parts::RULES != 0 && tables.features.shading != Shading::Path {
+        light = shade_hit::<L, PARTS>(l, wide, packet, miss, light);
+        lit = packet.alive;
+        ended = packet.alive;
+    }
+    add_radiance(l, packet, lit, light, stats);
+
+    // Lanes whose path has ended go on to the next sample, or to the next block.
+    let next = packet.counter + l.load_u(&packet.blocks.step);
+    packet.counter = L::select_u(ended, next, packet.counter);
+    let at_end = L::eq_u(packet.counter, l.load_u(&packet.blocks.end));
+    let done = L::bits(ended & packet.alive & at_end);
+    if done != 0 {
+        enter_block(l, wide, packet, work, done);
+    }
+    packet.stream = L::select_u(ended, l.load_u(&packet.blocks.key), next_stream(l, tables, packet));
+    packet.ended = ended;
+    packet.draw = draw::<L, PARTS>(l, tables, packet);
+}
+
+/// The sky's radiance in a direction of this height, in units of the film.
+#[inline(always)]
+fn shade_miss<L: Lanes>(l: L, wide: &WideTables<L::Real>, height: L::F) -> V3<L::F> {
+    let zero = l.constant(0.0);
+    let channel = |channel: usize| {
+        let (middle, slope) = (l.load(&wide.sky_middle[channel]), l.load(&wide.sky_slope[channel]));
+        L::max(zero, L::mul_add(slope, height, middle))
+    };
+    V3 { x: channel(0), y: channel(1), z: channel(2) }
+}
+
+/// What a ray brings back where the stage shows something simpler than light: `light` where it misses.
+#[inline(always)]
+fn shade_hit<L: Lanes, const PARTS: u32>(
+    l: L,
+    wide: &WideTables<L::Real>,
+    packet: &Packet<L>,
+    miss: L::M,
+    light: V3<L::F>,
+) -> V3<L::F> {
+    let tables = &wide.tables;
+    let (zero, full) = (l.constant(0.0), l.constant(FIXED_POINT_SCALE));
+    let shown = match tables.features.shading {
+        Shading::ImageGradient => {
+            let position = pixel_position(l, l.load_u(&packet.blocks.pixel));
+            // A single column or row has no far end: it is 0 everywhere.
+            let share = |position: L::F, pixels: u32| {
+                position / l.constant(f64::from(pixels.saturating_sub(1).max(1))) * full
+            };
+            let settings = &tables.settings;
+            return V3 {
+                x: share(position[0], settings.width),
+                y: share(position[1], settings.height),
+                z: zero,
+            };
+        }
+        Shading::FirstHitRed => V3 { x: full, y: zero, z: zero },
+        Shading::Normals | Shading::Path => {
+            let half = l.constant(0.5 * FIXED_POINT_SCALE);
+            let record = HitRecords::load::<PARTS>(l, wide, packet);
+            let outward = hit_point::<L, PARTS>(l, wide, packet, &record).outward;
+            let shade = |n: L::F| L::max(zero, L::mul_add(n, half, half));
+            V3 { x: shade(outward.x), y: shade(outward.y), z: shade(outward.z) }
+        }
+    };
+    select3::<L>(miss, light, shown)
+}
+
+/// Adds a path's end to the sums of the lanes that are `lit`, or counts it where it is not a number that can be added.
+#[inline(always)]
+fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::F>, stats: &mut TileStats) {
+    let radiance = light.times(packet.throughput);
+    let total = radiance.x + radiance.y + radiance.z;
+    let is_valid = L::lt(total, l.constant(RADIANCE_TOTAL_LIMIT));
+    let counted = lit & packet.alive;
+    let invalid = L::bits(counted & !is_valid);
+    if invalid != 0 {
+        stats.rejected += u64::from(invalid.count_ones());
+    }
+    let added = counted & is_valid;
+    let mut add = |channel: usize, x: L::F| {
+        let sum = &mut packet.blocks.sums[channel];
+        L::store_u(l.load_u(sum) + l.keep(added, l.fixed_point(x)), sum);
+    };
+    add(0, radiance.x);
+    add(1, radiance.y);
+    add(2, radiance.z);
+}
+
+/// Deals the lanes `done` their next blocks of samples.
+#[inline(always)]
+fn enter_block<L: Lanes>(
+    l: L,
+    wide: &WideTables<L::Real>,
+    packet: &mut Packet<L>,
+    work: &mut Work,
+    done: u32,
+) {
+    let retired = work.deal(done, &mut packet.blocks);
+    packet.counter = L::select_u(l.mask(done), l.load_u(&packet.blocks.start), packet.counter);
+    packet.alive = packet.alive & !l.mask(retired);
+    let [x, y] = pixel_position(l, l.load_u(&packet.blocks.pixel));
+    packet.screen = screen(l, &wide.camera, x, y);
+}

@@ -1,0 +1,62 @@
+//! The shading records of what was hit.
+
+use super::Packet;
+use crate::kernel::{Columns, GROUP, NONE, ROW_COLUMNS, parts};
+use crate::render_cpu::lanes::{Lanes, V3, WideU};
+use crate::render_cpu::wide::WideTables;
+
+/// Groups of columns that a record has.
+const GROUPS: usize = ROW_COLUMNS / GROUP;
+
+/// The first group that only anchored spheres need.
+const ANCHORED_GROUP: usize = 3;
+
+/// By lane, the record of the sphere that was hit. Its fields are loaded by name: [`crate::kernel::LoadShading`].
+pub(super) struct HitRecords<L: Lanes> {
+    groups: [[L::F; GROUP]; GROUPS],
+}
+
+impl<L: Lanes> HitRecords<L> {
+    /// A lane without a hit gets some record.
+    #[inline(always)]
+    pub fn load<const PARTS: u32>(l: L, wide: &WideTables<L::Real>, packet: &Packet<L>) -> Self {
+        let (tables, hit) = (&wide.tables, packet.nearest.sphere);
+        let with_anchored = PARTS & parts::EXTREMES != 0 && tables.features.anchored;
+        let is_needed = |group: usize| group != ANCHORED_GROUP || with_anchored;
+        let mut groups = [[l.constant(0.0); GROUP]; GROUPS];
+        if tables.rows.len() <= L::PERMUTED_ROWS {
+            // Few enough that a column fits a register.
+            for (group, loaded) in groups.iter_mut().enumerate() {
+                if is_needed(group) {
+                    for (column, number) in loaded.iter_mut().enumerate() {
+                        *number = l.permute(&wide.columns[GROUP * group + column], hit);
+                    }
+                }
+            }
+        } else {
+            let mut numbers = WideU::default();
+            L::store_u(l.keep(!L::eq_u(hit, l.splat_u(NONE)), hit), &mut numbers);
+            for (group, loaded) in groups.iter_mut().enumerate() {
+                if is_needed(group) {
+                    *loaded = l.gather(&tables.rows, &numbers, group);
+                }
+            }
+        }
+        HitRecords { groups }
+    }
+}
+
+impl<L: Lanes> Columns<L::Real> for HitRecords<L> {
+    type Number = L::F;
+    type Vector = V3<L::F>;
+
+    #[inline(always)]
+    fn number(&self, column: usize) -> L::F {
+        self.groups[column / GROUP][column % GROUP]
+    }
+
+    #[inline(always)]
+    fn vector(&self, column: usize) -> V3<L::F> {
+        V3 { x: self.number(column), y: self.number(column + 1), z: self.number(column + 2) }
+    }
+}

@@ -1,0 +1,174 @@
+//! Where paths go on: from the surface that was hit, or from the camera where they have ended.
+
+use super::draw::has_lens;
+use super::{HitRecords, Packet, hit_point, pixel_position};
+use crate::kernel::{EYE, LoadShading, NEAR_ZERO, parts};
+use crate::render_cpu::camera::{CameraRays, lens_ray, pinhole_ray};
+use crate::render_cpu::lanes::{Lanes, V3, dot, mul_add3, select3};
+use crate::render_cpu::material::{
+    Incidence, Scatter, Surface, hemisphere, incidence_of, incidence_of_sine2, refracted, scatter, surface_of,
+};
+use crate::render_cpu::sphere::Rays;
+use crate::render_cpu::wide::WideTables;
+use crate::stages::Surface as SurfaceRule;
+use crate::tables::Tables;
+
+/// Sends paths on, or the next ones from the camera where they have ended.
+#[inline(always)]
+pub(super) fn send_on<L: Lanes, const PARTS: u32>(l: L, wide: &WideTables<L::Real>, packet: &mut Packet<L>) {
+    let one = l.constant(1.0);
+    let (hit, ended) = (packet.nearest.sphere, packet.ended);
+    let bounced = scatter_path::<L, PARTS>(l, wide, packet);
+    let camera = generate_camera_ray::<L, PARTS>(l, wide, packet);
+    let next = select3::<L>(ended, camera.direction, bounced.direction);
+    let length2 = dot::<L>(next, next);
+    let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
+    let next = select3::<L>(vanishes, bounced.normal, next);
+    let next = next.scale(one / L::sqrt(L::select(vanishes, one, length2)));
+    // A fuzzy reflection into the surface is absorbed.
+    packet.absorbed = bounced.is_metal & !L::lt(l.constant(0.0), dot::<L>(next, bounced.normal)) & !ended;
+    let mut left = l.fill(ended | bounced.inward, hit);
+    if PARTS & parts::EXTREMES != 0 && wide.tables.features.eye_on_surface {
+        left = L::select_u(ended, l.splat_u(EYE), left);
+    }
+    packet.rays = Rays {
+        origin: select3::<L>(ended, camera.origin, bounced.origin),
+        direction: next,
+        left,
+        inside: l.fill(ended | !bounced.inward, hit),
+    };
+    let throughput = packet.throughput.times(bounced.albedo);
+    packet.throughput = select3::<L>(ended, V3 { x: one, y: one, z: one }, throughput);
+}
+
+/// The rays of new paths.
+#[inline(always)]
+fn generate_camera_ray<L: Lanes, const PARTS: u32>(
+    l: L,
+    wide: &WideTables<L::Real>,
+    packet: &Packet<L>,
+) -> CameraRays<L> {
+    let with_lens = has_lens::<L, PARTS>(&wide.tables);
+    let [u0, u1] = packet.draw.pair;
+    let jitter = match (wide.tables.features.antialiasing, with_lens) {
+        (false, _) => [l.constant(0.5); 2],
+        (true, false) => [u0, u1],
+        (true, true) => packet.draw.jitter,
+    };
+    if with_lens {
+        let lens_radius = L::sqrt(u0);
+        let on_lens = [lens_radius * packet.draw.cosine, lens_radius * packet.draw.sine];
+        lens_ray(l, &wide.camera, packet.screen, jitter, on_lens)
+    } else {
+        pinhole_ray(l, &wide.camera, packet.screen, jitter)
+    }
+}
+
+/// Where paths leave the surfaces that they have met.
+struct Bounced<L: Lanes> {
+    origin: V3<L::F>,
+    /// Not of length 1.
+    direction: V3<L::F>,
+    /// Unit normal on the side that the ray came from.
+    normal: V3<L::F>,
+    /// What the throughput is multiplied by.
+    albedo: V3<L::F>,
+    is_metal: L::M,
+    /// Whether the path goes on inside of the sphere.
+    inward: L::M,
+}
+
+/// Scatters at what was hit.
+#[inline(always)]
+fn scatter_path<L: Lanes, const PARTS: u32>(
+    l: L,
+    wide: &WideTables<L::Real>,
+    packet: &mut Packet<L>,
+) -> Bounced<L> {
+    let (zero, one) = (l.constant(0.0), l.constant(1.0));
+    let with_rules = PARTS & parts::RULES != 0;
+    let (tables, features) = (&wide.tables, &wide.tables.features);
+    let (hit, direction) = (packet.nearest.sphere, packet.rays.direction);
+
+    // What was hit, where, and from which side.
+    let record = HitRecords::load::<PARTS>(l, wide, packet);
+    let point = hit_point::<L, PARTS>(l, wide, packet, &record);
+    let outward_cosine = dot::<L>(direction, point.outward);
+    let mut front = L::lt(outward_cosine, zero);
+    if !with_rules || features.surface == SurfaceRule::Exact {
+        front = front & !L::eq_u(packet.rays.inside, hit);
+    }
+    if PARTS & parts::EXTREMES != 0 && features.cavity {
+        front = front & !L::lt(one, record.anchoring());
+    }
+    let normal = point.outward.scale(L::select(front, one, l.constant(-1.0)));
+
+    let [u0, _] = packet.draw.pair;
+    let (sine, cosine) = (packet.draw.sine, packet.draw.cosine);
+    let rho = L::sqrt(u0 * (one - u0));
+    let rho = rho + rho;
+    let unit = V3 { x: rho * cosine, y: one - (u0 + u0), z: rho * sine };
+
+    let incidence = incidence_of(l, outward_cosine);
+    let surface = surface_of(&record);
+    let laws = features.dielectric_laws;
+    let mut bounced = if PARTS & parts::GLASS == 0 {
+        scatter::<L, false>(l, &surface, laws, direction, normal, &incidence, front, unit, u0)
+    } else if PARTS & parts::EXTREMES != 0 && features.steep_glass {
+        scatter_steeply(l, tables, packet, &surface, normal, &incidence, front, unit)
+    } else {
+        scatter::<L, true>(l, &surface, laws, direction, normal, &incidence, front, unit, u0)
+    };
+    let mut albedo = record.albedo();
+    if with_rules {
+        if features.hemisphere {
+            let is_lambertian = L::lt(zero, surface.weight);
+            bounced.direction = select3::<L>(is_lambertian, hemisphere(l, normal, unit), bounced.direction);
+        }
+        if features.reflectance_strips {
+            let reflectance = strip_reflectance(l, tables, l.load_u(&packet.blocks.pixel));
+            albedo = V3 { x: reflectance, y: reflectance, z: reflectance };
+        }
+    }
+    let inward = (front & bounced.refracts) | !(front | bounced.refracts);
+    let Scatter { direction, is_metal, .. } = bounced;
+    Bounced { origin: point.position, direction, normal, albedo, is_metal, inward }
+}
+
+/// Scatters where the angle of incidence must be known better than from its cosine. A ray inside glass meets it under
+/// the angle under which it started: that is remembered, so that total reflection lasts.
+#[inline(always)]
+fn scatter_steeply<L: Lanes>(
+    l: L,
+    tables: &Tables<L::Real>,
+    packet: &mut Packet<L>,
+    surface: &Surface<L>,
+    normal: V3<L::F>,
+    incidence: &Incidence<L>,
+    front: L::M,
+    unit: V3<L::F>,
+) -> Scatter<L> {
+    let direction = packet.rays.direction;
+    let across = mul_add3::<L>(normal, incidence.cosine, direction);
+    let runs_own_chord = L::eq_u(packet.rays.inside, packet.nearest.sphere);
+    let is_known = runs_own_chord & L::lt(l.constant(0.0), surface.refraction_index);
+    let incidence = incidence_of_sine2(l, L::select(is_known, packet.sine2, dot::<L>(across, across)));
+    let coin = packet.draw.pair[0];
+    let laws = tables.features.dielectric_laws;
+    let mut bounced = scatter::<L, true>(l, surface, laws, direction, normal, &incidence, front, unit, coin);
+    let through = refracted(l, across, normal, bounced.ratio, incidence.sine2);
+    bounced.direction = select3::<L>(bounced.refracts, through, bounced.direction);
+    let refracted_sine2 = bounced.ratio * bounced.ratio * incidence.sine2;
+    packet.sine2 = L::select(bounced.refracts, refracted_sine2, incidence.sine2);
+    bounced
+}
+
+/// The reflectance of the picture's strip that a pixel lies in: 10, 30, 50, 70, 90 %.
+#[inline(always)]
+fn strip_reflectance<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: L::U) -> L::F {
+    let [x, _] = pixel_position(l, pixel);
+    let strips = l.constant(5.0 / f64::from(tables.settings.width));
+    let strip = (x + l.constant(0.5)) * strips - l.constant(0.5);
+    let strip = L::float_of(l.fixed_point(L::max(l.constant(0.0), strip)));
+    L::mul_add(strip, l.constant(0.2), l.constant(0.1))
+}

@@ -1,0 +1,166 @@
+//! Boxes of both hierarchies.
+
+use super::gpu_common::gpu;
+use super::{L, Words, float, list, rays, run, uniform, unit_vector, vector, words};
+use glam::DVec3;
+use weekender::kernel::{BOX_WIDENING, MISS_KEY, NONE, Node};
+use weekender::render_cpu::bvh::{meets_box, slabs_of};
+use weekender::render_gpu::GpuOptions;
+use weekender::render_gpu::shader_source::Probe;
+use weekender::sampling::pcg4d;
+use weekender::stages::DielectricLaws;
+
+/// A ray, a box that it meets in half of the cases, how far it is followed, and the largest coordinate.
+fn ray_and_box(i: u32) -> Words {
+    let [x, y, z, size] = uniform(i, 70);
+    let low = [x, y, z].map(|x| 4.0 * x - 2.0);
+    let [a, b, c, reach] = uniform(i, 71);
+    let high = [low[0] + size + a, low[1] + size + b, low[2] + size + c];
+    let origin = unit_vector(i, 72).map(|x| 8.0 * reach * x);
+    let [u, v, w, limit] = uniform(i, 73);
+    let target = [0, 1, 2].map(|k| low[k] + (1.8 * [u, v, w][k] - 0.4) * (high[k] - low[k]));
+    let mut d = DVec3::from_array([0, 1, 2].map(|k| f64::from(target[k] - origin[k])));
+    // Along an axis, too, where one component's inverse is not finite.
+    match i % 8 {
+        0 => d.x = 0.0,
+        1 => (d.y, d.z) = (0.0, -0.0),
+        _ => {}
+    }
+    let d = d.normalize();
+    let mut words = words(&[
+        origin[0],
+        origin[1],
+        origin[2],
+        d.x as f32,
+        d.y as f32,
+        d.z as f32,
+        0.0,
+        0.0,
+        low[0],
+        low[1],
+        low[2],
+        high[0],
+        high[1],
+        high[2],
+        16.0 * limit,
+        4.0,
+    ]);
+    (words[6], words[7]) = (NONE, NONE);
+    words
+}
+
+/// Distances at which a ray enters and leaves a box, in `f64`.
+fn slab(origin: [f32; 3], direction: [f32; 3], low: [f32; 3], high: [f32; 3], limit: f32) -> [f64; 2] {
+    let mut within = [0.0, f64::from(limit)];
+    for axis in 0..3 {
+        let [o, d, low, high] = [origin[axis], direction[axis], low[axis], high[axis]].map(f64::from);
+        let at = [(low - o) / d, (high - o) / d];
+        if d == 0.0 {
+            if o < low || o > high {
+                return [1.0, -1.0];
+            }
+            continue;
+        }
+        within = [within[0].max(at[0].min(at[1])), within[1].min(at[0].max(at[1]))];
+    }
+    within
+}
+
+#[test]
+fn boxes_are_met_alike() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let (mut met, mut missed) = (0, 0);
+    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Box, ray_and_box) {
+        let (low, high) = (list(vector(&input, 8)), list(vector(&input, 11)));
+        let (limit, extent) = (float(&input, 14), float(&input, 15));
+        let node = Node { low, first: 0, high, count: 1 };
+        let on_cpu = meets_box(L, &slabs_of(L, &rays(&input), extent), &node, limit);
+        let on_gpu = output[0] != MISS_KEY;
+        let rays = rays(&input);
+        let [enter, leave] = slab(list(rays.origin), list(rays.direction), low, high, limit);
+        // Boxes are made a little larger, which shows most along an axis that the ray hardly moves along.
+        let slowest = list(rays.direction).into_iter().filter(|d| *d != 0.0).fold(1.0, |a, b| b.abs().min(a));
+        let margin = 2e-5 / f64::from(slowest);
+        if leave - enter > 0.0 {
+            assert!(on_cpu && on_gpu, "{input:?}");
+            let entered = f64::from(f32::from_bits(output[0]));
+            assert!((entered - enter).abs() < margin, "{input:?}: {entered} in place of {enter}");
+            met += 1;
+        } else if leave - enter < -4.0 * margin {
+            assert!(!on_cpu && !on_gpu, "{input:?}");
+            missed += 1;
+        }
+    }
+    assert!(met > 500 && missed > 500, "{met} met, {missed} missed");
+}
+
+/// The shader's function, in scalar code: no float is rounded in another way.
+fn four_hits(words: &Words) -> u32 {
+    let [step, near, far] = [0, 3, 6].map(|i| list(vector(words, i)));
+    let (marks, octant, limit) = (words[15].to_le_bytes(), words[16], float(words, 17));
+    let mut hits = 0;
+    for (child, mark) in marks.into_iter().enumerate() {
+        let (mut enter, mut leave) = (0.0_f32, limit);
+        for axis in 0..3 {
+            let bound = |word: u32| f32::from(word.to_le_bytes()[child]);
+            let [first, last] = [words[9 + 2 * axis], words[10 + 2 * axis]].map(bound);
+            enter = enter.max(first.mul_add(step[axis], near[axis]));
+            leave = leave.min(last.mul_add(step[axis], far[axis]));
+        }
+        let mark = u32::from(mark);
+        let place = mark & 31;
+        let place = if place >= 24 { place ^ octant } else { place };
+        if leave * BOX_WIDENING as f32 >= enter {
+            hits |= (mark >> 5) << place;
+        }
+    }
+    hits
+}
+
+#[test]
+fn compressed_boxes_are_met_as_they_should() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let (mut parted, mut met, mut ordered) = (0, 0, 0);
+    let inputs = |i: u32| {
+        let [a, b, c, d] = uniform(i, 80);
+        let steps = [a, b, c].map(|x| 0.002 + 0.02 * x);
+        let starts = unit_vector(i, 81);
+        let mut words = words(&[
+            steps[0],
+            steps[1],
+            steps[2],
+            starts[0],
+            starts[1],
+            starts[2],
+            starts[0] + 0.01,
+            starts[1] + 0.01,
+            starts[2] + 0.01,
+        ]);
+        let bytes = pcg4d([i, 82, 1, 2]);
+        let more = pcg4d([i, 83, 1, 2]);
+        for axis in 0..3 {
+            let near = bytes[axis] & 0x7F7F_7F7F;
+            words[9 + 2 * axis] = near;
+            // No byte carries.
+            words[10 + 2 * axis] = near + (more[axis] & 0x7F7F_7F7F);
+        }
+        // Marks of nodes, which stand at bit 24 and above, and of up to three spheres below.
+        let mark = |child: u32| {
+            let place = pcg4d([i, 84, child, 2])[0];
+            if place & 256 != 0 { 1 << 5 | 24 | (place & 7) } else { 7 << 5 | (place % 22) }
+        };
+        words[15] = mark(0) | mark(1) << 8 | mark(2) << 16 | mark(3) << 24;
+        words[16] = more[3] & 7;
+        words[17] = (4.0 * d).to_bits();
+        words
+    };
+    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::FourHits, inputs) {
+        let expected = four_hits(&input);
+        parted += u32::from(output[0] != expected);
+        met += u32::from(expected & 0xFF_FFFF != 0);
+        ordered += u32::from(expected >> 24 != 0 && input[16] != 0);
+    }
+    // An edge within rounding of a driver that does not fuse.
+    assert!(parted <= 2, "{parted} of 4096 parted");
+    assert!(met > 300 && ordered > 300, "{met} spheres, {ordered} nodes");
+}

@@ -1,0 +1,148 @@
+//! Which functions each shader file and its twin have: the same, in the same order.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// A shader file, and the files of `src/render_cpu` that it is the twin of, in order.
+struct Pair {
+    shader: &'static str,
+    twins: &'static [&'static str],
+    /// Functions of the shader alone, and why.
+    shader_alone: &'static [(&'static str, &'static str)],
+    /// Functions of the twin alone, and why.
+    twin_alone: &'static [(&'static str, &'static str)],
+}
+
+const PAIRS: &[Pair] = &[
+    Pair {
+        shader: "path.wgsl",
+        twins: &["path/mod.rs", "path/collect.rs", "path/draw.rs", "path/send.rs"],
+        shader_alone: &[("turns_over_lists", "no loop of the CPU is cut off")],
+        twin_alone: &[
+            ("idle", "a packet before its first work; the shader's path is made in `trace`"),
+            ("shade", "packets take turns, a thread has one path"),
+            ("next_stream", "a lane counts its stream up, a thread has its bounce"),
+            ("last_stream", "a lane counts its stream up, a thread has its bounce"),
+        ],
+    },
+    Pair { shader: "camera.wgsl", twins: &["camera.rs"], shader_alone: &[], twin_alone: &[] },
+    Pair { shader: "material.wgsl", twins: &["material.rs"], shader_alone: &[], twin_alone: &[] },
+    Pair {
+        shader: "sphere.wgsl",
+        twins: &["sphere.rs"],
+        shader_alone: &[
+            ("smaller_key", "`Lanes::min_key`"),
+            (
+                "signed_root",
+                "a thread would wait for both of `near_root` and `nearest_root`, a packet takes one",
+            ),
+        ],
+        twin_alone: &[
+            ("splat", "a sphere for all lanes"),
+            ("load", "a sphere for all lanes"),
+            ("new", "a sphere for all lanes"),
+            ("settle", "a tie of some lanes, in `take_in_any_order`"),
+            ("distance", "of a key, a bitcast"),
+        ],
+    },
+    Pair {
+        shader: "bvh.wgsl",
+        twins: &["bvh.rs"],
+        shader_alone: &[("box_key", "`meets_box` with the distance, by which a thread orders the children")],
+        twin_alone: &[("meets_box", "`box_key` without the distance: a packet has an order of its own")],
+    },
+    Pair {
+        shader: "rng.wgsl",
+        twins: &["rng.rs"],
+        shader_alone: &[
+            ("stream_of", "a lane counts its stream up"),
+            ("pixel_key", "made when a lane is dealt a block: `sampling::pixel_key`"),
+            ("sampler_key", "made when a lane is dealt a block: `sampling::HalfKey`"),
+        ],
+        twin_alone: &[],
+    },
+];
+
+/// Names of functions, but for those of tests.
+fn functions(text: &str) -> Vec<String> {
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let declared = code.lines().filter_map(|line| {
+        let line = line.trim_start();
+        let line = line.strip_prefix("pub(super) ").or(line.strip_prefix("pub ")).unwrap_or(line);
+        let name = line.strip_prefix("fn ")?;
+        Some(name.split(|c: char| !c.is_alphanumeric() && c != '_').next()?.to_owned())
+    });
+    declared.collect()
+}
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
+
+/// What is wrong with a pair of lists.
+fn faults(pair: &Pair, shader: &[String], twin: &[String]) -> Vec<String> {
+    let mut faults = Vec::new();
+    let sides = [(shader, twin, pair.shader_alone), (twin, shader, pair.twin_alone)];
+    for (own, other, alone) in sides {
+        for name in own.iter().filter(|name| !other.contains(name)) {
+            if alone.iter().all(|(known, _)| known != name) {
+                faults.push(format!("{} and {:?}: one side alone has {name}", pair.shader, pair.twins));
+            }
+        }
+        for (name, _) in alone {
+            if !own.iter().any(|own| own == name) || other.iter().any(|other| other == name) {
+                faults.push(format!("{}: {name} is not on one side alone", pair.shader));
+            }
+        }
+    }
+    let common = |own: &[String], other: &[String]| -> Vec<String> {
+        own.iter().filter(|name| other.contains(name)).cloned().collect()
+    };
+    let (in_shader, in_twin) = (common(shader, twin), common(twin, shader));
+    if in_shader != in_twin {
+        faults.push(format!("{}: {in_shader:?} are in another order in {in_twin:?}", pair.shader));
+    }
+    faults
+}
+
+#[test]
+fn twins_have_the_same_functions_in_the_same_order() {
+    for pair in PAIRS {
+        let shader = functions(&read(&format!("shaders/{}", pair.shader)));
+        let twin: Vec<String> =
+            pair.twins.iter().flat_map(|file| functions(&read(&format!("src/render_cpu/{file}")))).collect();
+        assert!(shader.len() > 2 && twin.len() > 2, "{}: no functions were found", pair.shader);
+        let faults = faults(pair, &shader, &twin);
+        assert!(faults.is_empty(), "{faults:#?}");
+    }
+}
+
+/// All that the shaders compute with has a function of its name on the CPU's side, where the rest of arithmetic is that of
+/// [`weekender::render_cpu::lanes::Lanes`].
+#[test]
+fn arithmetic_has_twins() {
+    let shader = functions(&read("shaders/lanes.wgsl"));
+    let twins: BTreeSet<String> = ["mod", "vector"]
+        .iter()
+        .flat_map(|file| functions(&read(&format!("src/render_cpu/lanes/{file}.rs"))))
+        .collect();
+    // `dot` is taken by WGSL itself; a packet's directions are normalised where they are sent on.
+    let other_names = [("dot3", "dot"), ("normalized", "sqrt")];
+    for name in shader {
+        let twin =
+            other_names.iter().find(|(other, _)| *other == name).map_or(name.as_str(), |(_, twin)| twin);
+        assert!(twins.contains(twin), "{name} has no twin");
+    }
+}
+
+/// The check finds what it is there for.
+#[test]
+fn a_function_of_one_side_is_found() {
+    let pair = Pair { shader: "a", twins: &["b"], shader_alone: &[("x", "")], twin_alone: &[] };
+    let names = |list: &str| list.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    assert!(faults(&pair, &names("f x g"), &names("f g")).is_empty());
+    assert_eq!(faults(&pair, &names("f x g h"), &names("f g")).len(), 1);
+    assert_eq!(faults(&pair, &names("f x g"), &names("f h g")).len(), 1);
+    assert_eq!(faults(&pair, &names("f x g"), &names("g f")).len(), 1);
+    assert_eq!(faults(&pair, &names("f g"), &names("f g")).len(), 1);
+}

@@ -1,0 +1,90 @@
+//! While something moves, coarse previews are shown; what is saved and told is never theirs.
+
+use crate::common::{has_samples, hold, open, send, until};
+use eframe::egui::{self, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::time::{Duration, Instant};
+use weekender::app::{Command, Window};
+use weekender::output::{OutputFormat, read_description};
+use weekender::progressive::Stop;
+use weekender::recipe::file;
+
+/// So large that previews are coarser.
+const LARGE: &str = "--size 1600x900 --device cpu --samples 4";
+
+/// Draws frames, each with a change of the picture, until a preview is on the screen.
+fn move_until_preview(harness: &mut Harness<'_, Window>, change: impl Fn(&mut Window)) {
+    let begin = Instant::now();
+    while harness.state().shown().is_none_or(|(_, divisor)| divisor == 1) {
+        assert!(begin.elapsed() < Duration::from_secs(60), "no preview");
+        std::thread::sleep(Duration::from_millis(2));
+        change(harness.state_mut());
+        harness.step();
+    }
+}
+
+#[test]
+fn what_is_saved_while_the_camera_moves_has_the_full_size() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("moving.png");
+    let mut harness = open(&format!("--stage sky {LARGE}"));
+    until(&mut harness, "a picture", has_samples(1));
+    let at = harness.state().picture_rect().center();
+    hold(&mut harness, at, true);
+    let change = |window: &mut Window| window.document_mut().camera.vfov_degrees -= 0.01;
+    send(&mut harness, Command::Save(OutputFormat::Png));
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    harness.run_steps(2);
+    move_until_preview(&mut harness, change);
+    harness.key_press(Key::Enter);
+    for _ in 0..10 {
+        change(harness.state_mut());
+        harness.step();
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(!harness.state().has_dialog(), "the name was taken while the camera moved");
+    assert!(harness.state().shown().unwrap().1 > 1, "a preview is on the screen");
+    hold(&mut harness, at, false);
+    let saved = format!("Saved {}", path.display());
+    until(&mut harness, &saved, |window| window.messages().contains(&saved));
+    assert_eq!(image::image_dimensions(&path).unwrap(), (1600, 900));
+    let recipe = file::parse(read_description(&path).unwrap().recipe(), "saved").unwrap();
+    assert_eq!(recipe.camera.vfov_degrees, harness.state().document().camera.vfov_degrees);
+}
+
+#[test]
+fn the_pixel_under_the_pointer_is_never_that_of_a_preview() {
+    // The sky gets bluer from the bottom to the top, so that a pixel of a coarser picture has another colour. This one is
+    // within that picture, too.
+    let mut harness = open(&format!("--stage sky {LARGE}"));
+    let at = harness.state().picture_rect().lerp_inside(egui::vec2(0.05, 0.08));
+    harness.event(egui::Event::PointerMoved(at));
+    until(&mut harness, "the end", has_samples(4));
+    until(&mut harness, "the pixel", |window| window.inspected().is_some());
+    let (pixel, expected) = harness.state().inspected().unwrap();
+    // Other numbers of samples than that are news, and asked for.
+    harness.state_mut().document_mut().stop = Stop::at_samples(2);
+    hold(&mut harness, at, true);
+    // Another seed is another film of the same colours.
+    let change = |window: &mut Window| window.document_mut().settings.seed += 1;
+    let mut previews = 0;
+    for _ in 0..60 {
+        move_until_preview(&mut harness, change);
+        previews += u32::from(!harness.state().is_up_to_date() || harness.state().shown().unwrap().1 > 1);
+        for _ in 0..3 {
+            std::thread::sleep(Duration::from_millis(2));
+            harness.step();
+        }
+        change(harness.state_mut());
+        harness.step();
+        let (found, mean) = harness.state().inspected().unwrap();
+        assert_eq!(found, pixel);
+        let off = (0..3).map(|i| (mean[i] - expected[i]).abs()).fold(0.0, f64::max);
+        assert!(off < 0.002, "{mean:?} where the picture has {expected:?}");
+    }
+    assert!(previews > 10, "{previews}");
+}

@@ -1,0 +1,80 @@
+//! Films that go on in the window.
+
+use crate::common::{has_samples, open, opened, save, until};
+use weekender::cli;
+use weekender::film::checkpoint;
+use weekender::output::OutputFormat;
+use weekender::progressive::Stop;
+
+const PICTURE: &str = "--stage defocus --size 48x27 --vfov 31 --device cpu";
+
+/// Saves a film of [`PICTURE`] with forty samples.
+fn save_film(path: &std::path::Path, more: &str) {
+    let mut harness = open(&format!("{PICTURE} {more} --samples 40"));
+    until(&mut harness, "the end", has_samples(40));
+    save(&mut harness, OutputFormat::Exr, path);
+}
+
+#[test]
+fn a_resumed_film_goes_on_as_the_flags_say() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    save_film(&path, "");
+    let resume = format!("--resume {} --device cpu", path.display());
+    for (flags, stop) in [
+        ("--samples 90", Stop::at_samples(90)),
+        ("--samples 90 --time-limit 1000", Stop { seconds: Some(1000.0), ..Stop::at_samples(90) }),
+        ("--samples 90 --stage defocus --size 48x27 --vfov 31", Stop::at_samples(90)),
+    ] {
+        let mut harness = open(&format!("{resume} {flags}"));
+        until(&mut harness, flags, |window| {
+            has_samples(90)(window)
+                && window.status().phase.is_over()
+                && window.status().contributions.len() == 1
+        });
+        until(&mut harness, "the film's samples", |window| {
+            window.status().contributions.iter().map(|part| part.samples_per_pixel).sum::<u64>() == 50
+        });
+        let document = harness.state().document();
+        assert_eq!(document.stop, stop, "{flags}");
+        assert_eq!(document.stage().map(|stage| stage.id), Some("defocus"));
+        assert_eq!((document.camera.vfov_degrees, document.settings.width), (31.0, 48));
+        // Its samples are those of an uninterrupted render.
+        let [resumed, whole] = ["resumed.exr", "whole.exr"].map(|name| directory.path().join(name));
+        save(&mut harness, OutputFormat::Exr, &resumed);
+        let mut harness = open(&format!("{PICTURE} --samples 90"));
+        until(&mut harness, "the end", has_samples(90));
+        save(&mut harness, OutputFormat::Exr, &whole);
+        let [resumed, whole] = [resumed, whole].map(|path| checkpoint::load(&path).unwrap().film);
+        assert!(resumed == whole, "{flags}");
+    }
+    // Without a condition of its own it goes on as the picture usually would.
+    let harness = open(&resume);
+    assert_eq!(harness.state().document().stop, Stop { noise: Some(Stop::NOISE), ..Stop::default() });
+}
+
+#[test]
+fn the_film_of_another_picture_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    save_film(&path, "");
+    let parse = |flags: &str| {
+        let line = format!("weekender --resume {} --device cpu {flags}", path.display());
+        cli::parse(line.split_whitespace().map(Into::into))
+    };
+    for (flags, told) in [("--seed 5", "seed is 5"), ("--scene book --size 48x27", "another picture")] {
+        let refused = parse(flags).unwrap_err().to_string();
+        assert!(refused.contains(told) && refused.contains("film.exr"), "{flags}: {refused}");
+    }
+    // One that takes its place after that is refused, too, and the picture starts from the beginning.
+    let cli::Request::Window(options) = parse("--samples 50").unwrap() else { panic!("no window") };
+    save_film(&path, "--seed 9");
+    let mut harness = opened(weekender::app::Window::new(*options, None).unwrap());
+    until(&mut harness, "refused", |window| {
+        window
+            .messages()
+            .iter()
+            .any(|text| text.starts_with("Not resumed") && text.contains("seed is 0 here, 9 there"))
+    });
+    until(&mut harness, "a render from the beginning", has_samples(50));
+}

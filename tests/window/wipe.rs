@@ -1,0 +1,78 @@
+//! Two pictures at the sides of a divider.
+
+use crate::common::{drag_from, has_samples, send, until, window};
+use eframe::egui::{Pos2, Vec2, vec2};
+use egui_kittest::Harness;
+use std::time::{Duration, Instant};
+use weekender::app::{Command, Window};
+use weekender::progressive::Stop;
+use weekender::stages::Stage;
+
+/// The colour on the screen.
+fn colour_at(harness: &mut Harness<'_, Window>, at: Pos2) -> [u8; 3] {
+    let image = harness.render().unwrap();
+    let [red, green, blue, _] = image.get_pixel(at.x as u32, at.y as u32).0;
+    [red, green, blue]
+}
+
+/// Shows a stage, small and with another camera than its own.
+fn show(harness: &mut Harness<'_, Window>, stage: &'static Stage) {
+    send(harness, Command::Stage(stage));
+    let document = harness.state_mut().document_mut();
+    (document.settings.width, document.settings.height) = (64, 36);
+    document.camera.vfov_degrees = 60.0;
+    document.stop = Stop::at_samples(16);
+    harness.step();
+}
+
+fn is_near(a: [u8; 3], b: [u8; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.abs_diff(b) < 12)
+}
+
+#[test]
+fn the_own_picture_is_left_of_the_divider_and_the_other_right_of_it() {
+    let mut harness =
+        Harness::builder().with_size([1000.0, 700.0]).with_step_dt(1.0 / 60.0).wgpu().build_ui_state(
+            |ui, window: &mut Window| window.ui_in(ui),
+            window("--stage lambertian-gamma --size 64x36 --samples 16"),
+        );
+    let mine_stage = Stage::find("lambertian-gamma").unwrap();
+    show(&mut harness, mine_stage);
+    until(&mut harness, "a picture", has_samples(16));
+    harness.run_steps(10);
+    let rect = harness.state().picture_rect();
+    // Below the titles; the second is on the ball, which this camera sees larger.
+    let places = [0.1, 0.35, 0.9].map(|share| rect.lerp_inside(vec2(share, 0.35)));
+    let mine = places.map(|at| colour_at(&mut harness, at));
+    let other = Stage::find("lambertian-linear").unwrap();
+    show(&mut harness, other);
+    until(&mut harness, "the other picture", has_samples(16));
+    harness.run_steps(10);
+    let theirs = places.map(|at| colour_at(&mut harness, at));
+    assert!((0..3).all(|i| !is_near(mine[i], theirs[i])), "{mine:?} {theirs:?}");
+
+    show(&mut harness, mine_stage);
+    until(&mut harness, "a picture", has_samples(16));
+    send(&mut harness, Command::Wipe);
+    until(&mut harness, "two pictures", |window| window.has_other_picture());
+    // The second picture has its samples soon.
+    let begin = Instant::now();
+    let mut found = places.map(|at| colour_at(&mut harness, at));
+    while !is_near(found[2], theirs[2]) && begin.elapsed() < Duration::from_secs(20) {
+        std::thread::sleep(Duration::from_millis(20));
+        harness.run_steps(2);
+        found = places.map(|at| colour_at(&mut harness, at));
+    }
+    let is_mine =
+        |found: [[u8; 3]; 3]| [0, 1, 2].map(|i| (is_near(found[i], mine[i]), is_near(found[i], theirs[i])));
+    assert_eq!(is_mine(found), [(true, false), (true, false), (false, true)], "{found:?}");
+
+    // With the divider at a quarter the other picture begins there.
+    let knob = rect.center();
+    drag_from(&mut harness, knob, Vec2::new(-0.25 * rect.width(), 0.0));
+    harness.run_steps(5);
+    std::thread::sleep(Duration::from_millis(200));
+    harness.run_steps(5);
+    let found = places.map(|at| colour_at(&mut harness, at));
+    assert_eq!(is_mine(found), [(true, false), (false, true), (false, true)], "{found:?}");
+}
