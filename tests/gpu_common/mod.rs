@@ -28,7 +28,8 @@ pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
 /// past it.
 pub fn say_loudly(text: &str) {
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
-    writeln!(std::io::stderr(), "\nNOT TESTED: {test}: {text}").unwrap();
+    let line = format!("\nNOT TESTED: {test}: {text}\n");
+    std::io::stderr().write_all(line.as_bytes()).unwrap();
 }
 
 /// The control.
