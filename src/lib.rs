@@ -5,13 +5,13 @@
 
 pub mod app;
 pub mod backends;
+pub mod baseline;
 pub mod batch;
 pub mod bench;
 pub mod chart;
 pub mod cli;
 pub mod compare;
 pub mod console;
-pub mod control;
 pub mod describe;
 pub mod diff;
 pub mod failure;
@@ -23,6 +23,7 @@ pub mod kernel;
 pub mod layers;
 pub mod memory;
 pub mod output;
+pub mod prepared;
 pub mod progressive;
 pub mod recipe;
 pub mod record;
@@ -37,5 +38,4 @@ pub mod stages;
 pub mod statistics;
 pub mod stress;
 mod suggest;
-pub mod tables;
 pub mod terminal;

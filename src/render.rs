@@ -85,7 +85,7 @@ impl RenderSettings {
 /// What a pixel takes besides its sums while the picture is written.
 const OUTPUT_BYTES_PER_PIXEL: u64 = 4;
 
-/// What a sphere takes besides its place in the scene: tables, hierarchy, and what building them takes at its peak.
+/// What a sphere takes besides its place in the scene: prepared scene, hierarchy, and what building them takes at its peak.
 pub const TRACING_BYTES_PER_SPHERE: u64 = 400;
 
 /// A picture to be rendered, checked once. Two equal jobs have the same samples.
@@ -362,7 +362,7 @@ pub trait Renderer: Send {
         None
     }
 
-    /// Begins a film of `job`: builds what tracing it needs (tables, hierarchy, kernels), unless that is there, and
+    /// Begins a film of `job`: builds what tracing it needs (prepared scene, hierarchy, kernels), unless that is there, and
     /// forgets what was traced and not collected.
     ///
     /// `cancel` is looked at while kernels are compiled.

@@ -49,22 +49,22 @@ fn rows_have_sane_figures() {
     for scene in scenes {
         let rows = scene["rows"].as_array().unwrap();
         let kinds: Vec<&str> = rows.iter().map(|row| row["kind"].as_str().unwrap()).collect();
-        assert_eq!(kinds[0], "control");
+        assert_eq!(kinds[0], "baseline");
         assert!(kinds.contains(&"scalar") && kinds.contains(&"threads"), "{kinds:?}");
-        let control = number(&rows[0]["paths_per_second"], "median");
+        let baseline = number(&rows[0]["paths_per_second"], "median");
         for row in rows {
             assert_eq!(row["skipped"], Value::Null, "{row}");
             assert_eq!(row["runs"].as_array().unwrap().len(), 3);
             check_spread(&row["paths_per_second"]);
             check_spread(&row["rays_per_second"]);
-            let ratio = number(&row["paths_per_second"], "median") / control;
-            assert!((number(row, "ratio_to_control") / ratio - 1.0).abs() < 1e-9);
+            let ratio = number(&row["paths_per_second"], "median") / baseline;
+            assert!((number(row, "ratio_to_baseline") / ratio - 1.0).abs() < 1e-9);
             for run in row["runs"].as_array().unwrap() {
                 assert_eq!(number(run, "paths"), 32.0 * 18.0 * number(row, "samples_per_pixel"));
                 let rays = number(run, "rays") / number(run, "paths");
                 assert!((1.0..24.0).contains(&rays), "{rays} rays a path");
             }
-            if row["kind"] == "control" {
+            if row["kind"] == "baseline" {
                 continue;
             }
             assert!((0.0..=1.0).contains(&number(row, "lanes_in_use")), "{row}");

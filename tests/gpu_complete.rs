@@ -9,7 +9,7 @@ use gpu_common::{cpu, gpu, job_of};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
 use weekender::render::{RenderJob, Renderer, SamplerKind};
-use weekender::render_gpu::{Drill, DrillPoint, Fault, GpuOptions, HierarchyKind, TURN_LIMIT};
+use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, HierarchyKind, InjectionPoint, TURN_LIMIT};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::{Rules, Surface};
@@ -115,8 +115,8 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
     let Some(mut good) = gpu(GpuOptions::default()) else { return };
     let expected = rendered(&mut good, &job, 32);
     for after in [0, 3, 9] {
-        let drill = Some(Drill { fault: Fault::Short, point: DrillPoint::Dispatch, after });
-        let options = GpuOptions { drill, samples_per_dispatch: Some(2), ..GpuOptions::default() };
+        let injection = Some(FaultInjection { fault: Fault::Short, point: InjectionPoint::Dispatch, after });
+        let options = GpuOptions { injection, samples_per_dispatch: Some(2), ..GpuOptions::default() };
         let mut short = gpu(options.clone()).unwrap();
         assert!(rendered(&mut short, &job, 32) == expected, "{after}");
         let said = short.take_messages().join("; ");
@@ -137,8 +137,10 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
 fn a_device_that_always_leaves_samples_out_fails() {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, false);
-    let drill = Some(Drill { fault: Fault::AlwaysShort, point: DrillPoint::Dispatch, after: 2 });
-    let Some(mut short) = gpu(GpuOptions { drill, samples_per_dispatch: Some(1), ..GpuOptions::default() })
+    let injection =
+        Some(FaultInjection { fault: Fault::AlwaysShort, point: InjectionPoint::Dispatch, after: 2 });
+    let Some(mut short) =
+        gpu(GpuOptions { injection, samples_per_dispatch: Some(1), ..GpuOptions::default() })
     else {
         return;
     };

@@ -8,7 +8,7 @@ use std::time::Duration;
 use weekender::backends::BackendChoice;
 use weekender::progressive::{EndReason, Phase, Plan, Progressive, Status, Work};
 use weekender::render::{RenderJob, SamplerKind};
-use weekender::render_gpu::{Drill, DrillPoint, Fault, GpuOptions};
+use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
 use weekender::scene::builtin::BuiltinScene;
 
 fn job(size: [u32; 2]) -> RenderJob {
@@ -17,10 +17,10 @@ fn job(size: [u32; 2]) -> RenderJob {
 }
 
 /// A backend that fails; `None` without an adapter.
-fn failing(fault: Fault, point: DrillPoint, after: u64) -> Option<BackendChoice> {
+fn failing(fault: Fault, point: InjectionPoint, after: u64) -> Option<BackendChoice> {
     let adapter = gpu(GpuOptions::default())?.adapter().name.clone();
     Some(BackendChoice::Gpu(GpuOptions {
-        drill: Some(Drill { fault, point, after }),
+        injection: Some(FaultInjection { fault, point, after }),
         patience: Duration::from_millis(300),
         samples_per_dispatch: Some(2),
         ..GpuOptions::of_adapter(Some(&adapter))
@@ -45,11 +45,11 @@ fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
     // Memory ends only where the program's does on a software adapter: see tests/gpu_program.rs.
     for fault in [Fault::Lost, Fault::Invalid, Fault::Hang] {
         let points = [
-            (DrillPoint::Prepare, 0),
-            (DrillPoint::Dispatch, 0),
-            (DrillPoint::Dispatch, 5),
-            (DrillPoint::Fetch, 0),
-            (DrillPoint::Fetch, 1),
+            (InjectionPoint::Prepare, 0),
+            (InjectionPoint::Dispatch, 0),
+            (InjectionPoint::Dispatch, 5),
+            (InjectionPoint::Fetch, 0),
+            (InjectionPoint::Fetch, 1),
         ];
         for (point, after) in points {
             let Some(backend) = failing(fault, point, after) else { return };
@@ -64,7 +64,7 @@ fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
 #[test]
 fn a_fault_during_a_pause_is_survived() {
     for fault in [Fault::Lost, Fault::Hang] {
-        let Some(backend) = failing(fault, DrillPoint::Fetch, 1) else { return };
+        let Some(backend) = failing(fault, InjectionPoint::Fetch, 1) else { return };
         let mut progressive = Progressive::spawn().unwrap();
         progressive.start(Work::new(job([64, 36]), backend, Plan::samples(64)));
         // What is on the device is sent for at a pause.
@@ -81,7 +81,7 @@ fn a_fault_during_a_pause_is_survived() {
 /// As when the window is resized while the device does not answer.
 #[test]
 fn a_new_job_is_begun_while_the_device_hangs() {
-    let Some(backend) = failing(Fault::Hang, DrillPoint::Dispatch, 5) else { return };
+    let Some(backend) = failing(Fault::Hang, InjectionPoint::Dispatch, 5) else { return };
     let mut progressive = Progressive::spawn().unwrap();
     for (width, samples) in [(64, 100_000), (50, 100_000), (41, 100_000), (32, 64)] {
         progressive.start(Work::new(job([width, 20]), backend.clone(), Plan::samples(samples)));

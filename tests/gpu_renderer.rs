@@ -9,7 +9,7 @@ use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
 use weekender::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
 use weekender::render_gpu::{
-    Drill, DrillPoint, Fault, GpuError, GpuOptions, GpuRenderer, HierarchyKind, adapters,
+    Fault, FaultInjection, GpuError, GpuOptions, GpuRenderer, HierarchyKind, InjectionPoint, adapters,
 };
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book, field};
 use weekender::scene::{Camera, Material, Scene, Sky, Sphere};
@@ -296,7 +296,7 @@ fn a_fault_leaves_the_film_and_the_cpu_goes_on() {
     for fault in [Fault::Lost, Fault::Invalid] {
         let options = GpuOptions {
             samples_per_dispatch: Some(1),
-            drill: Some(Drill { fault, point: DrillPoint::Dispatch, after: 20 }),
+            injection: Some(FaultInjection { fault, point: InjectionPoint::Dispatch, after: 20 }),
             ..GpuOptions::default()
         };
         let Some(mut gpu) = gpu(options) else { return };

@@ -6,7 +6,7 @@ mod gpu_common;
 use gpu_common::say_loudly;
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use weekender::kernel::{CameraTable, Features, Row, ShadingRecord, records, words_of};
+use weekender::kernel::{CameraTable, Features, RecordColumns, ShadingRecord, records, words_of};
 use weekender::render::SamplerKind;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
 use weekender::stages::{DielectricLaws, Shading, Surface};
@@ -152,7 +152,7 @@ fn words_are_those_of_the_fields() {
         anchoring: 16.0,
     };
     let expected: Vec<f32> = (1..=16).map(|number| number as f32).collect();
-    assert_eq!(Row::from(record).0[..16], expected);
+    assert_eq!(RecordColumns::from(record).0[..16], expected);
     let words = words_of(&[record, record]);
     assert_eq!(words.len() * 4, 2 * size_of::<ShadingRecord<f32>>());
     assert_eq!(words[16..], expected.iter().map(|x| x.to_bits()).collect::<Vec<_>>());

@@ -81,7 +81,7 @@ const CPU: BackendChoice = BackendChoice::Cpu(CpuOptions {
     isa: None,
     lanes: None,
     threads: None,
-    gives_way: false,
+    low_priority: false,
     panics_after: None,
 });
 const FAILING: BackendChoice = BackendChoice::Reference { threads: None };

@@ -5,8 +5,8 @@
 use std::path::Path;
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
+use weekender::baseline::{Baseline, FLAGS, SOURCE};
 use weekender::compare::ROUNDING_BIAS;
-use weekender::control::{Control, FLAGS, SOURCE};
 use weekender::film::Film;
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, Renderer, SamplerKind};
@@ -95,12 +95,13 @@ fn blocks([theirs, ours]: &[Halves; 2], samples: u64) -> BlockTest {
 }
 
 fn check(name: &str, job: &RenderJob, samples: u64) {
-    let control = Control::compile().expect("a C compiler is needed: install one or name it in CC");
+    let baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
     let directory = tempfile::tempdir().unwrap();
-    let text = control.write_scene(job, "scene").unwrap();
+    let text = baseline.write_scene(job, "scene").unwrap();
     let out = directory.path().join("picture.pfm");
     let theirs: Halves = [1, 2].map(|seed| {
-        let run = control.run(Some(&text), job.settings(), samples / 2, seed, Some(&out), &|| false).unwrap();
+        let run =
+            baseline.run(Some(&text), job.settings(), samples / 2, seed, Some(&out), &|| false).unwrap();
         assert_eq!(run.paths, samples / 2 * (WIDTH * HEIGHT) as u64);
         assert!(run.rays > run.paths);
         assert!(run.seconds > 0.0 && run.processor_seconds > 0.0);
@@ -142,13 +143,13 @@ fn fuzzy_metals_are_the_same_picture() {
 
 #[test]
 fn without_a_scene_file_it_renders_the_three_spheres() {
-    let control = Control::compile().expect("a C compiler is needed: install one or name it in CC");
+    let baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
     let job = job("three-spheres");
     let directory = tempfile::tempdir().unwrap();
     let paths = ["given.pfm", "built-in.pfm"].map(|name| directory.path().join(name));
-    let text = control.write_scene(&job, "scene").unwrap();
-    control.run(Some(text.as_path()), job.settings(), 2, 7, Some(&paths[0]), &|| false).unwrap();
-    control.run(None, job.settings(), 2, 7, Some(&paths[1]), &|| false).unwrap();
+    let text = baseline.write_scene(&job, "scene").unwrap();
+    baseline.run(Some(text.as_path()), job.settings(), 2, 7, Some(&paths[0]), &|| false).unwrap();
+    baseline.run(None, job.settings(), 2, 7, Some(&paths[1]), &|| false).unwrap();
     // The camera's up and the sky are written in full; its focus distance is the book's.
     assert_eq!(read_pfm(&paths[0]), read_pfm(&paths[1]));
 }
@@ -156,13 +157,13 @@ fn without_a_scene_file_it_renders_the_three_spheres() {
 #[test]
 fn bad_arguments_are_refused() {
     let directory = tempfile::tempdir().unwrap();
-    let control = Control::compile().expect("a C compiler is needed: install one or name it in CC");
+    let baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
     let job = job("three-spheres");
     let broken = directory.path().join("broken.txt");
     for text in ["metal 0 0 0 1 1 1", "cube 1 2 3", "camera 1 2 x"] {
         std::fs::write(&broken, text).unwrap();
         let refused =
-            control.run(Some(&broken), job.settings(), 1, 1, None, &|| false).unwrap_err().to_string();
+            baseline.run(Some(&broken), job.settings(), 1, 1, None, &|| false).unwrap_err().to_string();
         assert!(refused.contains("rt_weekend: "), "{text}: {refused}");
     }
 }

@@ -4,12 +4,12 @@ use crate::widths::{Body, COUNT, Vectors, rays, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use glam::DVec3;
+use weekender::prepared::hierarchy::Hierarchy;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
 use weekender::render_cpu::lanes::Lanes;
 use weekender::render_cpu::sphere::Nearest;
 use weekender::scene::Sphere;
 use weekender::scene::builtin::field;
-use weekender::tables::hierarchy::Hierarchy;
 
 const COUNTS: [u64; 4] = [100, 1000, 10_000, 100_000];
 

@@ -6,7 +6,7 @@ use divan::counter::ItemsCount;
 use weekender::kernel::{AnchoredSphere, Roots};
 use weekender::render_cpu::lanes::Lanes;
 use weekender::render_cpu::sphere::{
-    Nearest, Spheres, WideSphere, anchored_root, book_root, near_root, nearest_root,
+    BroadcastSphere, Nearest, Spheres, anchored_root, book_root, near_root, nearest_root,
 };
 
 /// Spheres that each ray is tested against: so many that loading the rays does not matter.
@@ -24,7 +24,7 @@ struct Intersect {
     root: Root,
     origins: Vectors,
     directions: Vectors,
-    spheres: Vec<WideSphere<f32>>,
+    spheres: Vec<BroadcastSphere<f32>>,
     grounds: Vec<AnchoredSphere<f32>>,
 }
 
@@ -34,7 +34,7 @@ impl Intersect {
         // In a ring around the origins.
         let sphere = |index: usize| {
             let (sine, cosine) = (index as f32 / SPHERES as f32 * std::f32::consts::TAU).sin_cos();
-            WideSphere::new([2.0 * cosine, 0.0, 2.0 * sine, 0.25], index as u32)
+            BroadcastSphere::new([2.0 * cosine, 0.0, 2.0 * sine, 0.25], index as u32)
         };
         let spheres = (0..SPHERES).map(sphere).collect();
         let ground = |index: usize| AnchoredSphere {

@@ -1,7 +1,7 @@
 //! One body of work at several lane counts.
 
 use fearless_simd::Level;
-use weekender::kernel::Row;
+use weekender::kernel::RecordColumns;
 use weekender::render_cpu::Isa;
 use weekender::render_cpu::lanes::{
     Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3, Wide,
@@ -63,14 +63,14 @@ fn at<S: Instructions>(simd: S, width: usize, body: &impl Body) -> u32 {
     }
 }
 
-/// [`COUNT`] vectors with a number each, as the tables have their rows.
-pub struct Vectors(Vec<Row<f32>>);
+/// [`COUNT`] vectors with a number each, as the prepared scene have their records.
+pub struct Vectors(Vec<RecordColumns<f32>>);
 
 impl Vectors {
     /// Spread evenly over a cube; the numbers are within `0..1`.
     pub fn within(low: f32, high: f32) -> Self {
         let row = |u: &[f32]| {
-            let mut row = Row::default();
+            let mut row = RecordColumns::default();
             row.0[..4].copy_from_slice(u);
             row.0[..3].iter_mut().for_each(|x| *x = low + (high - low) * *x);
             row

@@ -19,15 +19,15 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 use weekender::backends::BackendChoice;
 use weekender::kernel::Node;
+use weekender::prepared::PreparedScene;
+use weekender::prepared::cwbvh::{CwBvhNode, Cwbvh};
+use weekender::prepared::hierarchy::Hierarchy;
 use weekender::progressive::{Plan, Progressive, Work};
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, RenderSettings, Renderer};
 use weekender::render_gpu::{GpuOptions, GpuRenderer, HierarchyKind};
 use weekender::stages::Shading;
 use weekender::statistics;
-use weekender::tables::Tables;
-use weekender::tables::cwbvh::{CwBvhNode, Cwbvh};
-use weekender::tables::hierarchy::Hierarchy;
 
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -148,18 +148,18 @@ fn pair(arguments: &[String]) -> anyhow::Result<()> {
 
 fn hierarchy(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
-    let tables = Tables::<f32>::new(&job);
-    let spheres: Vec<_> = tables.spheres_of_hierarchy(&job).collect();
+    let prepared = PreparedScene::<f32>::new(&job);
+    let spheres: Vec<_> = prepared.spheres_of_hierarchy(&job).collect();
     let [mut bvh2_times, mut cwbvh_times] = [Vec::new(), Vec::new()];
     let count = spheres.len() as f64;
     let ms = |start: Instant| start.elapsed().as_secs_f64() * 1e3;
     let mut sizes = [0, 0];
     for _ in 0..5 {
         let start = Instant::now();
-        let bvh2 = Hierarchy::<f32>::build(spheres.iter().copied(), tables.origin);
+        let bvh2 = Hierarchy::<f32>::build(spheres.iter().copied(), prepared.origin);
         bvh2_times.push(ms(start));
         let start = Instant::now();
-        let cwbvh = Cwbvh::build(spheres.iter().copied(), tables.origin);
+        let cwbvh = Cwbvh::build(spheres.iter().copied(), prepared.origin);
         cwbvh_times.push(ms(start));
         sizes = [bvh2.nodes.len() * size_of::<Node<f32>>(), cwbvh.nodes.len() * size_of::<CwBvhNode>()];
     }
@@ -175,8 +175,8 @@ fn hierarchy(scene: &str) -> anyhow::Result<()> {
 
 fn size(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 8])?;
-    let tables = Tables::<f32>::new(&job);
-    let needed = tables.features;
+    let prepared = PreparedScene::<f32>::new(&job);
+    let needed = prepared.features;
     let [general, specialised] =
         [needed.generalised(), needed].map(|features| Counted::of(&features).map(|counted| counted.size()));
     println!(
@@ -191,10 +191,11 @@ fn size(scene: &str) -> anyhow::Result<()> {
 /// What a turn of the loop, one ray of each lane, costs a group of lanes that take different ways: both sides of every branch.
 fn work(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 24])?;
-    let tables = Tables::<f32>::new(&job);
-    anyhow::ensure!(tables.hierarchy.is_none(), "the length of a traversal is not known beforehand");
-    let trips = [tables.opaque.len(), tables.two_root.len(), tables.anchored.len()];
-    let work = Counted::of(&tables.features)?.turn(&trips.into_iter().filter(|n| *n > 0).collect::<Vec<_>>());
+    let prepared = PreparedScene::<f32>::new(&job);
+    anyhow::ensure!(prepared.hierarchy.is_none(), "the length of a traversal is not known beforehand");
+    let trips = [prepared.opaque.len(), prepared.two_root.len(), prepared.anchored.len()];
+    let work =
+        Counted::of(&prepared.features)?.turn(&trips.into_iter().filter(|n| *n > 0).collect::<Vec<_>>());
     println!("| {scene} | {} | {} | {} | {} |", work.float, work.integer, work.special, work.total());
     Ok(())
 }

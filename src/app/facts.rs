@@ -62,7 +62,7 @@ impl Facts {
     }
 
     /// Why a command can do nothing now, in words; `None` if it can.
-    pub fn useless(&self, command: Command) -> Option<String> {
+    pub fn disabled_reason(&self, command: Command) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
         let document = self.document();
         match command {

@@ -127,10 +127,10 @@ fn has_just_opened(ui: &Ui) -> bool {
 
 /// A command as a line of a menu.
 pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command) -> egui::Response {
-    let useless = facts.useless(command);
+    let disabled_reason = facts.disabled_reason(command);
     let button = line(ui, command, facts.is_on(command));
-    let mut response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
-    if let Some(reason) = useless {
+    let mut response = ui.add_enabled(disabled_reason.is_none(), button).on_hover_text(command.help());
+    if let Some(reason) = disabled_reason {
         response = response.on_disabled_hover_text(reason);
     }
     if response.clicked() {
@@ -173,10 +173,12 @@ fn stage_bar(ui: &mut Ui, is_wide: bool, facts: &Facts, commands: &mut Vec<Comma
 }
 
 fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command, label: &str) {
-    let useless = facts.useless(command);
-    let response = ui.add_enabled(useless.is_none(), Button::new(label)).accessible_name(command.name());
+    let disabled_reason = facts.disabled_reason(command);
     let response =
-        response.on_hover_text(with_keys(ui, command)).on_disabled_hover_text(useless.unwrap_or_default());
+        ui.add_enabled(disabled_reason.is_none(), Button::new(label)).accessible_name(command.name());
+    let response = response
+        .on_hover_text(with_keys(ui, command))
+        .on_disabled_hover_text(disabled_reason.unwrap_or_default());
     if response.clicked() {
         commands.push(command);
     }

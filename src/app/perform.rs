@@ -27,7 +27,7 @@ impl Window {
             log.command(&command.name());
         }
         self.changes.end_move();
-        if let Some(reason) = self.useless(command) {
+        if let Some(reason) = self.disabled_reason(command) {
             self.toasts.good(format!("{}: {}", command.name().trim_end_matches('…'), lower_first(&reason)));
             return;
         }

@@ -73,10 +73,10 @@ fn header(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut V
             ui.label(RichText::new(prediction_words(&prediction)).small());
         }
         for (label, command) in [("Copy data", Command::CopyPlot), ("Save data…", Command::SavePlot)] {
-            let useless = facts.useless(command);
-            let button = ui.add_enabled(useless.is_none(), egui::Button::new(label).small());
+            let disabled_reason = facts.disabled_reason(command);
+            let button = ui.add_enabled(disabled_reason.is_none(), egui::Button::new(label).small());
             let button = button.on_hover_text(command.help());
-            if button.on_disabled_hover_text(useless.unwrap_or_default()).clicked() {
+            if button.on_disabled_hover_text(disabled_reason.unwrap_or_default()).clicked() {
                 commands.push(command);
             }
         }

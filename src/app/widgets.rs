@@ -9,16 +9,16 @@ use std::ops::RangeInclusive;
 pub struct About<'a> {
     pub name: &'a str,
     pub help: &'a str,
-    pub useless: Option<&'a str>,
+    pub disabled_reason: Option<&'a str>,
 }
 
 impl<'a> About<'a> {
     pub fn new(name: &'a str, help: &'a str) -> Self {
-        About { name, help, useless: None }
+        About { name, help, disabled_reason: None }
     }
 
-    pub fn useless_if(self, reason: Option<&'a str>) -> Self {
-        About { useless: reason, ..self }
+    pub fn disabled_if(self, reason: Option<&'a str>) -> Self {
+        About { disabled_reason: reason, ..self }
     }
 }
 
@@ -39,7 +39,7 @@ pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Respo
 /// A name above, below it controls with names and tooltips of their own.
 pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
     ui.spacing_mut().item_spacing.y = 3.0;
-    let is_useful = about.useless.is_none();
+    let is_useful = about.disabled_reason.is_none();
     let response = ui
         .add_enabled_ui(is_useful, |ui| {
             ui.add(egui::Label::new(RichText::new(about.name).small().color(ui.visuals().weak_text_color())));
@@ -53,7 +53,7 @@ pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Re
 /// Adds the tooltip, and the reason of a disabled control.
 pub fn explained(response: Response, about: About<'_>) -> Response {
     let response = response.on_hover_text(about.help);
-    match about.useless {
+    match about.disabled_reason {
         Some(reason) => response.on_disabled_hover_text(format!("{}\n\n{reason}", about.help)),
         None => response,
     }
@@ -134,7 +134,7 @@ pub fn whole(
 
 /// A check box; with it off, what it opens is not shown.
 pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
-    let response = ui.add_enabled(about.useless.is_none(), egui::Checkbox::new(value, about.name));
+    let response = ui.add_enabled(about.disabled_reason.is_none(), egui::Checkbox::new(value, about.name));
     explained(response, about)
 }
 

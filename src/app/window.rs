@@ -221,8 +221,8 @@ impl Window {
     }
 
     /// Why a command can do nothing now, in words; `None` if it can.
-    pub fn useless(&self, command: Command) -> Option<String> {
-        self.facts().useless(command)
+    pub fn disabled_reason(&self, command: Command) -> Option<String> {
+        self.facts().disabled_reason(command)
     }
 
     /// Asks for a command, to be carried out in the next frame.

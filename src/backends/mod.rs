@@ -221,14 +221,14 @@ mod tests {
 
     #[test]
     fn each_backend_is_fallen_back_to_once() {
-        let gives_way = CpuOptions { gives_way: true, ..CpuOptions::default() };
-        let mut failed = vec![BackendChoice::Both(gives_way, GpuOptions::default())];
+        let low_priority = CpuOptions { low_priority: true, ..CpuOptions::default() };
+        let mut failed = vec![BackendChoice::Both(low_priority, GpuOptions::default())];
         while let Some(next) = BackendChoice::fallback(&failed) {
             failed.push(next);
         }
         let words: Vec<_> = failed.iter().map(BackendChoice::words).collect();
         assert_eq!(words, ["CPU and GPU", "the CPU", "the CPU's scalar code", "the reference"]);
-        assert_eq!(failed[1], BackendChoice::Cpu(gives_way));
+        assert_eq!(failed[1], BackendChoice::Cpu(low_priority));
         let panicked = CpuOptions { panics_after: Some(3), ..CpuOptions::default() };
         let next = BackendChoice::fallback(&[BackendChoice::Cpu(panicked)]);
         assert_eq!(next.map(|next| next.words()), Some("the CPU's scalar code"));

@@ -17,7 +17,7 @@ pub struct Report {
     pub schema: u32,
     /// Where.
     pub machine: Machine,
-    /// Scenes, with a row for each contender.
+    /// Scenes, with a row for each candidate.
     pub scenes: Vec<SceneFigures>,
     /// Fields of growing size.
     pub scale: Vec<ScaleFigures>,
@@ -38,7 +38,7 @@ pub struct SceneFigures {
     pub height: u32,
     /// Most rays of a path.
     pub max_depth: u32,
-    /// Where numbers come from; the control has the book's independent ones.
+    /// Where numbers come from; the baseline has the book's independent ones.
     pub sampler: &'static str,
     /// Spheres.
     pub spheres: usize,
@@ -51,7 +51,7 @@ pub struct SceneFigures {
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
     /// Plain C.
-    Control,
+    Baseline,
     /// One ray at a time.
     Scalar,
     /// Packets on one thread.
@@ -62,7 +62,7 @@ pub enum Kind {
     Gpu,
 }
 
-/// A contender and its runs.
+/// A candidate and its runs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// What it is.
@@ -83,8 +83,8 @@ pub struct Row {
     pub rays_per_second: Option<Spread>,
     /// Share of lanes that traced a ray.
     pub lanes_in_use: Option<f64>,
-    /// Median against that of the control.
-    pub ratio_to_control: Option<f64>,
+    /// Median against that of the baseline.
+    pub ratio_to_baseline: Option<f64>,
     /// 1 / (mean squared error times seconds), as the film estimates it; `None` where it sees no error.
     pub efficiency: Option<f64>,
     /// Why it was not measured.
@@ -181,9 +181,9 @@ impl SceneFigures {
     pub fn sum_up(&mut self) {
         self.rows.iter_mut().for_each(Row::sum_up);
         let median = |row: &Row| row.paths_per_second.map(|spread| spread.median);
-        let control = self.rows.iter().find(|row| row.kind == Kind::Control).and_then(median);
+        let baseline = self.rows.iter().find(|row| row.kind == Kind::Baseline).and_then(median);
         for row in &mut self.rows {
-            row.ratio_to_control = median(row).zip(control).map(|(own, control)| own / control);
+            row.ratio_to_baseline = median(row).zip(baseline).map(|(own, baseline)| own / baseline);
         }
     }
 }

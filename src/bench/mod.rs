@@ -1,6 +1,6 @@
 //! `weekender bench`: how fast this machine renders, beside a plain C program.
 
-mod contender;
+mod candidate;
 mod figures;
 mod machine;
 mod plot;
@@ -8,14 +8,14 @@ mod progress;
 mod scale;
 mod table;
 
+use crate::baseline::{Baseline, BaselineError};
 use crate::chart;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
-use crate::control::{Control, ControlError};
 use crate::failure::{Failure, INTERRUPTED};
 use crate::files::check_writable;
 use crate::interrupt::Interrupt;
 use crate::terminal;
-use contender::{Cancelled, Contender, contenders};
+use candidate::{Cancelled, Candidate, candidates};
 use figures::{Report, SCHEMA, SPREAD_LIMIT, SceneFigures};
 use machine::{LOAD_LIMIT, Machine};
 use progress::Progress;
@@ -57,9 +57,9 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
 }
 
 fn scenes(options: &BenchOptions, report: &mut Report, cancel: &AtomicBool) -> anyhow::Result<()> {
-    let control = Control::compile().map(Rc::new);
+    let baseline = Baseline::compile().map(Rc::new);
     for scene in &options.scenes {
-        let (figures, outcome) = measure_scene(options, scene, &control, cancel);
+        let (figures, outcome) = measure_scene(options, scene, &baseline, cancel);
         report.scenes.push(figures);
         if outcome.is_err() {
             break;
@@ -72,20 +72,20 @@ fn scenes(options: &BenchOptions, report: &mut Report, cancel: &AtomicBool) -> a
 fn measure_scene(
     options: &BenchOptions,
     scene: &BenchScene,
-    control: &Result<Rc<Control>, ControlError>,
+    baseline: &Result<Rc<Baseline>, BaselineError>,
     cancel: &AtomicBool,
 ) -> (SceneFigures, Result<(), Cancelled>) {
     let job = &scene.job;
-    let mut contenders = contenders(options, &scene.name, job, control);
-    let ready = contenders.iter().filter(|contender| contender.is_ready()).count();
+    let mut candidates = candidates(options, &scene.name, job, baseline);
+    let ready = candidates.iter().filter(|candidate| candidate.is_ready()).count();
     let mut progress = Progress::new(options.progress, (ready * (1 + options.runs)) as u64);
     let mut turns = || {
         for turn in 0..=options.runs {
-            for contender in contenders.iter_mut().filter(|contender| contender.is_ready()) {
-                progress.begin(&format!("{}: {}", scene.name, contender.row.name));
+            for candidate in candidates.iter_mut().filter(|candidate| candidate.is_ready()) {
+                progress.begin(&format!("{}: {}", scene.name, candidate.row.name));
                 match turn {
-                    0 => contender.warm_up(job, scene.samples, options.run_limit_seconds, cancel)?,
-                    _ => contender.measure(job, cancel)?,
+                    0 => candidate.warm_up(job, scene.samples, options.run_limit_seconds, cancel)?,
+                    _ => candidate.measure(job, cancel)?,
                 }
                 progress.step();
             }
@@ -102,7 +102,7 @@ fn measure_scene(
         max_depth: settings.max_depth,
         sampler: settings.sampler.name(),
         spheres: job.scene().spheres.len(),
-        rows: contenders.into_iter().map(|Contender { row, .. }| row).collect(),
+        rows: candidates.into_iter().map(|Candidate { row, .. }| row).collect(),
     };
     figures.sum_up();
     (figures, outcome)

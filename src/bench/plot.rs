@@ -30,8 +30,8 @@ fn scene_bars(scene: &SceneFigures) -> BarChart {
     let bars = scene.rows.iter().filter_map(|row| {
         let Spread { median, min, max } = row.paths_per_second?;
         let number = format!("{:.*}", if median < 1e8 { 1 } else { 0 }, millions(median));
-        let note = match row.ratio_to_control {
-            Some(ratio) if row.kind != Kind::Control => format!("{number}   {ratio:.1} × C89"),
+        let note = match row.ratio_to_baseline {
+            Some(ratio) if row.kind != Kind::Baseline => format!("{number}   {ratio:.1} × C89"),
             _ => number,
         };
         Some(Bar {

@@ -1,15 +1,15 @@
 //! How building, memory and speed grow with the number of spheres.
 
-use super::contender::{Cancelled, Contender};
+use super::candidate::{Cancelled, Candidate};
 use super::figures::{Kind, ScaleFigures};
 use super::machine::{forget_peak_memory, peak_memory};
 use super::progress::Progress;
 use crate::cli::BenchOptions;
+use crate::prepared::PreparedScene;
 use crate::recipe::Recipe;
 use crate::render::RenderJob;
 use crate::render_cpu::Isa;
 use crate::scene::Sphere;
-use crate::tables::Tables;
 use anyhow::Result;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -31,7 +31,7 @@ pub fn measure(
     let job = options.change(recipe)?;
 
     let begin = Instant::now();
-    let tables = Tables::<f32>::new(&job);
+    let tables = PreparedScene::<f32>::new(&job);
     let build_seconds = begin.elapsed().as_secs_f64();
     let hierarchy_seconds = tables.hierarchy_time.as_secs_f64();
     let spheres = job.scene().spheres.len() as f64;
@@ -39,15 +39,15 @@ pub fn measure(
     drop(tables);
 
     let isa = options.levels.last().copied().unwrap_or(Isa::Baseline);
-    let mut contender = Contender::cpu(isa, isa.native_lanes(), options.threads, Kind::Threads, &job);
+    let mut candidate = Candidate::cpu(isa, isa.native_lanes(), options.threads, Kind::Threads, &job);
     progress.begin(&format!("{name}: tracing"));
-    if run(options, &mut contender, &job, samples, progress, cancel).is_err() {
+    if run(options, &mut candidate, &job, samples, progress, cancel).is_err() {
         return Ok(None);
     }
-    if let Some(reason) = contender.row.skipped {
+    if let Some(reason) = candidate.row.skipped {
         anyhow::bail!("{name}: {reason}");
     }
-    contender.row.sum_up();
+    candidate.row.sum_up();
     Ok(Some(ScaleFigures {
         spheres: count,
         generate_seconds,
@@ -56,23 +56,23 @@ pub fn measure(
         scene_bytes_per_sphere: (job.scene().spheres.capacity() * size_of::<Sphere>()) as f64 / spheres,
         table_bytes_per_sphere,
         peak_memory_bytes: peak_memory(),
-        samples_per_pixel: contender.row.samples_per_pixel,
-        paths_per_second: contender.row.paths_per_second,
-        rays_per_second: contender.row.rays_per_second,
+        samples_per_pixel: candidate.row.samples_per_pixel,
+        paths_per_second: candidate.row.paths_per_second,
+        rays_per_second: candidate.row.rays_per_second,
     }))
 }
 
 fn run(
     options: &BenchOptions,
-    contender: &mut Contender,
+    candidate: &mut Candidate,
     job: &RenderJob,
     samples: u64,
     progress: &mut Progress,
     cancel: &AtomicBool,
 ) -> Result<(), Cancelled> {
-    contender.warm_up(job, samples, options.run_limit_seconds, cancel)?;
+    candidate.warm_up(job, samples, options.run_limit_seconds, cancel)?;
     for _ in 0..options.runs {
-        contender.measure(job, cancel)?;
+        candidate.measure(job, cancel)?;
         progress.step();
     }
     Ok(())

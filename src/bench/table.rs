@@ -55,7 +55,7 @@ fn row_line(row: &Row) -> String {
             paths(|spread| spread.median),
             paths(|spread| spread.min),
             paths(|spread| spread.max),
-            row.ratio_to_control.map_or_else(dash, |ratio| format!("{ratio:.2}")),
+            row.ratio_to_baseline.map_or_else(dash, |ratio| format!("{ratio:.2}")),
             row.rays_per_second.map_or_else(dash, |spread| millions(spread.median)),
             row.lanes_in_use.map_or_else(dash, |share| format!("{:.1}", 100.0 * share)),
             row.efficiency.map_or_else(dash, |efficiency| format!("{efficiency:.2e}")),

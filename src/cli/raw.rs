@@ -52,10 +52,10 @@ pub(super) struct RawRender {
     /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "Device")]
     pub adapter: Option<String>,
-    /// Lose the GPU after so many dispatches, to see that the CPU goes on: a drill
+    /// Lose the GPU after so many dispatches, to see that the CPU goes on (fault injection)
     #[arg(long, value_name = "DISPATCHES", help_heading = "Device")]
     pub simulate_device_lost: Option<u64>,
-    /// Use up the GPU's memory after so many dispatches: another drill
+    /// Use up the GPU's memory after so many dispatches: another injected fault
     #[arg(
         long,
         value_name = "DISPATCHES",
@@ -64,16 +64,16 @@ pub(super) struct RawRender {
         help_heading = "Device"
     )]
     pub simulate_out_of_memory: Option<u64>,
-    /// Make a mistake after so many dispatches: another drill
+    /// Make a mistake after so many dispatches: another injected fault
     #[arg(long, value_name = "DISPATCHES", hide = true,
           conflicts_with_all = ["simulate_device_lost", "simulate_out_of_memory"], help_heading = "Device")]
     pub simulate_invalid_call: Option<u64>,
-    /// Let the GPU not answer for 10 s after so many dispatches: another drill
+    /// Let the GPU not answer for 10 s after so many dispatches: another injected fault
     #[arg(long, value_name = "DISPATCHES", hide = true,
           conflicts_with_all = ["simulate_device_lost", "simulate_out_of_memory", "simulate_invalid_call"],
           help_heading = "Device")]
     pub simulate_hang: Option<u64>,
-    /// Let the CPU's tracer panic after so many tiles: another drill
+    /// Let the CPU's tracer panic after so many tiles: another injected fault
     #[arg(long, value_name = "TILES", hide = true, help_heading = "Device")]
     pub simulate_panic: Option<u64>,
     /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16

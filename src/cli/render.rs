@@ -12,7 +12,7 @@ use crate::progressive::{Plan, Stop};
 use crate::recipe::{Recipe, plain_name};
 use crate::render::RenderJob;
 use crate::render_cpu::CpuOptions;
-use crate::render_gpu::{Drill, DrillPoint, Fault, GpuOptions};
+use crate::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
 use crate::saved;
 use crate::stages::Stage;
 use std::path::PathBuf;
@@ -254,20 +254,22 @@ fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
 fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
     let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
     let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
-    let cpu = CpuOptions { isa, lanes, threads, gives_way: false, panics_after: raw.simulate_panic };
-    let drills = [
+    let cpu = CpuOptions { isa, lanes, threads, low_priority: false, panics_after: raw.simulate_panic };
+    let injections = [
         (raw.simulate_device_lost, Fault::Lost, "--simulate-device-lost"),
         (raw.simulate_out_of_memory, Fault::OutOfMemory, "--simulate-out-of-memory"),
         (raw.simulate_invalid_call, Fault::Invalid, "--simulate-invalid-call"),
         (raw.simulate_hang, Fault::Hang, "--simulate-hang"),
     ];
-    let point = DrillPoint::Dispatch;
-    let drill = drills
+    let point = InjectionPoint::Dispatch;
+    let injection = injections
         .into_iter()
-        .find_map(|(after, fault, flag)| after.map(|after| (Drill { fault, point, after }, flag)));
-    let gpu =
-        GpuOptions { drill: drill.map(|(drill, _)| drill), ..GpuOptions::of_adapter(raw.adapter.as_deref()) };
-    let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { drill.map(|(_, flag)| flag) };
+        .find_map(|(after, fault, flag)| after.map(|after| (FaultInjection { fault, point, after }, flag)));
+    let gpu = GpuOptions {
+        injection: injection.map(|(injection, _)| injection),
+        ..GpuOptions::of_adapter(raw.adapter.as_deref())
+    };
+    let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { injection.map(|(_, flag)| flag) };
     if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, raw.device) {
         let other = if raw.device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
         return Err(CliError::Together { flag, other, reason: "it is for the GPU; leave one of them out" });

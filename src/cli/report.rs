@@ -139,7 +139,7 @@ pub enum ReportBackend {
     /// A backend of this program.
     Renderer(BackendChoice),
     /// The plain C89 program.
-    Control {
+    Baseline {
         /// Whether it was asked for by name; otherwise it may be missing.
         is_asked_for: bool,
     },
@@ -175,7 +175,7 @@ struct ReportDefaults {
 
 const RACE: ReportDefaults = ReportDefaults {
     scenes: &["three-spheres", "book"],
-    backends: &["cpu", "scalar", "gpu", CONTROL],
+    backends: &["cpu", "scalar", "gpu", BASELINE],
     seeds: 8,
     size: (160, 90),
     time_limit: 12.0,
@@ -193,8 +193,8 @@ const CALIBRATION: ReportDefaults = ReportDefaults {
     reference_factor: 16,
 };
 
-/// The control's name among a report's backends.
-const CONTROL: &str = "c89";
+/// The baseline's name among a report's backends.
+const BASELINE: &str = "c89";
 
 /// Errors that times are told for in any case.
 const TARGETS: [f64; 2] = [0.01, 0.001];
@@ -283,8 +283,8 @@ fn report_backends(
     }
     let of_name = |name: String| {
         let backend = match name.as_str() {
-            CONTROL => ReportBackend::Control { is_asked_for },
-            name => ReportBackend::Renderer(backend_named(name, adapter, &[CONTROL])?),
+            BASELINE => ReportBackend::Baseline { is_asked_for },
+            name => ReportBackend::Renderer(backend_named(name, adapter, &[BASELINE])?),
         };
         Ok((name, backend))
     };

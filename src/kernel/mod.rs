@@ -1,6 +1,6 @@
 //! What the CPU's tracer and the GPU's share, each thing declared once.
 //!
-//! - [`records`]: the structs that tables hold and shaders read. The Rust types for `f32` and `f64`, the named loads
+//! - [`records`]: the structs that a prepared scene holds and shaders read. The Rust types for `f32` and `f64`, the named loads
 //!   of the CPU's packets and the structs of WGSL come from one declaration.
 //! - [`constants`] and [`tags`]: numbers, and enumerations that shaders know by numbers.
 //! - [`features`]: what a job needs of a kernel. The CPU chooses its variant by them, the GPU its pipeline overrides,

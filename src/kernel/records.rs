@@ -1,4 +1,4 @@
-//! The records: what tables hold and shaders read.
+//! The records: what a prepared scene holds and shaders read.
 //!
 //! Rust lays a struct out without gaps where each `vec3f` and `vec4f` begins at a multiple of 16 bytes, as WGSL asks for;
 //! a test holds both layouts against each other.
@@ -38,7 +38,7 @@ record! {
 pub const SHADING_COLUMNS: usize = size_of::<ShadingRecord<f32>>() / size_of::<f32>();
 
 /// The same, filled up to whole groups of [`GROUP`]: a record's stride.
-pub const ROW_COLUMNS: usize = SHADING_COLUMNS.next_multiple_of(GROUP);
+pub const RECORD_COLUMNS: usize = SHADING_COLUMNS.next_multiple_of(GROUP);
 
 /// Columns that are gathered at once.
 pub const GROUP: usize = 4;
@@ -46,23 +46,23 @@ pub const GROUP: usize = 4;
 /// A [`ShadingRecord`] as numbers, which lanes gather by column: in `f32` it begins with a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct Row<R>(pub [R; ROW_COLUMNS]);
+pub struct RecordColumns<R>(pub [R; RECORD_COLUMNS]);
 
-impl<R: Real> Default for Row<R> {
+impl<R: Real> Default for RecordColumns<R> {
     fn default() -> Self {
-        Row([R::default(); ROW_COLUMNS])
+        RecordColumns([R::default(); RECORD_COLUMNS])
     }
 }
 
-impl<R: Real> From<ShadingRecord<R>> for Row<R> {
+impl<R: Real> From<ShadingRecord<R>> for RecordColumns<R> {
     fn from(record: ShadingRecord<R>) -> Self {
-        let mut row = Row::default();
+        let mut row = RecordColumns::default();
         record.store(&mut row.0);
         row
     }
 }
 
-impl<R: Real> Columns<R> for Row<R> {
+impl<R: Real> Columns<R> for RecordColumns<R> {
     type Number = R;
     type Vector = [R; 3];
 
@@ -336,7 +336,7 @@ macro_rules! all {
 }
 
 all! {
-    ShadingRecord<f32> = ROW_COLUMNS * size_of::<f32>(),
+    ShadingRecord<f32> = RECORD_COLUMNS * size_of::<f32>(),
     AnchoredSphere<f32> = size_of::<AnchoredSphere<f32>>(),
     CameraTable<f32> = size_of::<CameraTable<f32>>(),
     Node<f32> = size_of::<Node<f32>>(),

@@ -7,11 +7,11 @@
 
 mod guard;
 mod passes;
+mod pending;
 mod plan;
 mod render;
 mod shared;
 mod status;
-mod upcoming;
 mod view;
 mod worker;
 

@@ -1,8 +1,8 @@
 //! The render at hand: a film, who adds to it, and what it says of itself.
 
 use super::guard::{Backend, dismiss, guarded};
+use super::pending::Pending;
 use super::shared::{Picture, Shared};
-use super::upcoming::Upcoming;
 use super::{EndReason, Factory, HistoryPoint, PassSizer, Phase, Plan, Status, View};
 use crate::backends::BackendChoice;
 use crate::film::{Film, SampleRanges};
@@ -27,7 +27,7 @@ pub(super) struct Render {
     /// Who has failed.
     failed: Vec<BackendChoice>,
     is_prepared: bool,
-    upcoming: Option<Upcoming>,
+    pending: Option<Pending>,
     sizer: PassSizer,
     next_history_samples: u64,
     estimated_samples: u64,
@@ -54,7 +54,7 @@ impl Render {
             estimate_took: Duration::ZERO,
             pictured_samples: None,
             is_prepared: false,
-            upcoming: None,
+            pending: None,
             status: Status { run, phase: Phase::Preparing, ..Status::default() },
             job,
             plan,
@@ -125,17 +125,17 @@ impl Render {
 
     /// Lets another backend take over once it is ready; until then the present one goes on.
     pub fn switch(&mut self, choice: BackendChoice, factory: &Arc<Mutex<Factory>>) {
-        if self.upcoming.as_ref().is_some_and(|upcoming| upcoming.choice == choice) {
+        if self.pending.as_ref().is_some_and(|pending| pending.choice == choice) {
             return;
         }
-        self.upcoming = None;
+        self.pending = None;
         if choice == self.choice {
             return;
         }
         if self.is_prepared {
-            self.upcoming = Upcoming::start(choice.clone(), &self.job, factory, &self.cancel);
+            self.pending = Pending::start(choice.clone(), &self.job, factory, &self.cancel);
         }
-        if self.upcoming.is_none() {
+        if self.pending.is_none() {
             self.change_backend(choice);
         }
     }
@@ -160,11 +160,11 @@ impl Render {
 
     /// Hands over to a backend that has become ready.
     fn welcome_upcoming(&mut self, backend: &mut Option<Backend>) {
-        let Some(upcoming) = self.upcoming.take() else { return };
-        let outcome = match upcoming.outcome.try_recv() {
+        let Some(pending) = self.pending.take() else { return };
+        let outcome = match pending.outcome.try_recv() {
             Ok(outcome) => outcome,
             Err(TryRecvError::Empty) => {
-                self.upcoming = Some(upcoming);
+                self.pending = Some(pending);
                 return;
             }
             Err(TryRecvError::Disconnected) => Err("its preparation ended by a panic".to_owned()),
@@ -182,7 +182,7 @@ impl Render {
                 self.status.kernel = ready.renderer.kernel();
                 self.status.hierarchy += ready.renderer.hierarchy_time();
                 self.status.prepare += ready.took;
-                self.choice = upcoming.choice;
+                self.choice = pending.choice;
                 dismiss(backend.replace((self.choice.clone(), ready.renderer)));
                 self.sizer.restart();
             }
@@ -193,7 +193,7 @@ impl Render {
     }
 
     fn change_backend(&mut self, choice: BackendChoice) {
-        self.upcoming = None;
+        self.pending = None;
         if choice != self.choice {
             self.choice = choice;
             self.is_prepared = false;

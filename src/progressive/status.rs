@@ -12,7 +12,7 @@ pub enum Phase {
     /// Nothing has been asked for, or it was abandoned.
     #[default]
     Idle,
-    /// Tables, hierarchy and kernels are being built.
+    /// PreparedScene, hierarchy and kernels are being built.
     Preparing,
     /// Samples are being added.
     Tracing,

@@ -5,7 +5,7 @@
 use super::lanes::{Lanes, V3, splat3};
 use super::sphere::{Nearest, Rays, Spheres, near_root, nearest_root};
 use crate::kernel::{BOX_MARGIN, BOX_WIDENING, COUNT_MASK, LEAST_COMPONENT, Node, Real, STACK_SIZE};
-use crate::tables::hierarchy::Hierarchy;
+use crate::prepared::hierarchy::Hierarchy;
 
 /// Nodes to be visited, one a level at most. It outlives the traversals: clearing it each time would show in the run
 /// time.

@@ -5,17 +5,17 @@
 //! them render the same bits, which tests hold them to.
 
 use super::Isa;
+use super::broadcast::BroadcastScene;
 use super::lanes::{Instructions, Lanes4, Lanes8, Lanes16, Reference, Scalar};
 use super::path::trace;
 use super::record::record;
-use super::wide::WideTables;
 use super::work::{TileStats, Work};
 use crate::kernel::parts;
 use crate::record::PathRecord;
 use fearless_simd::{Level, Simd};
 
 /// Traces a tile.
-pub type Kernel<R> = Box<dyn Fn(&WideTables<R>, &mut Work) -> TileStats + Send + Sync>;
+pub type Kernel<R> = Box<dyn Fn(&BroadcastScene<R>, &mut Work) -> TileStats + Send + Sync>;
 
 /// Opaque spheres and a pinhole.
 const OPAQUE: u32 = parts::NONE;
@@ -43,7 +43,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     let offered = offered(isa, lanes, needed);
     match (isa, lanes) {
         (Isa::Baseline, 1) => {
-            Some(Box::new(|tables, work| trace::<_, GENERAL>(Scalar::<false>, tables, work)))
+            Some(Box::new(|prepared, work| trace::<_, GENERAL>(Scalar::<false>, prepared, work)))
         }
         #[cfg(target_arch = "x86_64")]
         (Isa::Sse42, _) => {
@@ -96,7 +96,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
 }
 
 /// Records one path.
-pub type Recorder = Box<dyn Fn(&WideTables<f32>, [u32; 2], u64) -> PathRecord + Send + Sync>;
+pub type Recorder = Box<dyn Fn(&BroadcastScene<f32>, [u32; 2], u64) -> PathRecord + Send + Sync>;
 
 /// A recorder that computes the same bits as the kernels of `isa`.
 pub fn recorder(isa: Isa) -> Recorder {
@@ -106,19 +106,19 @@ pub fn recorder(isa: Isa) -> Recorder {
     #[cfg(target_arch = "aarch64")]
     let fused = level.as_neon();
     match fused {
-        Some(simd) if isa.is_fused() => Box::new(move |tables, pixel, index| {
+        Some(simd) if isa.is_fused() => Box::new(move |prepared, pixel, index| {
             simd.vectorize(
                 #[inline(always)]
-                || record(Scalar::<true>, tables, pixel, index),
+                || record(Scalar::<true>, prepared, pixel, index),
             )
         }),
-        _ => Box::new(|tables, pixel, index| record(Scalar::<false>, tables, pixel, index)),
+        _ => Box::new(|prepared, pixel, index| record(Scalar::<false>, prepared, pixel, index)),
     }
 }
 
 /// The reference's kernel.
 pub fn reference_kernel() -> Kernel<f64> {
-    Box::new(|tables, work| trace::<_, GENERAL>(Reference, tables, work))
+    Box::new(|prepared, work| trace::<_, GENERAL>(Reference, prepared, work))
 }
 
 fn within(needed: u32, offered: u32) -> bool {
@@ -126,37 +126,37 @@ fn within(needed: u32, offered: u32) -> bool {
 }
 
 fn scalar<S: Simd, const FUSED: bool>(simd: S) -> Kernel<f32> {
-    Box::new(move |tables, work| {
+    Box::new(move |prepared, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, GENERAL>(Scalar::<FUSED>, tables, work),
+            || trace::<_, GENERAL>(Scalar::<FUSED>, prepared, work),
         )
     })
 }
 
 fn four<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
-    Box::new(move |tables, work| {
+    Box::new(move |prepared, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, PARTS>(Lanes4(simd), tables, work),
+            || trace::<_, PARTS>(Lanes4(simd), prepared, work),
         )
     })
 }
 
 fn eight<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
-    Box::new(move |tables, work| {
+    Box::new(move |prepared, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, PARTS>(Lanes8(simd), tables, work),
+            || trace::<_, PARTS>(Lanes8(simd), prepared, work),
         )
     })
 }
 
 fn sixteen<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
-    Box::new(move |tables, work| {
+    Box::new(move |prepared, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, PARTS>(Lanes16(simd), tables, work),
+            || trace::<_, PARTS>(Lanes16(simd), prepared, work),
         )
     })
 }

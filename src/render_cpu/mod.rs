@@ -1,5 +1,6 @@
 //! The CPU backends: SIMD packets, scalar, and the `f64` reference, from one width-generic source.
 
+pub mod broadcast;
 pub mod bvh;
 pub mod camera;
 mod isa;
@@ -11,7 +12,6 @@ mod record;
 pub mod rng;
 pub mod sphere;
 mod tiles;
-pub mod wide;
 pub mod work;
 
 pub use crate::record::{PathRecord, RecordedHit, RecordedRay};
@@ -20,8 +20,9 @@ pub use record::{PathRecorder, record_path};
 
 use crate::film::{Film, FilmError};
 use crate::kernel::{Real, parts};
+use crate::prepared::PreparedScene;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy, panic_text};
-use crate::tables::Tables;
+use broadcast::BroadcastScene;
 use kernels::Kernel;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -29,7 +30,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tiles::{Tile, tile_side, tiles};
-use wide::WideTables;
 use work::{DealtBlock, TileStats, Work, dealing_order};
 
 /// By how much threads that give way are nicer: each step is a tenth of the time, where there is not enough.
@@ -46,8 +46,8 @@ pub struct CpuOptions {
     /// Threads; by default one a core.
     pub threads: Option<usize>,
     /// Whether the threads give way to whatever else wants to run, such as a window. On Linux.
-    pub gives_way: bool,
-    /// Panics in the middle of a tile, after so many others: a drill.
+    pub low_priority: bool,
+    /// Panics in the middle of a tile, after so many others (fault injection).
     pub panics_after: Option<u64>,
 }
 
@@ -89,10 +89,10 @@ fn list<T: std::fmt::Display>(items: &[T]) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// A job's tables and its kernel, in one of the two precisions.
+/// A job's prepared scene and its kernel, in one of the two precisions.
 enum Prepared {
-    Single(Box<WideTables<f32>>, Kernel<f32>),
-    Double(Box<WideTables<f64>>, Kernel<f64>),
+    Single(Box<BroadcastScene<f32>>, Kernel<f32>),
+    Double(Box<BroadcastScene<f64>>, Kernel<f64>),
 }
 
 /// Renders on the CPU.
@@ -104,7 +104,7 @@ pub struct CpuRenderer {
     prepared: Option<Prepared>,
     occupancy: TileOccupancy,
     messages: Vec<String>,
-    /// Tiles before one in which the tracer panics: a drill.
+    /// Tiles before one in which the tracer panics (fault injection).
     tiles_to_panic: Option<AtomicU64>,
 }
 
@@ -145,7 +145,7 @@ impl CpuRenderer {
         if !isa.lane_counts().contains(&lanes) {
             return Err(CpuError::Lanes { lanes, isa, available: isa.lane_counts().to_vec() });
         }
-        let renderer = CpuRenderer::with_packets(Some((isa, lanes)), options.threads, options.gives_way)?;
+        let renderer = CpuRenderer::with_packets(Some((isa, lanes)), options.threads, options.low_priority)?;
         Ok(CpuRenderer { tiles_to_panic: options.panics_after.map(AtomicU64::new), ..renderer })
     }
 
@@ -160,14 +160,14 @@ impl CpuRenderer {
     fn with_packets(
         packets: Option<(Isa, usize)>,
         threads: Option<usize>,
-        gives_way: bool,
+        low_priority: bool,
     ) -> Result<Self, CpuError> {
         let threads = threads.unwrap_or(0);
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|index| format!("trace-{index}"))
             .start_handler(move |_| {
-                if gives_way {
+                if low_priority {
                     give_way();
                 }
             })
@@ -207,8 +207,8 @@ impl Renderer for CpuRenderer {
 
     fn kernel(&self) -> String {
         match (self.packets, &self.prepared) {
-            (Some((isa, lanes)), Some(Prepared::Single(tables, _))) => {
-                parts::describe(kernels::offered(isa, lanes, tables.tables.features.parts()))
+            (Some((isa, lanes)), Some(Prepared::Single(prepared, _))) => {
+                parts::describe(kernels::offered(isa, lanes, prepared.prepared.features.parts()))
             }
             (_, Some(_)) => parts::describe(parts::ALL),
             (_, None) => String::new(),
@@ -217,8 +217,8 @@ impl Renderer for CpuRenderer {
 
     fn hierarchy_time(&self) -> Duration {
         match &self.prepared {
-            Some(Prepared::Single(tables, _)) => tables.tables.hierarchy_time,
-            Some(Prepared::Double(tables, _)) => tables.tables.hierarchy_time,
+            Some(Prepared::Single(prepared, _)) => prepared.prepared.hierarchy_time,
+            Some(Prepared::Double(prepared, _)) => prepared.prepared.hierarchy_time,
             None => Duration::ZERO,
         }
     }
@@ -231,20 +231,28 @@ impl Renderer for CpuRenderer {
         let before = self.job.take();
         self.prepared = Some(match (self.packets, self.prepared.take()) {
             (Some((isa, lanes)), old) => {
-                let old = if let Some(Prepared::Single(wide, _)) = old { Some(wide.tables) } else { None };
-                let tables = self.threads.install(|| Tables::renewed(old.zip(before), job));
-                self.messages = tables.warnings().to_vec();
-                let needed = tables.features.parts();
+                let old = if let Some(Prepared::Single(broadcast, _)) = old {
+                    Some(broadcast.prepared)
+                } else {
+                    None
+                };
+                let prepared = self.threads.install(|| PreparedScene::renewed(old.zip(before), job));
+                self.messages = prepared.warnings().to_vec();
+                let needed = prepared.features.parts();
                 let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
                     reason: format!("there is no kernel for {lanes} lanes of {isa}"),
                 })?;
-                Prepared::Single(Box::new(WideTables::new(tables)), kernel)
+                Prepared::Single(Box::new(BroadcastScene::new(prepared)), kernel)
             }
             (None, old) => {
-                let old = if let Some(Prepared::Double(wide, _)) = old { Some(wide.tables) } else { None };
-                let tables = self.threads.install(|| Tables::renewed(old.zip(before), job));
-                Prepared::Double(Box::new(WideTables::new(tables)), kernels::reference_kernel())
+                let old = if let Some(Prepared::Double(broadcast, _)) = old {
+                    Some(broadcast.prepared)
+                } else {
+                    None
+                };
+                let prepared = self.threads.install(|| PreparedScene::renewed(old.zip(before), job));
+                Prepared::Double(Box::new(BroadcastScene::new(prepared)), kernels::reference_kernel())
             }
         });
         self.job = Some(job.clone());
@@ -300,8 +308,8 @@ impl CpuRenderer {
     /// As [`CpuRenderer::trace`], with what is prepared.
     fn trace_prepared(&self, pass: Pass, film: &mut Film) -> Vec<TracedTile> {
         match &self.prepared {
-            Some(Prepared::Single(tables, kernel)) => self.trace(tables, kernel, pass, film),
-            Some(Prepared::Double(tables, kernel)) => self.trace(tables, kernel, pass, film),
+            Some(Prepared::Single(prepared, kernel)) => self.trace(prepared, kernel, pass, film),
+            Some(Prepared::Double(prepared, kernel)) => self.trace(prepared, kernel, pass, film),
             None => Vec::new(),
         }
     }
@@ -309,13 +317,13 @@ impl CpuRenderer {
     /// Adds a pass to the film's sums. Returns what became of each tile, row by row.
     fn trace<R: Real>(
         &self,
-        tables: &WideTables<R>,
+        prepared: &BroadcastScene<R>,
         kernel: &Kernel<R>,
         pass: Pass,
         film: &mut Film,
     ) -> Vec<TracedTile> {
-        let settings = &tables.tables.settings;
-        let blocks = DealtBlock::of_range(pass.range.clone(), settings, tables.tables.block_limit);
+        let settings = &prepared.prepared.settings;
+        let blocks = DealtBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
         let order = dealing_order(pass.side);
         let tiles = tiles(film.halves_mut(), settings.width, pass.side);
         let trace_tile = |(index, tile): (usize, Tile)| {
@@ -331,7 +339,7 @@ impl CpuRenderer {
                 return traced;
             }
             // What `work` holds after a panic is whole: the sums that it counts are in the film.
-            match catch_unwind(AssertUnwindSafe(|| kernel(tables, &mut work))) {
+            match catch_unwind(AssertUnwindSafe(|| kernel(prepared, &mut work))) {
                 Ok(stats) => traced.stats = stats,
                 Err(payload) => traced.panic = Some(panic_text(payload.as_ref()).to_owned()),
             }

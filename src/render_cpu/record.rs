@@ -2,40 +2,40 @@
 //! backends apart.
 
 use super::Isa;
+use super::broadcast::BroadcastScene;
 use super::kernels::{Recorder, recorder};
 use super::lanes::{Lanes, V3, Wide};
 use super::path::SinglePath;
 use super::sphere::NONE;
-use super::wide::WideTables;
 use super::work::{DealtBlock, Work};
 use crate::film::PixelSum;
 use crate::kernel::Real;
+use crate::prepared::PreparedScene;
 use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use crate::render::RenderJob;
-use crate::tables::Tables;
 
 /// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as `isa` traces it; `None`: in
 /// `f64`.
 pub fn record_path(job: &RenderJob, pixel: [u32; 2], index: u64, isa: Option<Isa>) -> PathRecord {
     match isa {
-        Some(isa) => recorder(isa)(&WideTables::new(Tables::new(job)), pixel, index),
-        None => record(super::lanes::Reference, &WideTables::new(Tables::new(job)), pixel, index),
+        Some(isa) => recorder(isa)(&BroadcastScene::new(PreparedScene::new(job)), pixel, index),
+        None => record(super::lanes::Reference, &BroadcastScene::new(PreparedScene::new(job)), pixel, index),
     }
 }
 
 /// Records many paths of one job after the other, or from several threads.
 pub struct PathRecorder {
     job: RenderJob,
-    tables: WideTables<f32>,
+    prepared: BroadcastScene<f32>,
     recorder: Recorder,
 }
 
 impl PathRecorder {
     /// A recorder of what `isa` traces. From one of an earlier job it takes what is still of use.
     pub fn new(job: &RenderJob, isa: Isa, earlier: Option<PathRecorder>) -> Self {
-        let old = earlier.map(|earlier| (earlier.tables.tables, earlier.job));
-        let tables = WideTables::new(Tables::renewed(old, job));
-        PathRecorder { tables, recorder: recorder(isa), job: job.clone() }
+        let old = earlier.map(|earlier| (earlier.prepared.prepared, earlier.job));
+        let prepared = BroadcastScene::new(PreparedScene::renewed(old, job));
+        PathRecorder { prepared, recorder: recorder(isa), job: job.clone() }
     }
 
     /// What is recorded.
@@ -45,22 +45,27 @@ impl PathRecorder {
 
     /// Sample `index` of a pixel, which must lie in the picture.
     pub fn record(&self, pixel: [u32; 2], index: u64) -> PathRecord {
-        (self.recorder)(&self.tables, pixel, index)
+        (self.recorder)(&self.prepared, pixel, index)
     }
 }
 
 /// Records a path with one lane.
 #[inline(always)]
-pub(super) fn record<L: Lanes>(l: L, wide: &WideTables<L::Real>, pixel: [u32; 2], index: u64) -> PathRecord {
-    let tables = &wide.tables;
-    let blocks = DealtBlock::of_range(index..index + 1, &tables.settings, 1);
-    let mut sums = vec![PixelSum::default(); tables.settings.half_count()];
+pub(super) fn record<L: Lanes>(
+    l: L,
+    broadcast: &BroadcastScene<L::Real>,
+    pixel: [u32; 2],
+    index: u64,
+) -> PathRecord {
+    let prepared = &broadcast.prepared;
+    let blocks = DealtBlock::of_range(index..index + 1, &prepared.settings, 1);
+    let mut sums = vec![PixelSum::default(); prepared.settings.half_count()];
     let rows = sums.iter_mut().map(std::slice::from_mut).collect();
     let mut work = Work::new(&blocks, &[0], pixel, 1, rows);
-    let mut path = SinglePath::start(l, wide, &mut work);
+    let mut path = SinglePath::start(l, broadcast, &mut work);
     let in_scene = |position: V3<L::F>| {
         let [x, y, z] = first_lane::<L>(position);
-        (glam::DVec3::new(x, y, z) + tables.origin).to_array()
+        (glam::DVec3::new(x, y, z) + prepared.origin).to_array()
     };
     let mut rays: Vec<RecordedRay> = Vec::new();
     while path.is_alive() {
@@ -70,17 +75,17 @@ pub(super) fn record<L: Lanes>(l: L, wide: &WideTables<L::Real>, pixel: [u32; 2]
             throughput: first_lane::<L>(path.throughput()),
             hit: None,
         };
-        let (sphere, distance) = path.advance(l, wide, &mut work);
+        let (sphere, distance) = path.advance(l, broadcast, &mut work);
         let goes_on = path.is_alive() && !path.is_absorbed();
         if sphere != NONE {
             let position = goes_on.then(|| in_scene(path.origin()));
-            let sphere = tables.scene_index[sphere as usize] as usize;
+            let sphere = prepared.scene_index[sphere as usize] as usize;
             ray.hit = Some(RecordedHit { sphere, distance, position });
         }
         rays.push(ray);
         if !goes_on {
             // An absorbed path's last turn adds nothing.
-            path.finish(l, wide, &mut work);
+            path.finish(l, broadcast, &mut work);
             break;
         }
     }

@@ -41,7 +41,7 @@ impl<L: Lanes> Spheres<L> {
     /// The same, spread out in memory: an instruction can take it from there, where it would have to be spread
     /// first.
     #[inline(always)]
-    pub fn load(l: L, sphere: &WideSphere<L::Real>) -> Self {
+    pub fn load(l: L, sphere: &BroadcastSphere<L::Real>) -> Self {
         Spheres {
             center: load3(l, &sphere.center),
             radius2: l.load(&sphere.radius2),
@@ -52,16 +52,16 @@ impl<L: Lanes> Spheres<L> {
 
 /// A sphere in memory, as often as a packet has lanes.
 #[derive(Clone, Copy, Debug)]
-pub struct WideSphere<R> {
+pub struct BroadcastSphere<R> {
     center: [Wide<R>; 3],
     radius2: Wide<R>,
     number: Wide<u32>,
 }
 
-impl<R: Copy> WideSphere<R> {
+impl<R: Copy> BroadcastSphere<R> {
     /// Spreads centre and squared radius.
     pub fn new([x, y, z, radius2]: [R; 4], number: u32) -> Self {
-        WideSphere {
+        BroadcastSphere {
             center: [x, y, z].map(Wide::splat),
             radius2: Wide::splat(radius2),
             number: Wide::splat(number),

@@ -166,7 +166,7 @@ impl<'film> Work<'film> {
         self.blocks.len() as u64 * u64::from(self.width) * u64::from(self.height)
     }
 
-    /// Leaves out the last row, so that a kernel panics in the middle of the tile: a drill.
+    /// Leaves out the last row, so that a kernel panics in the middle of the tile (fault injection).
     pub fn sabotaged(mut self) -> Self {
         self.rows.pop();
         self
@@ -193,7 +193,7 @@ impl<'film> Work<'film> {
     /// Takes the sums of the lanes `done` and gives each its next block. Returns the lanes for which there is
     /// none.
     #[inline(always)]
-    pub fn deal(&mut self, done: u32, lanes: &mut LaneBlocks) -> u32 {
+    pub fn refill(&mut self, done: u32, lanes: &mut LaneBlocks) -> u32 {
         let mut retired = 0;
         let mut left = done;
         while left != 0 {

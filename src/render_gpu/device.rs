@@ -241,18 +241,18 @@ struct Silence {
     waited: Duration,
     /// Whether the driver may be compiling.
     compiles: bool,
-    /// When a drill ends in which it does not answer.
+    /// When an injected fault ends in which it does not answer.
     simulated_until: Option<Instant>,
 }
 
 /// How often whoever waits for the device looks whether its answer is still wanted.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// How long a device does not answer in a drill.
-const DRILL_SILENCE: Duration = Duration::from_secs(10);
+/// How long a device does not answer in an injected fault.
+const INJECTED_SILENCE: Duration = Duration::from_secs(10);
 
-/// Buffers of the largest size that a drill asks for: no device has so much memory.
-const DRILL_BUFFERS: usize = 4096;
+/// Buffers of the largest size that an injected fault asks for: no device has so much memory.
+const INJECTED_BUFFERS: usize = 4096;
 
 impl Gpu {
     /// Opens the first adapter whose name, backend or driver contains `wanted` (in any case), or the first of
@@ -364,18 +364,18 @@ impl Gpu {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    /// Breaks the device, as a drill.
+    /// Breaks the device, as an injected fault.
     pub fn break_by(&self, fault: Fault) {
         match fault {
             Fault::Lost => self.device.destroy(),
             Fault::OutOfMemory => self.use_up_memory(),
-            Fault::Hang => self.silence().simulated_until = Some(Instant::now() + DRILL_SILENCE),
+            Fault::Hang => self.silence().simulated_until = Some(Instant::now() + INJECTED_SILENCE),
             // It is the dispatch's.
             Fault::Short | Fault::AlwaysShort => {}
             // More than the buffer has room for.
             Fault::Invalid => {
                 let small = self.device.create_buffer(&wgpu::BufferDescriptor {
-                    label: Some("drill"),
+                    label: Some("injection"),
                     size: 16,
                     usage: wgpu::BufferUsages::COPY_DST,
                     mapped_at_creation: false,
@@ -389,9 +389,9 @@ impl Gpu {
     fn use_up_memory(&self) {
         let size = self.adapter.buffer_limit / 16 * 16;
         let mut taken = Vec::new();
-        while self.faults.check().is_ok() && taken.len() < DRILL_BUFFERS {
+        while self.faults.check().is_ok() && taken.len() < INJECTED_BUFFERS {
             taken.push(self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("drill"),
+                label: Some("injection"),
                 size,
                 usage: wgpu::BufferUsages::STORAGE,
                 mapped_at_creation: false,

@@ -3,15 +3,15 @@
 
 use super::device::Gpu;
 use super::layout::{ASIDE_STRIDE, GpuBlock, GpuDispatch, WORKGROUP_SIZE, tile_size};
-use super::options::DrillPoint;
-use super::prepared::{Prepared, turns_over_lists};
+use super::loaded::{Loaded, turns_over_lists};
+use super::options::InjectionPoint;
 use super::readback::{Receipt, Told};
 use super::schedule::{Blocks, Budget};
 use super::{Fault, GpuRenderer, failed};
 use crate::film::Film;
 use crate::kernel::Features;
+use crate::prepared::PreparedScene;
 use crate::render::{RenderError, Stats};
-use crate::tables::Tables;
 use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
 use std::sync::Arc;
@@ -170,9 +170,9 @@ impl Dispatches {
 
     /// Samples of a pixel that fit one dispatch however long their paths are, so that none need be put aside; `None` where
     /// that is not known, or not even one does.
-    pub(super) fn whole_samples(&self, kernel: &Features, tables: &Tables<f32>) -> Option<u64> {
+    pub(super) fn whole_samples(&self, kernel: &Features, prepared: &PreparedScene<f32>) -> Option<u64> {
         // A path may have a turn without a ray at its end, and there is one before the first.
-        let turns = u64::from(tables.settings.max_depth) * (1 + turns_over_lists(kernel, tables)) + 1;
+        let turns = u64::from(prepared.settings.max_depth) * (1 + turns_over_lists(kernel, prepared)) + 1;
         let samples = u64::from(self.turn_limit - 1) / turns;
         (!kernel.hierarchy && samples > 0).then_some(samples)
     }
@@ -326,29 +326,29 @@ impl GpuRenderer {
     /// added to `film` as soon as the device has other work.
     pub(super) fn trace_range(
         &mut self,
-        prepared: &mut Prepared,
+        loaded: &mut Loaded,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, Broken> {
-        prepared.film.check_new(range, film)?;
+        loaded.film.check_new(range, film)?;
         self.dispatches.check_whole()?;
-        let settings = *prepared.job.settings();
+        let settings = *loaded.job.settings();
         let tile = tile_size(settings.width, settings.height);
         let tile_pixels = u64::from(tile[0]) * u64::from(tile[1]);
         let mut stats = Stats::default();
-        for slab in 0..prepared.film.slabs.len() {
+        for slab in 0..loaded.film.slabs.len() {
             let (first_row, row_count) = {
-                let slab = &prepared.film.slabs[slab];
+                let slab = &loaded.film.slabs[slab];
                 (slab.first_row, slab.row_count)
             };
             let area = [settings.width, row_count];
-            let most = self.dispatches.whole_samples(&prepared.features, &prepared.scene.tables);
-            let most = most.filter(|_| !prepared.features.aside).unwrap_or(u64::MAX);
+            let most = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
+            let most = most.filter(|_| !loaded.features.aside).unwrap_or(u64::MAX);
             let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
-            let mut left = Blocks::of_range(range.clone(), &settings, prepared.scene.tables.block_limit);
+            let mut left = Blocks::of_range(range.clone(), &settings, loaded.scene.prepared.block_limit);
             loop {
-                let affordable = self.dispatches.budget(&prepared.features).paths();
+                let affordable = self.dispatches.budget(&loaded.features).paths();
                 let threads = (u64::from(tiles) * tile_pixels).min(self.gpu.adapter.busy_threads());
                 let samples = self.options.samples_per_dispatch.unwrap_or(affordable / threads).min(most);
                 let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
@@ -362,7 +362,7 @@ impl GpuRenderer {
                         return Err(RenderError::Cancelled.into());
                     }
                     let slot = self.dispatches.free_slot(&self.gpu, cancel)?;
-                    let affordable = self.dispatches.budget(&prepared.features).paths();
+                    let affordable = self.dispatches.budget(&loaded.features).paths();
                     let tile_limit =
                         (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
                     let tile_count = evenly(tiles - first_tile, tile_limit);
@@ -370,19 +370,19 @@ impl GpuRenderer {
                         first_tile,
                         tile_count,
                         block_count: blocks.len() as u32,
-                        turn_limit: self.dispatches.turn_limit(&prepared.features),
+                        turn_limit: self.dispatches.turn_limit(&loaded.features),
                         first_row,
                         row_count,
                         ..GpuDispatch::default()
                     };
                     let work = Work {
-                        kernel: prepared.features,
-                        pipeline: prepared.kernel.pipeline.clone(),
-                        scene: prepared.scene.group.clone(),
-                        film: prepared.film.slabs[slab].group.clone(),
-                        order_buffer: prepared.film.order.clone(),
-                        blocks_buffer: prepared.film.blocks.clone(),
-                        counters: prepared.film.counters().clone(),
+                        kernel: loaded.features,
+                        pipeline: loaded.kernel.pipeline.clone(),
+                        scene: loaded.scene.group.clone(),
+                        film: loaded.film.slabs[slab].group.clone(),
+                        order_buffer: loaded.film.order.clone(),
+                        blocks_buffer: loaded.film.blocks.clone(),
+                        counters: loaded.film.counters().clone(),
                         blocks: Arc::clone(&blocks),
                         order,
                         paths: u64::from(tile_count) * tile_pixels * samples,
@@ -390,19 +390,19 @@ impl GpuRenderer {
                     };
                     self.send_off(slot, work).map_err(failed)?;
                     first_tile += tile_count;
-                    if prepared.film.is_leaving() {
-                        stats.add(&prepared.film.arrive(&self.gpu, film)?);
+                    if loaded.film.is_leaving() {
+                        stats.add(&loaded.film.arrive(&self.gpu, film)?);
                     }
                 }
             }
         }
-        stats.add(&prepared.film.arrive(&self.gpu, film)?);
+        stats.add(&loaded.film.arrive(&self.gpu, film)?);
         Ok(stats)
     }
 
-    /// Sends a new dispatch off, unless a drill is due.
+    /// Sends a new dispatch off, unless an injected fault is due.
     fn send_off(&mut self, slot: usize, mut work: Work) -> Result<(), String> {
-        let fault = self.drill(DrillPoint::Dispatch, self.dispatches.count);
+        let fault = self.inject(InjectionPoint::Dispatch, self.dispatches.count);
         if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
             work.order.block_count = 0;
         }
@@ -410,23 +410,23 @@ impl GpuRenderer {
     }
 
     /// Sends for the film, once it is whole.
-    pub(super) fn send_for_film(&mut self, prepared: &mut Prepared) -> Result<(), Broken> {
-        if !prepared.film.is_leaving() {
-            self.drill(DrillPoint::Fetch, self.fetches);
+    pub(super) fn send_for_film(&mut self, loaded: &mut Loaded) -> Result<(), Broken> {
+        if !loaded.film.is_leaving() {
+            self.inject(InjectionPoint::Fetch, self.fetches);
             self.fetches += 1;
             self.dispatches.drain(&self.gpu, None)?;
-            prepared.film.leave(&self.gpu);
+            loaded.film.leave(&self.gpu);
         }
         Ok(self.gpu.faults.check().map_err(failed)?)
     }
 
     /// Adds all that was traced to the film.
-    pub(super) fn collect_all(&mut self, prepared: &mut Prepared, film: &mut Film) -> Result<Stats, Broken> {
+    pub(super) fn collect_all(&mut self, loaded: &mut Loaded, film: &mut Film) -> Result<Stats, Broken> {
         let mut stats = Stats::default();
         // What is on its way already comes first.
-        while prepared.film.holds_samples() {
-            self.send_for_film(prepared)?;
-            stats.add(&prepared.film.arrive(&self.gpu, film)?);
+        while loaded.film.holds_samples() {
+            self.send_for_film(loaded)?;
+            stats.add(&loaded.film.arrive(&self.gpu, film)?);
         }
         Ok(stats)
     }
@@ -437,13 +437,13 @@ impl GpuRenderer {
     /// If samples are missing still; the film is then as it was.
     pub(super) fn trace_again(
         &mut self,
-        prepared: &mut Prepared,
+        loaded: &mut Loaded,
         mut shortfall: String,
         range: Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        let mut missing = prepared.film.held();
+        let mut missing = loaded.film.held();
         // It may have been noted before.
         if missing.overlap(&range).is_none() {
             missing.insert(range)?;
@@ -451,15 +451,15 @@ impl GpuRenderer {
         while self.dispatches.caution < CAUTION_LIMIT {
             self.dispatches.caution += 1;
             self.messages.push(format!("{shortfall}; they are traced again in smaller pieces"));
-            self.forget(prepared);
+            self.forget(loaded);
             let begin = Instant::now();
             let mut stats = Stats::default();
             let outcome = missing.iter().try_for_each(|range| {
-                stats.add(&self.trace_range(prepared, &range, film, cancel)?);
+                stats.add(&self.trace_range(loaded, &range, film, cancel)?);
                 self.dispatches.drain(&self.gpu, Some(cancel))?;
-                prepared.film.note(range, begin.elapsed()).map_err(Broken::from)
+                loaded.film.note(range, begin.elapsed()).map_err(Broken::from)
             });
-            match outcome.and_then(|()| self.collect_all(prepared, film)) {
+            match outcome.and_then(|()| self.collect_all(loaded, film)) {
                 Ok(collected) => {
                     stats.add(&collected);
                     return Ok(stats);

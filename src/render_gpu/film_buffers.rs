@@ -346,7 +346,7 @@ mod tests {
 
     /// Sets two words of the device's counters, the lower first.
     fn set(gpu: &GpuRenderer, offset: usize, words: [u32; 2]) {
-        let counters = &gpu.prepared.as_ref().unwrap().film.counters;
+        let counters = &gpu.loaded.as_ref().unwrap().film.counters;
         gpu.gpu.queue.write_buffer(counters, offset as u64, bytemuck::cast_slice(&words));
     }
 
@@ -387,7 +387,7 @@ mod tests {
         assert!(seen > 200 && seen < 2 * 40 * 24, "{seen} samples meet the sky");
         // A sky that no scene may have, which goes to the device with the next job of the scene.
         gpu.prepare(&job, &AtomicBool::new(false)).unwrap();
-        gpu.prepared.as_mut().unwrap().scene.tables.sky_middle[1] = f32::INFINITY;
+        gpu.loaded.as_mut().unwrap().scene.prepared.sky_middle[1] = f32::INFINITY;
         let (stats, film) = traced(&mut gpu, &sky, 0..2);
         assert_eq!(film.rejected(), seen);
         assert_eq!(stats.rejected, film.rejected());

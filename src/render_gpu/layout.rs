@@ -5,32 +5,32 @@ pub use crate::kernel::{
     WORKGROUP_SIZE,
 };
 use crate::kernel::{AnchoredSphere, UNIFORM_ANCHORED, UNIFORM_SPHERES};
+use crate::prepared::PreparedScene;
+use crate::prepared::cwbvh::CwBvhNode;
 use crate::render::RenderSettings;
-use crate::tables::Tables;
-use crate::tables::cwbvh::CwBvhNode;
 
 impl GpuJob {
     /// What the shaders know of a job whose hierarchy has `node_count` nodes.
-    pub fn new(tables: &Tables<f32>, node_count: u32) -> Self {
-        let RenderSettings { width, height, max_depth, seed, .. } = tables.settings;
+    pub fn new(prepared: &PreparedScene<f32>, node_count: u32) -> Self {
+        let RenderSettings { width, height, max_depth, seed, .. } = prepared.settings;
         let mut few_spheres = [[0.0; 4]; UNIFORM_SPHERES];
-        for (to, from) in few_spheres.iter_mut().zip(tables.opaque.iter().chain(&tables.two_root)) {
+        for (to, from) in few_spheres.iter_mut().zip(prepared.opaque.iter().chain(&prepared.two_root)) {
             *to = *from;
         }
         let mut few_anchored = [AnchoredSphere::default(); UNIFORM_ANCHORED];
-        for (to, from) in few_anchored.iter_mut().zip(&tables.anchored) {
+        for (to, from) in few_anchored.iter_mut().zip(&prepared.anchored) {
             *to = *from;
         }
         GpuJob {
-            camera: tables.camera,
-            sky_middle: tables.sky_middle,
-            extent: tables.hierarchy.as_ref().map_or(0.0, |h| h.extent),
-            sky_slope: tables.sky_slope,
+            camera: prepared.camera,
+            sky_middle: prepared.sky_middle,
+            extent: prepared.hierarchy.as_ref().map_or(0.0, |h| h.extent),
+            sky_slope: prepared.sky_slope,
             max_depth,
             seed,
-            opaque_count: tables.opaque.len() as u32,
-            two_root_count: tables.two_root.len() as u32,
-            anchored_count: tables.anchored.len() as u32,
+            opaque_count: prepared.opaque.len() as u32,
+            two_root_count: prepared.two_root.len() as u32,
+            anchored_count: prepared.anchored.len() as u32,
             width,
             height,
             tile_width: tile_size(width, height)[0],

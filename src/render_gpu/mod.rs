@@ -9,8 +9,8 @@ mod dispatches;
 mod film_buffers;
 mod kernel;
 pub mod layout;
+mod loaded;
 mod options;
-mod prepared;
 mod readback;
 mod record;
 mod scene;
@@ -21,8 +21,8 @@ mod small_programs;
 pub use device::{AdapterInfo, adapters};
 pub use dispatches::TURN_LIMIT;
 pub use options::{
-    BATCH_TARGET, Drill, DrillPoint, Fault, GpuError, GpuOptions, GpuReport, HierarchyKind,
-    INTERACTIVE_TARGET,
+    BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, HierarchyKind, INTERACTIVE_TARGET,
+    InjectionPoint,
 };
 
 use crate::film::Film;
@@ -30,7 +30,7 @@ use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 use device::Gpu;
 use dispatches::{Broken, Dispatches};
 use kernel::Kernels;
-use prepared::Prepared;
+use loaded::Loaded;
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
@@ -41,7 +41,7 @@ pub struct GpuRenderer {
     options: GpuOptions,
     kernels: Kernels,
     dispatches: Dispatches,
-    prepared: Option<Prepared>,
+    loaded: Option<Loaded>,
     /// How often a job was prepared.
     preparations: u64,
     /// How often a film was sent for.
@@ -77,7 +77,7 @@ impl GpuRenderer {
             options,
             kernels: Kernels::default(),
             dispatches,
-            prepared: None,
+            loaded: None,
             preparations: 0,
             fetches: 0,
             report,
@@ -93,7 +93,7 @@ impl GpuRenderer {
     /// What was compiled and measured so far.
     pub fn report(&self) -> GpuReport {
         let Dispatches { count, time, .. } = self.dispatches;
-        let film = self.prepared.as_ref().map(|prepared| &prepared.film);
+        let film = self.loaded.as_ref().map(|loaded| &loaded.film);
         GpuReport {
             dispatches: count,
             dispatch_time: time,
@@ -106,78 +106,78 @@ impl GpuRenderer {
     /// Runs `work` on what is prepared, if anything is.
     fn with_present<T: Default>(
         &mut self,
-        work: impl FnOnce(&mut Self, &mut Prepared) -> Result<T, RenderError>,
+        work: impl FnOnce(&mut Self, &mut Loaded) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
-        let Some(mut prepared) = self.prepared.take() else { return Ok(T::default()) };
-        let result = work(self, &mut prepared);
-        self.prepared = Some(prepared);
+        let Some(mut loaded) = self.loaded.take() else { return Ok(T::default()) };
+        let result = work(self, &mut loaded);
+        self.loaded = Some(loaded);
         result
     }
 
     /// Runs `work` on the job. Where it fails, what was traced is forgotten.
-    fn with_prepared<T>(
+    fn with_loaded<T>(
         &mut self,
         job: &RenderJob,
         cancel: &AtomicBool,
-        work: impl FnOnce(&mut Self, &mut Prepared) -> Result<T, RenderError>,
+        work: impl FnOnce(&mut Self, &mut Loaded) -> Result<T, RenderError>,
     ) -> Result<T, RenderError> {
         self.get_ready(job, cancel)?;
-        let Some(mut prepared) = self.prepared.take() else {
-            return Err(failed("nothing was prepared".to_owned()));
+        let Some(mut loaded) = self.loaded.take() else {
+            return Err(failed("nothing was loaded".to_owned()));
         };
-        let result = work(self, &mut prepared);
+        let result = work(self, &mut loaded);
         if let Err(RenderError::Cancelled | RenderError::Backend { .. }) = result {
-            self.forget(&mut prepared);
+            self.forget(&mut loaded);
         }
-        self.prepared = Some(prepared);
+        self.loaded = Some(loaded);
         result
     }
 
     /// Throws away what was traced and is not in a film.
-    fn forget(&mut self, prepared: &mut Prepared) {
+    fn forget(&mut self, loaded: &mut Loaded) {
         self.dispatches.abandon();
-        prepared.film.forget(&self.gpu);
+        loaded.film.forget(&self.gpu);
     }
 
-    /// The fault that a drill brings about at this point, the `count`th of its kind; a broken device is broken.
-    fn drill(&self, point: DrillPoint, count: u64) -> Option<Fault> {
-        let is_due = |drill: &Drill| {
-            let lasts = drill.fault == Fault::AlwaysShort;
-            drill.point == point && (drill.after == count || lasts && drill.after < count)
+    /// The fault that is injected at this point, the `count`th of its kind; a broken device is broken.
+    fn inject(&self, point: InjectionPoint, count: u64) -> Option<Fault> {
+        let is_due = |injection: &FaultInjection| {
+            let lasts = injection.fault == Fault::AlwaysShort;
+            injection.point == point && (injection.after == count || lasts && injection.after < count)
         };
-        let drill = self.options.drill.filter(is_due)?;
-        self.gpu.break_by(drill.fault);
-        Some(drill.fault)
+        let injection = self.options.injection.filter(is_due)?;
+        self.gpu.break_by(injection.fault);
+        Some(injection.fault)
     }
 
     fn traced(
         &mut self,
-        prepared: &mut Prepared,
+        loaded: &mut Loaded,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, Broken> {
         let begin = Instant::now();
-        let stats = self.trace_range(prepared, range, film, cancel)?;
-        prepared.film.note(range.clone(), begin.elapsed())?;
-        if prepared.film.is_due() {
-            self.send_for_film(prepared)?;
+        let stats = self.trace_range(loaded, range, film, cancel)?;
+        loaded.film.note(range.clone(), begin.elapsed())?;
+        if loaded.film.is_due() {
+            self.send_for_film(loaded)?;
         }
         Ok(stats)
     }
 
     fn traced_and_collected(
         &mut self,
-        prepared: &mut Prepared,
+        loaded: &mut Loaded,
         range: &Range<u64>,
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, Broken> {
         let begin = Instant::now();
-        let mut stats = self.trace_range(prepared, range, film, cancel)?;
+        let mut stats = self.trace_range(loaded, range, film, cancel)?;
         self.dispatches.drain(&self.gpu, Some(cancel))?;
-        prepared.film.note(range.clone(), begin.elapsed())?;
-        stats.add(&self.collect_all(prepared, film)?);
+        loaded.film.note(range.clone(), begin.elapsed())?;
+        stats.add(&self.collect_all(loaded, film)?);
         Ok(stats)
     }
 }
@@ -210,9 +210,9 @@ impl Renderer for GpuRenderer {
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
-        self.with_prepared(job, cancel, |this, prepared| {
-            if prepared.film.holds_samples() {
-                this.forget(prepared);
+        self.with_loaded(job, cancel, |this, loaded| {
+            if loaded.film.holds_samples() {
+                this.forget(loaded);
             }
             Ok(())
         })
@@ -225,11 +225,11 @@ impl Renderer for GpuRenderer {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        self.with_prepared(job, cancel, |this, prepared| {
-            match this.traced_and_collected(prepared, &range, film, cancel) {
+        self.with_loaded(job, cancel, |this, loaded| {
+            match this.traced_and_collected(loaded, &range, film, cancel) {
                 Ok(stats) => Ok(stats),
                 Err(Broken::Ended(error)) => Err(error),
-                Err(Broken::Short(reason)) => this.trace_again(prepared, reason, range, film, cancel),
+                Err(Broken::Short(reason)) => this.trace_again(loaded, reason, range, film, cancel),
             }
         })
     }
@@ -241,15 +241,15 @@ impl Renderer for GpuRenderer {
         film: &mut Film,
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
-        self.with_prepared(job, cancel, |this, prepared| match this.traced(prepared, &range, film, cancel) {
+        self.with_loaded(job, cancel, |this, loaded| match this.traced(loaded, &range, film, cancel) {
             Ok(stats) => Ok(stats),
             Err(Broken::Ended(error)) => Err(error),
-            Err(Broken::Short(reason)) => this.trace_again(prepared, reason, range, film, cancel),
+            Err(Broken::Short(reason)) => this.trace_again(loaded, reason, range, film, cancel),
         })
     }
 
     fn fetch(&mut self) -> Result<(), RenderError> {
-        self.with_present(|this, prepared| match this.send_for_film(prepared) {
+        self.with_present(|this, loaded| match this.send_for_film(loaded) {
             // The next call finds what is missing.
             Ok(()) | Err(Broken::Short(_)) => Ok(()),
             Err(Broken::Ended(error)) => Err(error),
@@ -257,11 +257,11 @@ impl Renderer for GpuRenderer {
     }
 
     fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
-        self.with_present(|this, prepared| match this.collect_all(prepared, film) {
+        self.with_present(|this, loaded| match this.collect_all(loaded, film) {
             Ok(stats) => Ok(stats),
             Err(Broken::Ended(error)) => Err(error),
             Err(Broken::Short(reason)) => {
-                this.trace_again(prepared, reason, 0..0, film, &AtomicBool::new(false))
+                this.trace_again(loaded, reason, 0..0, film, &AtomicBool::new(false))
             }
         })
     }

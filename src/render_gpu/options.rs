@@ -18,7 +18,7 @@ pub const COMPILING_PATIENCE: u32 = 6;
 /// The hierarchy over a scene of many spheres. Both find the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HierarchyKind {
-    /// Two children a node: that of the tables, which the CPU has too.
+    /// Two children a node: that of the prepared scene, which the CPU has too.
     Bvh2,
     /// Eight children a node, with compressed boxes.
     #[default]
@@ -36,15 +36,15 @@ pub enum Fault {
     Invalid,
     /// It does not answer for 10 s.
     Hang,
-    /// It reports a dispatch as done and has left out all of it. Only at [`DrillPoint::Dispatch`].
+    /// It reports a dispatch as done and has left out all of it. Only at [`InjectionPoint::Dispatch`].
     Short,
     /// So it does from then on.
     AlwaysShort,
 }
 
-/// Where a drill can strike.
+/// Where an injected fault can strike.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DrillPoint {
+pub enum InjectionPoint {
     /// Before a job is prepared.
     Prepare,
     /// Before a dispatch is sent off.
@@ -56,11 +56,11 @@ pub enum DrillPoint {
 
 /// A fault that is brought about on purpose, to see that a render survives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Drill {
+pub struct FaultInjection {
     /// What goes wrong.
     pub fault: Fault,
     /// Where.
-    pub point: DrillPoint,
+    pub point: InjectionPoint,
     /// After how many of these.
     pub after: u64,
 }
@@ -86,8 +86,8 @@ pub struct GpuOptions {
     pub film_limit: Option<u64>,
     /// How long the device is waited for before it is given up.
     pub patience: Duration,
-    /// Breaks the device: a drill.
-    pub drill: Option<Drill>,
+    /// Breaks the device (fault injection).
+    pub injection: Option<FaultInjection>,
 }
 
 impl Default for GpuOptions {
@@ -102,7 +102,7 @@ impl Default for GpuOptions {
             turn_limit: None,
             film_limit: None,
             patience: PATIENCE,
-            drill: None,
+            injection: None,
         }
     }
 }

@@ -2,17 +2,17 @@
 
 use super::HierarchyKind;
 use super::layout::GpuCwbvhNode;
-use crate::kernel::{CWBVH_STACK_SIZE, ROW_COLUMNS, STACK_SIZE, words_of};
+use crate::kernel::{CWBVH_STACK_SIZE, RECORD_COLUMNS, STACK_SIZE, words_of};
+use crate::prepared::PreparedScene;
+use crate::prepared::cwbvh::Cwbvh;
 use crate::render::RenderJob;
-use crate::tables::Tables;
-use crate::tables::cwbvh::Cwbvh;
 
 /// What goes into the buffers of a scene.
 pub struct SceneData {
     /// Centre and squared radius.
     pub spheres: Vec<[f32; 4]>,
     /// By sphere, the huge ones last.
-    pub rows: Vec<[f32; ROW_COLUMNS]>,
+    pub records: Vec<[f32; RECORD_COLUMNS]>,
     /// By sphere, its index in the scene.
     pub scene_index: Vec<u32>,
     /// The hierarchy's nodes, and behind them each sphere's place in the list.
@@ -22,19 +22,19 @@ pub struct SceneData {
 }
 
 impl SceneData {
-    /// With a hierarchy of the kind asked for, where the tables have one.
+    /// With a hierarchy of the kind asked for, where the prepared scene has one.
     ///
     /// # Errors
     /// Where a traversal has no room for its levels.
-    pub fn new(job: &RenderJob, tables: &Tables<f32>, kind: HierarchyKind) -> Result<Self, String> {
+    pub fn new(job: &RenderJob, prepared: &PreparedScene<f32>, kind: HierarchyKind) -> Result<Self, String> {
         let mut data = SceneData {
-            spheres: tables.opaque.iter().chain(&tables.two_root).copied().collect(),
-            rows: tables.rows.iter().map(|row| row.0).collect(),
-            scene_index: tables.scene_index.clone(),
+            spheres: prepared.opaque.iter().chain(&prepared.two_root).copied().collect(),
+            records: prepared.records.iter().map(|row| row.0).collect(),
+            scene_index: prepared.scene_index.clone(),
             nodes: Vec::new(),
             node_count: 0,
         };
-        let Some(hierarchy) = &tables.hierarchy else { return Ok(data) };
+        let Some(hierarchy) = &prepared.hierarchy else { return Ok(data) };
         let (depth, room) = match kind {
             HierarchyKind::Bvh2 => {
                 let nodes = words_of(&hierarchy.nodes);
@@ -42,7 +42,7 @@ impl SceneData {
                 data.take_nodes(count, bytemuck::cast_slice(&nodes), hierarchy.ranks.iter().copied());
                 (hierarchy.depth(), STACK_SIZE)
             }
-            HierarchyKind::Cwbvh => (data.take_cwbvh(job, tables, &hierarchy.ranks), CWBVH_STACK_SIZE),
+            HierarchyKind::Cwbvh => (data.take_cwbvh(job, prepared, &hierarchy.ranks), CWBVH_STACK_SIZE),
         };
         if depth > room {
             return Err(format!(
@@ -53,11 +53,11 @@ impl SceneData {
     }
 
     /// Builds it, puts spheres and rows in the order of its leaves, and returns its depth.
-    fn take_cwbvh(&mut self, job: &RenderJob, tables: &Tables<f32>, ranks: &[u32]) -> usize {
-        let built = Cwbvh::build(tables.spheres_of_hierarchy(job), tables.origin);
+    fn take_cwbvh(&mut self, job: &RenderJob, prepared: &PreparedScene<f32>, ranks: &[u32]) -> usize {
+        let built = Cwbvh::build(prepared.spheres_of_hierarchy(job), prepared.origin);
         self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();
-        let rows: Vec<_> = built.order.iter().map(|i| self.rows[*i as usize]).collect();
-        self.rows[..rows.len()].copy_from_slice(&rows);
+        let records: Vec<_> = built.order.iter().map(|i| self.records[*i as usize]).collect();
+        self.records[..records.len()].copy_from_slice(&records);
         let scene_index: Vec<u32> = built.order.iter().map(|i| self.scene_index[*i as usize]).collect();
         self.scene_index[..scene_index.len()].copy_from_slice(&scene_index);
         let nodes: Vec<GpuCwbvhNode> = built.nodes.iter().map(Into::into).collect();

@@ -4,7 +4,7 @@ use super::dispatches::{self, groups};
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
 use super::layout::{GpuDispatch, WORKGROUP_SIZE};
-use super::prepared::Prepared;
+use super::loaded::Loaded;
 use super::schedule::Blocks;
 use super::shader_source::{EntryPoint, Probe};
 use super::{GpuRenderer, TURN_LIMIT, failed, readback, record};
@@ -26,9 +26,9 @@ impl GpuRenderer {
         film: &Film,
         transfer: Transfer,
     ) -> Result<Vec<u32>, RenderError> {
-        self.with_prepared(job, &go_on(), |this, prepared| {
+        self.with_loaded(job, &go_on(), |this, loaded| {
             let kernel = this.small_kernel(EntryPoint::Resolve, &Features::default(), 0)?;
-            let buffers = this.own_film(prepared)?;
+            let buffers = this.own_film(loaded)?;
             let (width, height) = (film.width(), film.height());
             let Some(sums_on_device) = buffers.sums_of_whole() else {
                 return Err(failed(format!("a film of {width}x{height} does not fit one buffer")));
@@ -44,7 +44,7 @@ impl GpuRenderer {
             };
             this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
             let groups = (pixels as u32).div_ceil(WORKGROUP_SIZE);
-            this.run(prepared, &buffers, &kernel, &vec![0; pixels], groups)
+            this.run(loaded, &buffers, &kernel, &vec![0; pixels], groups)
         })
     }
 
@@ -54,11 +54,11 @@ impl GpuRenderer {
     /// # Errors
     /// [`RenderError::Backend`].
     pub fn probe(&mut self, job: &RenderJob, probe: Probe, words: &[u32]) -> Result<Vec<u32>, RenderError> {
-        self.with_prepared(job, &go_on(), |this, prepared| {
+        self.with_loaded(job, &go_on(), |this, loaded| {
             let features = Features { dielectric_laws: job.rules().dielectric, ..Features::default() };
             let kernel = this.small_kernel(EntryPoint::Probe, &features, probe as u32)?;
             let groups = (words.len() / PROBE_STRIDE).div_ceil(WORKGROUP_SIZE as usize) as u32;
-            this.run(prepared, &prepared.film, &kernel, words, groups)
+            this.run(loaded, &loaded.film, &kernel, words, groups)
         })
     }
 
@@ -73,12 +73,12 @@ impl GpuRenderer {
         pixel: [u32; 2],
         index: u64,
     ) -> Result<PathRecord, RenderError> {
-        self.with_prepared(job, &go_on(), |this, prepared| {
-            let kernel = this.small_kernel(EntryPoint::PathRecord, &prepared.features, 0)?;
-            let buffers = this.own_film(prepared)?;
+        self.with_loaded(job, &go_on(), |this, loaded| {
+            let kernel = this.small_kernel(EntryPoint::PathRecord, &loaded.features, 0)?;
+            let buffers = this.own_film(loaded)?;
             let settings = job.settings();
             let (blocks, _) =
-                Blocks::of_range(index..index + 1, settings, prepared.scene.tables.block_limit).take(1);
+                Blocks::of_range(index..index + 1, settings, loaded.scene.prepared.block_limit).take(1);
             let mut order = GpuDispatch {
                 block_count: blocks.len() as u32,
                 turn_limit: TURN_LIMIT,
@@ -91,11 +91,11 @@ impl GpuRenderer {
             let mut rays = 0;
             loop {
                 this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
-                words = this.run(prepared, &buffers, &kernel, &words, 1)?;
+                words = this.run(loaded, &buffers, &kernel, &words, 1)?;
                 match record::is_aside(&mut words, pixel, settings.max_depth, &mut rays) {
                     Some(true) => order.resumes = 1,
                     Some(false) => {
-                        let (index, origin) = (&prepared.scene.scene_index, prepared.scene.tables.origin);
+                        let (index, origin) = (&loaded.scene.scene_index, loaded.scene.prepared.origin);
                         return Ok(record::from_words(&words, index, origin));
                     }
                     None => return Err(failed(dispatches::stuck(1))),
@@ -105,8 +105,8 @@ impl GpuRenderer {
     }
 
     /// A film besides that which is being traced.
-    fn own_film(&self, prepared: &Prepared) -> Result<FilmBuffers, RenderError> {
-        FilmBuffers::new(&self.gpu, prepared.job.settings(), self.film_limit()).map_err(failed)
+    fn own_film(&self, loaded: &Loaded) -> Result<FilmBuffers, RenderError> {
+        FilmBuffers::new(&self.gpu, loaded.job.settings(), self.film_limit()).map_err(failed)
     }
 
     fn small_kernel(
@@ -121,7 +121,7 @@ impl GpuRenderer {
     /// Runs a kernel on `words` and returns what it made of them.
     fn run(
         &self,
-        prepared: &Prepared,
+        loaded: &Loaded,
         film: &FilmBuffers,
         kernel: &Kernel,
         words: &[u32],
@@ -136,7 +136,7 @@ impl GpuRenderer {
         {
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(&kernel.pipeline);
-            pass.set_bind_group(0, &prepared.scene.group, &[]);
+            pass.set_bind_group(0, &loaded.scene.group, &[]);
             pass.set_bind_group(1, &slab.group, &[]);
             pass.set_bind_group(2, &group, &[]);
             let [x, y] = groups(group_count);

@@ -103,7 +103,7 @@ pub struct Run {
 pub struct Measured {
     /// Samples per pixel.
     pub samples: u64,
-    /// Seconds of tracing; the control tells those of its processor.
+    /// Seconds of tracing; the baseline tells those of its processor.
     pub trace_seconds: f64,
     /// Seconds of tracing and of adding to the film.
     pub wall_seconds: f64,

@@ -1,7 +1,7 @@
 //! `weekender report`: error against time, for scenes, backends and samplers.
 
 mod calibration;
-mod contender;
+mod candidate;
 mod data;
 mod figure;
 mod progress;
@@ -24,7 +24,7 @@ use crate::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
 use crate::terminal::{print, write_json};
 use anyhow::{Context, Result};
 use calibration::Calibration;
-use contender::{Contender, Limits};
+use candidate::{Candidate, Limits};
 pub use data::Data;
 use data::{Curve, SCHEMA, Settings};
 use progress::Progress;
@@ -64,7 +64,7 @@ pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
 struct Report<'a> {
     options: &'a ReportOptions,
     data: Data,
-    contenders: Vec<(String, Contender)>,
+    candidates: Vec<(String, Candidate)>,
     interrupt: Interrupt,
     progress: Progress,
 }
@@ -76,7 +76,7 @@ impl<'a> Report<'a> {
         std::fs::create_dir_all(out)
             .with_context(|| format!("cannot make the directory {}; choose another --out", out.display()))?;
         check_writable(&out.join("report.json"))?;
-        let contenders = contenders(options)?;
+        let candidates = candidates(options)?;
         if let ReferenceChoice::File(path) = &options.reference {
             for recipe in &options.scenes {
                 reference::read(path, recipe)?;
@@ -90,13 +90,13 @@ impl<'a> Report<'a> {
             runs: Vec::new(),
             rounding: Vec::new(),
         });
-        let per_scene: usize = contenders.iter().map(|(_, c)| c.samplers(&options.samplers).len()).sum();
+        let per_scene: usize = candidates.iter().map(|(_, c)| c.samplers(&options.samplers).len()).sum();
         let curves = options.scenes.len() * per_scene;
         let total = curves as f64 * options.time_limit + 2.0 * EXPECTED_SECONDS * options.scenes.len() as f64;
         Ok(Report {
             options,
             data,
-            contenders,
+            candidates,
             interrupt: Interrupt::install()?,
             progress: Progress::new(options.progress, total),
         })
@@ -115,9 +115,9 @@ impl<'a> Report<'a> {
         // Seeds outside, curves inside: what else the machine does is shared by all curves.
         for seed in 0..self.options.seeds {
             for (recipe, reference) in self.options.scenes.iter().zip(&references) {
-                for contender in 0..self.contenders.len() {
-                    for sampler in self.contenders[contender].1.samplers(&self.options.samplers) {
-                        self.run(recipe, reference, contender, sampler, seed)?;
+                for candidate in 0..self.candidates.len() {
+                    for sampler in self.candidates[candidate].1.samplers(&self.options.samplers) {
+                        self.run(recipe, reference, candidate, sampler, seed)?;
                         if self.interrupt.is_set() {
                             return Ok(());
                         }
@@ -152,11 +152,11 @@ impl<'a> Report<'a> {
         &mut self,
         recipe: &Recipe,
         reference: &Reference,
-        contender: usize,
+        candidate: usize,
         sampler: SamplerKind,
         seed: u32,
     ) -> Result<()> {
-        let (backend, contender) = &mut self.contenders[contender];
+        let (backend, candidate) = &mut self.candidates[candidate];
         let curve = Curve {
             scene: recipe.name.clone(),
             backend: backend.clone(),
@@ -168,7 +168,7 @@ impl<'a> Report<'a> {
             let job = job(recipe, sampler, seed, self.options.estimate_error)?;
             let limits = Limits { seconds, samples: self.options.max_samples };
             let interrupt = &self.interrupt;
-            let run = contender.run(&curve, &job, reference, limits, &|| !interrupt.is_set())?;
+            let run = candidate.run(&curve, &job, reference, limits, &|| !interrupt.is_set())?;
             if let Some(run) = run {
                 self.data.runs.push(run);
                 self.write_json()?;
@@ -184,12 +184,12 @@ impl<'a> Report<'a> {
             data.rounding.iter().any(|row| row.scene == recipe.name && row.backend == backend)
         };
         let missing: Vec<(&str, &mut dyn Renderer)> = self
-            .contenders
+            .candidates
             .iter_mut()
             .filter(|(name, _)| name != "reference" && !is_there(&self.data, name))
-            .filter_map(|(name, contender)| match contender {
-                Contender::Renderer(renderer) => Some((name.as_str(), renderer.as_mut())),
-                Contender::Control(_) => None,
+            .filter_map(|(name, candidate)| match candidate {
+                Candidate::Renderer(renderer) => Some((name.as_str(), renderer.as_mut())),
+                Candidate::Baseline(_) => None,
             })
             .collect();
         if missing.is_empty() || self.interrupt.is_set() {
@@ -253,14 +253,14 @@ struct Written<'a> {
 }
 
 /// Who renders, without those that are missing and were not asked for.
-fn contenders(options: &ReportOptions) -> Result<Vec<(String, Contender)>> {
-    let mut contenders = Vec::new();
+fn candidates(options: &ReportOptions) -> Result<Vec<(String, Candidate)>> {
+    let mut candidates = Vec::new();
     for (name, backend) in &options.backends {
-        let contender =
-            Contender::of(backend).with_context(|| format!("the backend {name} cannot be had"))?;
-        contenders.extend(contender.map(|contender| (name.clone(), contender)));
+        let candidate =
+            Candidate::of(backend).with_context(|| format!("the backend {name} cannot be had"))?;
+        candidates.extend(candidate.map(|candidate| (name.clone(), candidate)));
     }
-    Ok(contenders)
+    Ok(candidates)
 }
 
 fn settings(options: &ReportOptions) -> Settings {

@@ -4,24 +4,29 @@ use crate::common::*;
 use glam::DVec3;
 use weekender::film::Film;
 use weekender::kernel::parts;
+use weekender::prepared::PreparedScene;
 use weekender::render::{RenderJob, RenderSettings};
+use weekender::render_cpu::broadcast::BroadcastScene;
 use weekender::render_cpu::lanes::Scalar;
 use weekender::render_cpu::path::trace;
-use weekender::render_cpu::wide::WideTables;
 use weekender::render_cpu::work::{DealtBlock, TileStats, Work, dealing_order};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
 use weekender::scene::{Camera, Sky};
-use weekender::tables::Tables;
 
-/// Traces tables as they are, in one tile of at most 256 pixels a side.
-pub fn trace_tables(tables: &Tables<f32>, film: &mut Film, samples: std::ops::Range<u64>) -> TileStats {
-    let settings = tables.settings;
-    let blocks = DealtBlock::of_range(samples.clone(), &settings, tables.block_limit);
+/// Traces a prepared scene as it is, in one tile of at most 256 pixels a side.
+pub fn trace_tables(
+    prepared: &PreparedScene<f32>,
+    film: &mut Film,
+    samples: std::ops::Range<u64>,
+) -> TileStats {
+    let settings = prepared.settings;
+    let blocks = DealtBlock::of_range(samples.clone(), &settings, prepared.block_limit);
     let order = dealing_order(256);
     let rows =
         film.halves_mut().iter_mut().flat_map(|half| half.chunks_mut(settings.width as usize)).collect();
     let mut work = Work::new(&blocks, &order, [0, 0], settings.height, rows);
-    let stats = trace::<_, { parts::ALL }>(Scalar::<false>, &WideTables::new(tables.clone()), &mut work);
+    let stats =
+        trace::<_, { parts::ALL }>(Scalar::<false>, &BroadcastScene::new(prepared.clone()), &mut work);
     film.record(samples, stats.rejected).unwrap();
     stats
 }
@@ -57,21 +62,21 @@ fn case_25_not_a_number() {
     const SAMPLES: u64 = 4;
     let ball = scene(&[(DVec3::new(0.0, 0.0, -1.0), 0.5, lambertian(0.5))]);
     let job = sharp_job(&ball, Camera::BOOK, RenderSettings { estimate_error: true, ..size(64, 36) });
-    let clean = Tables::<f32>::new(&job);
+    let clean = PreparedScene::<f32>::new(&job);
     let mut expected = job.new_film();
     assert_eq!(trace_tables(&clean, &mut expected, 0..SAMPLES).rejected, 0);
-    assert_eq!(expected, render(&mut baseline(), &job, 0..SAMPLES), "the tables are rendered as they are");
+    assert_eq!(expected, render(&mut baseline(), &job, 0..SAMPLES), "the prepared are rendered as they are");
     let is_ball = |x: u32, y: u32| {
         let (o, d) = centre_ray(&Camera::BOOK, 64, 36, x, y);
         exact_roots(o, d, DVec3::new(0.0, 0.0, -1.0), 0.5).is_some()
     };
 
     for bad in [f32::NAN, f32::INFINITY, f32::MAX] {
-        let mut tables = clean.clone();
+        let mut prepared = clean.clone();
         // One channel of three is enough.
-        tables.rows[0].0[5] = bad;
+        prepared.records[0].0[5] = bad;
         let mut film = job.new_film();
-        let stats = trace_tables(&tables, &mut film, 0..SAMPLES);
+        let stats = trace_tables(&prepared, &mut film, 0..SAMPLES);
         let mut hits = 0;
         for y in 0..36 {
             for x in 0..64 {
@@ -91,17 +96,17 @@ fn case_25_not_a_number() {
     }
 
     // Geometry that is no number is never hit; a sky that is none spoils every sample.
-    let mut tables = clean.clone();
-    tables.opaque[0] = [f32::NAN; 4];
+    let mut prepared = clean.clone();
+    prepared.opaque[0] = [f32::NAN; 4];
     let mut film = job.new_film();
-    assert_eq!(trace_tables(&tables, &mut film, 0..SAMPLES).rejected, 0);
+    assert_eq!(trace_tables(&prepared, &mut film, 0..SAMPLES).rejected, 0);
     let bare = RenderJob::new(empty(), *job.camera(), *job.settings(), *job.rules()).unwrap();
     assert_eq!(film, render(&mut baseline(), &bare, 0..SAMPLES));
-    let mut tables = clean;
-    tables.sky_middle[1] = f32::INFINITY;
+    let mut prepared = clean;
+    prepared.sky_middle[1] = f32::INFINITY;
     let mut film = job.new_film();
     // The four packets that wait for their first work are counted too.
-    assert_eq!(trace_tables(&tables, &mut film, 0..SAMPLES).rejected, 64 * 36 * SAMPLES + 4);
+    assert_eq!(trace_tables(&prepared, &mut film, 0..SAMPLES).rejected, 64 * 36 * SAMPLES + 4);
     for pixel in 0..64 * 36 {
         assert_eq!(film.pixel_sum(pixel).0, [0; 3]);
     }

@@ -5,14 +5,14 @@ use crate::common::*;
 use crate::film::trace_tables;
 use glam::DVec3;
 use weekender::kernel::Real;
+use weekender::prepared::PreparedScene;
+use weekender::prepared::hierarchy::Hierarchy;
 use weekender::render::RenderSettings;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, Wide, WideU};
 use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, near_root, nearest_root, surface_point};
 use weekender::scene::Sphere;
 use weekender::scene::builtin::{BOOK_CAMERA, book};
-use weekender::tables::Tables;
-use weekender::tables::hierarchy::Hierarchy;
 
 /// Spheres of sizes over many powers of ten, some touching, some at one place.
 fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> Vec<Sphere> {
@@ -265,12 +265,12 @@ fn same_packets<L: Lanes<Real = f32>>(
 #[test]
 fn hierarchy_and_list_render_the_same_film() {
     let job = job(&book(), BOOK_CAMERA, RenderSettings { estimate_error: true, ..size(48, 27) });
-    let tables = Tables::<f32>::new(&job);
-    assert!(tables.hierarchy.is_some(), "the book has a hierarchy");
+    let prepared = PreparedScene::<f32>::new(&job);
+    assert!(prepared.hierarchy.is_some(), "the book has a hierarchy");
     let mut with = job.new_film();
-    trace_tables(&tables, &mut with, 0..4);
+    trace_tables(&prepared, &mut with, 0..4);
     let mut without = job.new_film();
-    trace_tables(&Tables::as_list(&job), &mut without, 0..4);
+    trace_tables(&PreparedScene::as_list(&job), &mut without, 0..4);
     assert_eq!(with, without);
     assert!(mean(&with) > 0.1);
 }

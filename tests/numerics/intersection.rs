@@ -3,6 +3,7 @@
 use crate::common::*;
 use glam::DVec3;
 use weekender::kernel::Real;
+use weekender::prepared::PreparedScene;
 use weekender::render::RenderJob;
 use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, dot};
 use weekender::render_cpu::material::{Surface, incidence_of, scatter};
@@ -12,7 +13,6 @@ use weekender::render_cpu::sphere::{
 };
 use weekender::scene::Camera;
 use weekender::stages::{DielectricLaws, Rules};
-use weekender::tables::Tables;
 
 const FUSED: Scalar<true> = Scalar;
 const UNFUSED: Scalar<false> = Scalar;
@@ -141,9 +141,9 @@ fn exact_ground_root(origin: DVec3, direction: DVec3, radius: f64) -> Option<f64
 
 /// Largest error of the distance, and of the height of the hit point above the ground.
 fn ground_errors<L: Lanes>(l: L, radius: f64) -> [f64; 2] {
-    let tables: Tables<L::Real> = Tables::new(&ground_job(radius));
-    assert_eq!(tables.anchored.len(), 1, "the ground is anchored");
-    let sphere = &tables.anchored[0];
+    let prepared: PreparedScene<L::Real> = PreparedScene::new(&ground_job(radius));
+    assert_eq!(prepared.anchored.len(), 1, "the ground is anchored");
+    let sphere = &prepared.anchored[0];
     let mut random = Random::new(2);
     let mut largest = [0.0_f64; 2];
     for _ in 0..100_000 {
@@ -262,12 +262,12 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
         left += 1;
     }
     // A ground, seen from its anchor.
-    let tables: Tables<f32> = Tables::new(&ground_job(1e5));
+    let prepared: PreparedScene<f32> = PreparedScene::new(&ground_job(1e5));
     for _ in 0..10_000 {
         let origin = DVec3::new(random.within(-3.0, 3.0), 0.0, random.within(-3.0, 3.0));
         let mut rays = ray(l, origin, random.direction() + DVec3::Y);
         rays.left = number;
-        assert_eq!(distance::<Scalar<false>>(anchored_root(l, &rays, &tables.anchored[0], number)), None);
+        assert_eq!(distance::<Scalar<false>>(anchored_root(l, &rays, &prepared.anchored[0], number)), None);
     }
 }
 
@@ -423,6 +423,6 @@ fn the_acne_stage_alone_anchors_nothing() {
     let job = ground_job(1e5);
     let acne = Rules { surface: weekender::stages::Surface::Acne, ..Rules::FINISHED };
     let acne = RenderJob::new(job.scene().clone(), *job.camera(), *job.settings(), acne).unwrap();
-    assert!(Tables::<f32>::new(&acne).anchored.is_empty());
-    assert_eq!(Tables::<f32>::new(&job).anchored.len(), 1);
+    assert!(PreparedScene::<f32>::new(&acne).anchored.is_empty());
+    assert_eq!(PreparedScene::<f32>::new(&job).anchored.len(), 1);
 }

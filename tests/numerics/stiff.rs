@@ -5,11 +5,11 @@ use crate::film::trace_tables;
 use glam::DVec3;
 use weekender::film::Film;
 use weekender::kernel::Roots;
+use weekender::prepared::PreparedScene;
+use weekender::prepared::hierarchy::{DEPTH_LIMIT, Hierarchy};
 use weekender::render::{RenderJob, RenderSettings};
 use weekender::scene::builtin::{LeftSphere, field, three_spheres};
 use weekender::scene::{Camera, Material, Scene, Sky};
-use weekender::tables::Tables;
-use weekender::tables::hierarchy::{DEPTH_LIMIT, Hierarchy};
 
 type Ball = (DVec3, f64, Material);
 
@@ -31,12 +31,12 @@ const AT_BALL: Camera =
 
 /// Renders as a list and with a hierarchy, checks that both are there and the same, and returns the film.
 fn as_list_and_hierarchy(job: &RenderJob, samples: u64) -> Film {
-    let tables = Tables::<f32>::new(job);
+    let prepared = PreparedScene::<f32>::new(job);
     let [mut listed, mut boxed] = [job.new_film(), job.new_film()];
-    assert!(tables.hierarchy.is_some(), "there is a hierarchy");
-    assert_eq!(tables.validate(job), Ok(()));
-    trace_tables(&tables, &mut boxed, 0..samples);
-    trace_tables(&Tables::as_list(job), &mut listed, 0..samples);
+    assert!(prepared.hierarchy.is_some(), "there is a hierarchy");
+    assert_eq!(prepared.validate(job), Ok(()));
+    trace_tables(&prepared, &mut boxed, 0..samples);
+    trace_tables(&PreparedScene::as_list(job), &mut listed, 0..samples);
     assert_eq!(listed, boxed, "list and hierarchy");
     boxed
 }
@@ -122,7 +122,7 @@ fn shells_and_crowds_have_low_trees() {
         assert!(order.iter().enumerate().all(|(place, rank)| place == *rank as usize), "each once");
         println!("{} spheres: {} levels", spheres.len(), hierarchy.depth());
         assert!(hierarchy.depth() <= DEPTH_LIMIT);
-        assert!(weekender::tables::cwbvh::Cwbvh::build(spheres, DVec3::ZERO).depth() <= 24);
+        assert!(weekender::prepared::cwbvh::Cwbvh::build(spheres, DVec3::ZERO).depth() <= 24);
     }
 }
 
@@ -239,8 +239,9 @@ fn far_spheres_do_not_move_the_anchor() {
         [(DVec3::new(2e-4, -2e-4, 2e-4), 6e-4, glass(0.015)), (DVec3::Y * -1.4e6, 1.4e6, lambertian(0.5))];
     let eye = DVec3::new(0.0, 2e-4, 0.0);
     let camera = Camera { look_from: eye, look_at: eye - DVec3::new(-0.02, 1.0, 0.05), ..AT_BALL };
-    let anchor =
-        |balls: &[Ball]| Tables::<f32>::new(&job(&scene(balls), camera, size(2, 2))).anchored[0].anchor;
+    let anchor = |balls: &[Ball]| {
+        PreparedScene::<f32>::new(&job(&scene(balls), camera, size(2, 2))).anchored[0].anchor
+    };
     assert_eq!(anchor(&detail), anchor(&among_many(&detail)));
 }
 
@@ -248,29 +249,29 @@ fn far_spheres_do_not_move_the_anchor() {
 #[test]
 fn oddities_anchor_few_spheres() {
     let (scene, camera) = field(4000);
-    let tables = |scene: &Scene, camera: Camera| Tables::<f32>::new(&job(scene, camera, size(8, 8)));
-    let check = |tables: Tables<f32>, what: &str| {
-        println!("{what}: {} anchored", tables.anchored.len());
+    let prepared = |scene: &Scene, camera: Camera| PreparedScene::<f32>::new(&job(scene, camera, size(8, 8)));
+    let check = |prepared: PreparedScene<f32>, what: &str| {
+        println!("{what}: {} anchored", prepared.anchored.len());
         assert!(
-            tables.hierarchy.is_some() && tables.anchored.len() <= 8,
+            prepared.hierarchy.is_some() && prepared.anchored.len() <= 8,
             "{what}: {}",
-            tables.anchored.len()
+            prepared.anchored.len()
         );
     };
-    let plain = tables(&scene, camera).anchored.len();
+    let plain = prepared(&scene, camera).anchored.len();
     let mut speck = scene.clone();
     speck.add_sphere(DVec3::new(0.3, 0.7, 0.3), 1e-4, 0);
-    check(tables(&speck, camera), "a tiny sphere");
-    assert_eq!(tables(&speck, camera).anchored.len(), plain, "it is near none");
+    check(prepared(&speck, camera), "a tiny sphere");
+    assert_eq!(prepared(&speck, camera).anchored.len(), plain, "it is near none");
     check(
-        tables(&scene, Camera { focus_distance: Some(1e-4), defocus_angle_degrees: 1.0, ..camera }),
+        prepared(&scene, Camera { focus_distance: Some(1e-4), defocus_angle_degrees: 1.0, ..camera }),
         "focus",
     );
     let ball = scene.spheres[100];
     let eye = ball.center + DVec3::new(0.0, 1.0, 0.0) * (ball.radius + 1e-4);
-    check(tables(&scene, Camera { look_from: eye, look_at: eye + DVec3::X, ..camera }), "near a ball");
+    check(prepared(&scene, Camera { look_from: eye, look_at: eye + DVec3::X, ..camera }), "near a ball");
     let eye = ball.center + DVec3::new(0.0, 1.0, 0.0) * ball.radius;
-    check(tables(&scene, Camera { look_from: eye, look_at: eye + DVec3::X, ..camera }), "on a ball");
+    check(prepared(&scene, Camera { look_from: eye, look_at: eye + DVec3::X, ..camera }), "on a ball");
 }
 
 #[test]
@@ -349,9 +350,9 @@ fn what_a_closed_ball_hides_is_left_out() {
     let around = (DVec3::ZERO, 5.0, lambertian(0.5));
     let scene = scene(&[ball, crossing, tangent, around]);
     let camera = Camera { look_from: DVec3::Z * 0.1, look_at: DVec3::X, ..Camera::BOOK };
-    let tables = Tables::<f32>::new(&job(&scene, camera, size(2, 2)));
-    assert_eq!(tables.scene_index, [1, 0]);
-    assert_eq!(tables.anchored[0].roots(), Roots::Farther);
+    let prepared = PreparedScene::<f32>::new(&job(&scene, camera, size(2, 2)));
+    assert_eq!(prepared.scene_index, [1, 0]);
+    assert_eq!(prepared.anchored[0].roots(), Roots::Farther);
 }
 
 /// A copy that is covered closes nothing.
@@ -368,19 +369,19 @@ fn a_covered_ball_is_no_cavity() {
 fn layers_too_thin_for_single_precision_are_told() {
     let warnings = |thickness: f64| {
         let (scene, camera) = shells_at(DVec3::ZERO, thickness);
-        Tables::<f32>::new(&job(&scene, camera, size(2, 2))).warnings().to_vec()
+        PreparedScene::<f32>::new(&job(&scene, camera, size(2, 2))).warnings().to_vec()
     };
     assert!(warnings(1e-4).is_empty(), "{:?}", warnings(1e-4));
     let crossing = |by: f64, second: Material| {
         let balls = [(DVec3::ZERO, 1.0, glass(1.5)), (DVec3::X * by, 1.0, second)];
-        !Tables::<f32>::new(&job(&scene(&balls), AT_BALL, size(2, 2))).warnings().is_empty()
+        !PreparedScene::<f32>::new(&job(&scene(&balls), AT_BALL, size(2, 2))).warnings().is_empty()
     };
     assert!(crossing(1e-5, lambertian(0.5)) && crossing(2e-3, lambertian(0.5)));
     assert!(!crossing(0.1, lambertian(0.5)));
     assert!(crossing(1e-8, glass(1.5)));
     let matte_crossing = |by: f64| {
         let balls = [(DVec3::ZERO, 1.0, lambertian(0.5)), (DVec3::X * by, 1.0, lambertian(0.8))];
-        !Tables::<f32>::new(&job(&scene(&balls), AT_BALL, size(2, 2))).warnings().is_empty()
+        !PreparedScene::<f32>::new(&job(&scene(&balls), AT_BALL, size(2, 2))).warnings().is_empty()
     };
     assert!(matte_crossing(1e-5) && !matte_crossing(1e-3));
     let thin = warnings(1e-7);
@@ -396,7 +397,7 @@ fn layers_without_a_warning_are_right() {
     for thickness in [1e-7, 2e-7, 5e-7, 1e-6, 3e-6, 1e-5, 1e-4] {
         let (scene, camera) = shells_at(DVec3::ZERO, thickness);
         let job = job(&scene, camera, size(64, 36));
-        let is_told = !Tables::<f32>::new(&job).warnings().is_empty();
+        let is_told = !PreparedScene::<f32>::new(&job).warnings().is_empty();
         let found = paired(&job, 16, &mut widest(), &mut reference());
         println!("{thickness:e} ({is_told}): {found:?}");
         assert!(is_told || found.bias.abs() < 1e-4, "{thickness:e}: {found:?}");
@@ -411,7 +412,7 @@ fn coats_seen_from_afar_are_told_or_right() {
         let balls = [(center, 0.003, glass(20.0)), (center, 0.003 - thickness, lambertian(0.5))];
         let camera = Camera { look_from: DVec3::ZERO, look_at: center, vfov_degrees: 0.2, ..Camera::BOOK };
         let job = job(&under_white_sky(&balls), camera, size(16, 12));
-        let is_told = !Tables::<f32>::new(&job).warnings().is_empty();
+        let is_told = !PreparedScene::<f32>::new(&job).warnings().is_empty();
         (is_told, paired(&job, 64, &mut widest(), &mut reference()).bias.abs())
     };
     for units in [1.0, 2.0, 4.5, 8.0, 32.0] {
@@ -460,7 +461,7 @@ fn specks_are_shaded_as_balls_are() {
     for radius in [1e-4, 1e-6, 1e-8] {
         let balls = [(DVec3::new(0.0, 0.0, -1.0), radius, lambertian(0.5))];
         let camera = Camera { vfov_degrees: 0.01, ..Camera::BOOK };
-        let tables = Tables::<f32>::new(&job(&under_white_sky(&balls), camera, size(2, 2)));
-        assert!(tables.features.specks || radius > 5e-5, "{radius:e}");
+        let prepared = PreparedScene::<f32>::new(&job(&under_white_sky(&balls), camera, size(2, 2)));
+        assert!(prepared.features.specks || radius > 5e-5, "{radius:e}");
     }
 }

@@ -10,11 +10,11 @@ use weekender::app::{Command, Device, Window};
 fn every_command_is_carried_out_or_says_why_not() {
     let mut harness = open(SMALL);
     for command in Command::all() {
-        let useless = harness.state().useless(command);
+        let disabled_reason = harness.state().disabled_reason(command);
         send(&mut harness, command);
         assert_eq!(harness.state().performed(), Some(command));
         let told = harness.state().messages();
-        if let Some(reason) = useless {
+        if let Some(reason) = disabled_reason {
             let end = &reason[1..];
             assert!(told.iter().any(|text| text.ends_with(end)), "{command:?}: {reason}; {told:?}");
         }
@@ -41,7 +41,7 @@ fn every_shortcut_reaches_its_command() {
 fn every_command_is_found_in_the_palette() {
     let mut harness = open(SMALL);
     for command in Command::all() {
-        let is_useless = harness.state().useless(command).is_some();
+        let is_useless = harness.state().disabled_reason(command).is_some();
         if command == Command::Palette || is_useless {
             continue;
         }
@@ -130,7 +130,7 @@ fn every_command_does_what_it_says() {
         if command == Command::Redo {
             send(&mut harness, Command::Undo);
         }
-        if harness.state().useless(command).is_some() {
+        if harness.state().disabled_reason(command).is_some() {
             continue;
         }
         let before = harness.state().document().clone();
@@ -176,17 +176,20 @@ fn changes_are_taken_back_and_made_again_one_by_one() {
         send(&mut harness, Command::Undo);
         assert_eq!(angle(&harness), *degrees, "taken back");
     }
-    assert!(harness.state().useless(Command::Undo).is_some());
+    assert!(harness.state().disabled_reason(Command::Undo).is_some());
     for degrees in &angles[1..] {
         harness.run_steps(90);
         send(&mut harness, Command::Redo);
         assert_eq!(angle(&harness), *degrees, "made again");
     }
-    assert!(harness.state().useless(Command::Redo).is_some());
+    assert!(harness.state().disabled_reason(Command::Redo).is_some());
     send(&mut harness, Command::Undo);
     harness.state_mut().document_mut().camera.vfov_degrees = 66.0;
     harness.run_steps(2);
-    assert!(harness.state().useless(Command::Redo).is_some(), "a change ends what could be made again");
+    assert!(
+        harness.state().disabled_reason(Command::Redo).is_some(),
+        "a change ends what could be made again"
+    );
     send(&mut harness, Command::Undo);
     assert_eq!(angle(&harness), 44.0);
 }

@@ -92,9 +92,9 @@ fn a_target_can_be_set_where_there_is_none() {
 #[test]
 fn the_points_are_copied_and_saved() {
     let mut harness = open("--scene three-spheres --size 64x36 --device cpu --samples 16");
-    let has_nothing = harness.state().useless(Command::SavePlot).is_some();
+    let has_nothing = harness.state().disabled_reason(Command::SavePlot).is_some();
     until(&mut harness, "the end", |window| window.status().phase.is_over());
-    assert!(harness.state().useless(Command::SavePlot).is_none());
+    assert!(harness.state().disabled_reason(Command::SavePlot).is_none());
     harness.state_mut().send(Command::CopyPlot);
     harness.step();
     let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {

@@ -69,10 +69,11 @@ impl Palette {
                 ui.label(RichText::new("No command matches").color(ui.visuals().weak_text_color()));
             }
             for (index, command) in found.iter().enumerate() {
-                let useless = facts.useless(*command);
+                let disabled_reason = facts.disabled_reason(*command);
                 let button = line(ui, *command, index == self.chosen);
-                let response = ui.add_enabled(useless.is_none(), button).on_hover_text(command.help());
-                let response = response.on_disabled_hover_text(useless.unwrap_or_default());
+                let response =
+                    ui.add_enabled(disabled_reason.is_none(), button).on_hover_text(command.help());
+                let response = response.on_disabled_hover_text(disabled_reason.unwrap_or_default());
                 if index == self.chosen && (up || down) {
                     response.scroll_to_me(None);
                 }

@@ -123,7 +123,7 @@ impl Device {
     ) -> BackendChoice {
         let threads = threads.or(options.cpu.threads).or_else(threads_of_window);
         let lanes = lanes.or(options.cpu.lanes);
-        let cpu = CpuOptions { lanes, threads, gives_way: true, ..options.cpu };
+        let cpu = CpuOptions { lanes, threads, low_priority: true, ..options.cpu };
         // Whoever presses the button means it: software will do.
         let dispatch_target = options.gpu.dispatch_target.min(INTERACTIVE_TARGET);
         let gpu = || GpuOptions { allow_software: true, dispatch_target, ..options.gpu.clone() };
@@ -178,7 +178,8 @@ mod tests {
 
     #[test]
     fn the_command_lines_options_are_kept() {
-        let cpu = CpuOptions { lanes: Some(1), threads: Some(1), gives_way: true, ..CpuOptions::default() };
+        let cpu =
+            CpuOptions { lanes: Some(1), threads: Some(1), low_priority: true, ..CpuOptions::default() };
         let options = DeviceOptions::of(&BackendChoice::Cpu(cpu));
         assert_eq!(Device::Cpu.backend(&options, None, None), BackendChoice::Cpu(cpu));
         let changed = Device::Cpu.backend(&options, Some(4), None);

@@ -32,9 +32,9 @@ pub(super) fn ui(
     facts: &Facts,
     commands: &mut Vec<Command>,
 ) {
-    let useless = facts.no_rays();
+    let disabled_reason = facts.no_rays();
     let speed = (camera.look_from.distance(camera.look_at) * 0.005).max(1e-4);
-    let about = |name, help| About::new(name, help).useless_if(useless);
+    let about = |name, help| About::new(name, help).disabled_if(disabled_reason);
     vector(ui, about("Look from", "The eye, scene units (look_from)"), &mut camera.look_from, speed);
     vector(
         ui,

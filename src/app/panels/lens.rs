@@ -30,16 +30,16 @@ pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
         "Defocus angle",
         "Angle of the cone from the focus point to the lens, degrees; 0 is a pinhole (defocus_angle)",
     );
-    slider(ui, defocus.useless_if(no_rays), &mut camera.defocus_angle_degrees, 0.0..=30.0, |slider| {
+    slider(ui, defocus.disabled_if(no_rays), &mut camera.defocus_angle_degrees, 0.0..=30.0, |slider| {
         slider.suffix("°").max_decimals(2).clamping(egui::SliderClamping::Edits)
     });
     camera.defocus_angle_degrees = camera.defocus_angle_degrees.min(178.9);
     let pinhole = (camera.defocus_angle_degrees == 0.0)
         .then_some("A pinhole is sharp everywhere: open the defocus angle");
-    let useless = no_rays.or(pinhole);
+    let disabled_reason = no_rays.or(pinhole);
     let mut follows = camera.focus_distance.is_none();
     let about = About::new("Focus on Look at", "Keep the point that is looked at sharp");
-    if check(ui, about.useless_if(useless), &mut follows).changed() {
+    if check(ui, about.disabled_if(disabled_reason), &mut follows).changed() {
         camera.focus_distance = (!follows).then(|| camera.effective_focus_distance());
     }
     let about = About::new(
@@ -47,7 +47,7 @@ pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
         "Distance to the plane that is sharp, scene units (focus_distance). A click on the picture sets it too",
     );
     let mut distance = camera.effective_focus_distance();
-    let slider = slider(ui, about.useless_if(useless), &mut distance, 0.01..=1000.0, |slider| {
+    let slider = slider(ui, about.disabled_if(disabled_reason), &mut distance, 0.01..=1000.0, |slider| {
         slider.logarithmic(true).max_decimals(3).clamping(egui::SliderClamping::Never)
     });
     if slider.changed() && distance > 0.0 {

@@ -34,14 +34,14 @@ pub(super) fn ui(ui: &mut Ui, settings: &mut RenderSettings, remembered: &mut Re
 
     let mut depth = u64::from(settings.max_depth);
     let about = About::new("Depth", "Most rays of a path, the camera's included (max_depth)");
-    whole(ui, about.useless_if(no_rays.or(one_ray)), &mut depth, 1..=u64::from(DEPTH_LIMIT), 0.2);
+    whole(ui, about.disabled_if(no_rays.or(one_ray)), &mut depth, 1..=u64::from(DEPTH_LIMIT), 0.2);
     settings.max_depth = u32::try_from(depth).unwrap_or(DEPTH_LIMIT);
 
     let about = About::new(
         "Sampler",
         "Where random numbers come from: Sobol points need fewer samples, independent ones are the book's",
     );
-    control(ui, about.useless_if(no_chance), |ui| {
+    control(ui, about.disabled_if(no_chance), |ui| {
         ComboBox::from_id_salt("sampler")
             .width(ui.available_width())
             .selected_text(settings.sampler.name())
@@ -54,7 +54,7 @@ pub(super) fn ui(ui: &mut Ui, settings: &mut RenderSettings, remembered: &mut Re
     });
     let mut seed = u64::from(settings.seed);
     let about = About::new("Seed", "Chooses among pictures that differ in noise alone");
-    whole(ui, about.useless_if(no_chance), &mut seed, 0..=u64::from(u32::MAX), 0.05);
+    whole(ui, about.disabled_if(no_chance), &mut seed, 0..=u64::from(u32::MAX), 0.05);
     settings.seed = u32::try_from(seed).unwrap_or(u32::MAX);
     let about = About::new(
         "Estimate error",
@@ -93,7 +93,7 @@ fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
         "Lanes",
         "Rays in a packet. Switching does not restart: the samples are the same to the bit",
     );
-    control(ui, about.useless_if(not_cpu.or(scalar)), |ui| {
+    control(ui, about.disabled_if(not_cpu.or(scalar)), |ui| {
         ComboBox::from_id_salt("lanes")
             .width(ui.available_width())
             .selected_text(word(remembered.lanes))
@@ -108,7 +108,7 @@ fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
         "Threads",
         "Threads that trace. Automatic leaves a core to the window where there are more than two",
     );
-    control(ui, about.useless_if(not_cpu), |ui| {
+    control(ui, about.disabled_if(not_cpu), |ui| {
         ComboBox::from_id_salt("threads")
             .width(ui.available_width())
             .selected_text(word(remembered.threads))

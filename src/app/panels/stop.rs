@@ -65,19 +65,19 @@ fn row(
     ui: &mut Ui,
     name: &str,
     help: &str,
-    useless: Option<&str>,
+    disabled_reason: Option<&str>,
     is_on: &mut bool,
     number: impl FnOnce(&mut Ui) -> eframe::egui::Response,
 ) {
     ui.columns(2, |columns| {
-        let about = About::new(name, help).useless_if(useless);
+        let about = About::new(name, help).disabled_if(disabled_reason);
         check(&mut columns[0], about, is_on);
-        let is_useful = *is_on && useless.is_none();
+        let is_useful = *is_on && disabled_reason.is_none();
         columns[1].add_enabled_ui(is_useful, |ui| {
             number(ui)
                 .accessible_name(format!("{name} limit"))
                 .on_hover_text(help)
-                .on_disabled_hover_text(useless.unwrap_or("Tick the box beside it first"));
+                .on_disabled_hover_text(disabled_reason.unwrap_or("Tick the box beside it first"));
         });
     });
 }

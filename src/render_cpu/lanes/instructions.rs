@@ -32,8 +32,8 @@ pub trait Instructions: Simd {
 
     /// Transposes four rows of four numbers in the lower half, and four in the upper.
     #[inline(always)]
-    fn transpose_8(self, rows: [f32x8<Self>; 4]) -> [f32x8<Self>; 4] {
-        let [a, b, c, d] = rows.map(|row| row.split());
+    fn transpose_8(self, records: [f32x8<Self>; 4]) -> [f32x8<Self>; 4] {
+        let [a, b, c, d] = records.map(|row| row.split());
         let low = transpose4([a.0, b.0, c.0, d.0]);
         let high = transpose4([a.1, b.1, c.1, d.1]);
         [0, 1, 2, 3].map(|i| low[i].combine(high[i]))

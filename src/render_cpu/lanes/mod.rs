@@ -16,7 +16,7 @@ pub use scalar::{Reference, Scalar};
 pub use simd::{Lanes4, Lanes8, Lanes16};
 pub use vector::{V3, dot, load3, mul_add3, neg_mul_add3, select3, splat3};
 
-use crate::kernel::{Real, Row, UNIT_FLOAT_SCALE};
+use crate::kernel::{Real, RecordColumns, UNIT_FLOAT_SCALE};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 /// Largest lane count, for buffers on the stack.
@@ -149,7 +149,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
         self.splat(column.0[0])
     }
     /// Columns `4 group ..` of the rows that the first [`Lanes::WIDTH`] `indices` name.
-    fn gather(self, rows: &[Row<Self::Real>], indices: &WideU, group: usize) -> [Self::F; 4];
+    fn gather(self, records: &[RecordColumns<Self::Real>], indices: &WideU, group: usize) -> [Self::F; 4];
     /// Sine and cosine of an angle in turns, `0 <= u < 1`.
     fn sin_cos_turns(self, u: Self::F) -> (Self::F, Self::F);
 }

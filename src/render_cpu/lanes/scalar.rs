@@ -1,7 +1,7 @@
 //! One lane: scalar code of the packets' precision, and the `f64` reference.
 
 use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
-use crate::kernel::Row;
+use crate::kernel::RecordColumns;
 use std::num::Wrapping;
 
 /// One lane of `f32`. `FUSED` says whether the level it runs at has fused multiply and add; on one that has not,
@@ -147,8 +147,8 @@ macro_rules! scalar_lanes {
             Wrapping(f.round_ties_even() as i32 as u32)
         }
         #[inline(always)]
-        fn gather(self, rows: &[Row<$real>], indices: &WideU, group: usize) -> [$real; 4] {
-            let row = &rows[indices.0[0] as usize].0;
+        fn gather(self, records: &[RecordColumns<$real>], indices: &WideU, group: usize) -> [$real; 4] {
+            let row = &records[indices.0[0] as usize].0;
             [row[4 * group], row[4 * group + 1], row[4 * group + 2], row[4 * group + 3]]
         }
     };

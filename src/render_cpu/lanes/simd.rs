@@ -2,7 +2,7 @@
 
 use super::instructions::{Instructions, transpose4};
 use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
-use crate::kernel::Row;
+use crate::kernel::RecordColumns;
 use fearless_simd::prelude::*;
 use fearless_simd::{
     f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
@@ -11,14 +11,14 @@ use fearless_simd::{
 macro_rules! simd_lanes {
     (
         $name:ident, $width:literal, $f:ident, $u:ident, $i:ident, $m:ident,
-        $gather:ident, $rows:ident, $permute:ident, $to_nearest:ident, $ones:ident, $what:literal
+        $gather:ident, $records:ident, $permute:ident, $to_nearest:ident, $ones:ident, $what:literal
     ) => {
         #[doc = $what]
         #[derive(Clone, Copy)]
         pub struct $name<S: Simd>(pub S);
 
         impl<S: Instructions> Lanes for $name<S> {
-            const PERMUTED_ROWS: usize = S::$rows;
+            const PERMUTED_ROWS: usize = S::$records;
 
             type Real = f32;
             type F = $f<S>;
@@ -168,8 +168,8 @@ macro_rules! simd_lanes {
                 self.0.$permute(self.load(column), indices)
             }
             #[inline(always)]
-            fn gather(self, rows: &[Row<f32>], indices: &WideU, group: usize) -> [$f<S>; 4] {
-                $gather(self.0, rows, indices, 0, group)
+            fn gather(self, records: &[RecordColumns<f32>], indices: &WideU, group: usize) -> [$f<S>; 4] {
+                $gather(self.0, records, indices, 0, group)
             }
             #[inline(always)]
             fn sin_cos_turns(self, u: $f<S>) -> ($f<S>, $f<S>) {
@@ -223,54 +223,54 @@ simd_lanes!(
 );
 
 #[inline(always)]
-fn gathered_row<S: Simd>(simd: S, rows: &[Row<f32>], index: u32, group: usize) -> f32x4<S> {
-    f32x4::from_slice(simd, &rows[index as usize].0[4 * group..4 * group + 4])
+fn gathered_columns<S: Simd>(simd: S, records: &[RecordColumns<f32>], index: u32, group: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &records[index as usize].0[4 * group..4 * group + 4])
 }
 
 /// Four columns of the rows that four indices name.
 #[inline(always)]
 fn gather4<S: Simd>(
     simd: S,
-    rows: &[Row<f32>],
+    records: &[RecordColumns<f32>],
     indices: &WideU,
     first: usize,
     group: usize,
 ) -> [f32x4<S>; 4] {
-    let a = gathered_row(simd, rows, indices.0[first], group);
-    let b = gathered_row(simd, rows, indices.0[first + 1], group);
-    let c = gathered_row(simd, rows, indices.0[first + 2], group);
-    let d = gathered_row(simd, rows, indices.0[first + 3], group);
+    let a = gathered_columns(simd, records, indices.0[first], group);
+    let b = gathered_columns(simd, records, indices.0[first + 1], group);
+    let c = gathered_columns(simd, records, indices.0[first + 2], group);
+    let d = gathered_columns(simd, records, indices.0[first + 3], group);
     transpose4([a, b, c, d])
 }
 
 #[inline(always)]
 fn gather8<S: Instructions>(
     simd: S,
-    rows: &[Row<f32>],
+    records: &[RecordColumns<f32>],
     indices: &WideU,
     first: usize,
     group: usize,
 ) -> [f32x8<S>; 4] {
-    let a = gathered_row(simd, rows, indices.0[first], group);
-    let b = gathered_row(simd, rows, indices.0[first + 1], group);
-    let c = gathered_row(simd, rows, indices.0[first + 2], group);
-    let d = gathered_row(simd, rows, indices.0[first + 3], group);
-    let e = gathered_row(simd, rows, indices.0[first + 4], group);
-    let f = gathered_row(simd, rows, indices.0[first + 5], group);
-    let g = gathered_row(simd, rows, indices.0[first + 6], group);
-    let h = gathered_row(simd, rows, indices.0[first + 7], group);
+    let a = gathered_columns(simd, records, indices.0[first], group);
+    let b = gathered_columns(simd, records, indices.0[first + 1], group);
+    let c = gathered_columns(simd, records, indices.0[first + 2], group);
+    let d = gathered_columns(simd, records, indices.0[first + 3], group);
+    let e = gathered_columns(simd, records, indices.0[first + 4], group);
+    let f = gathered_columns(simd, records, indices.0[first + 5], group);
+    let g = gathered_columns(simd, records, indices.0[first + 6], group);
+    let h = gathered_columns(simd, records, indices.0[first + 7], group);
     simd.transpose_8([a.combine(e), b.combine(f), c.combine(g), d.combine(h)])
 }
 
 #[inline(always)]
 fn gather16<S: Instructions>(
     simd: S,
-    rows: &[Row<f32>],
+    records: &[RecordColumns<f32>],
     indices: &WideU,
     first: usize,
     group: usize,
 ) -> [f32x16<S>; 4] {
-    let [a0, a1, a2, a3] = gather8(simd, rows, indices, first, group);
-    let [b0, b1, b2, b3] = gather8(simd, rows, indices, first + 8, group);
+    let [a0, a1, a2, a3] = gather8(simd, records, indices, first, group);
+    let [b0, b1, b2, b3] = gather8(simd, records, indices, first + 8, group);
     [a0.combine(b0), a1.combine(b1), a2.combine(b2), a3.combine(b3)]
 }

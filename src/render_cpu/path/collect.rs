@@ -4,9 +4,9 @@ use super::draw::{draw, last_stream, next_stream};
 use super::{HitRecords, Packet, hit_point, pixel_position};
 use crate::film::FIXED_POINT_SCALE;
 use crate::kernel::{NONE, RADIANCE_TOTAL_LIMIT, parts};
+use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::screen;
 use crate::render_cpu::lanes::{Lanes, V3, select3};
-use crate::render_cpu::wide::WideTables;
 use crate::render_cpu::work::{TileStats, Work};
 use crate::stages::Shading;
 
@@ -15,19 +15,19 @@ use crate::stages::Shading;
 #[inline(always)]
 pub(super) fn collect<L: Lanes, const PARTS: u32>(
     l: L,
-    wide: &WideTables<L::Real>,
+    broadcast: &BroadcastScene<L::Real>,
     packet: &mut Packet<L>,
     work: &mut Work,
     stats: &mut TileStats,
 ) {
-    let tables = &wide.tables;
+    let prepared = &broadcast.prepared;
     let miss = L::eq_u(packet.nearest.sphere, l.splat_u(NONE));
-    let is_last = L::eq_u(packet.stream, last_stream(l, tables, packet));
+    let is_last = L::eq_u(packet.stream, last_stream(l, prepared, packet));
     let mut ended = miss | is_last | packet.absorbed;
     let mut lit = miss & !packet.absorbed;
-    let mut light = shade_miss(l, wide, packet.rays.direction.y);
-    if PARTS & parts::RULES != 0 && tables.features.shading != Shading::Path {
-        light = shade_hit::<L, PARTS>(l, wide, packet, miss, light);
+    let mut light = shade_miss(l, broadcast, packet.rays.direction.y);
+    if PARTS & parts::RULES != 0 && prepared.features.shading != Shading::Path {
+        light = shade_hit::<L, PARTS>(l, broadcast, packet, miss, light);
         lit = packet.alive;
         ended = packet.alive;
     }
@@ -39,19 +39,19 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     let at_end = L::eq_u(packet.counter, l.load_u(&packet.blocks.end));
     let done = L::bits(ended & packet.alive & at_end);
     if done != 0 {
-        enter_block(l, wide, packet, work, done);
+        enter_block(l, broadcast, packet, work, done);
     }
-    packet.stream = L::select_u(ended, l.load_u(&packet.blocks.key), next_stream(l, tables, packet));
+    packet.stream = L::select_u(ended, l.load_u(&packet.blocks.key), next_stream(l, prepared, packet));
     packet.ended = ended;
-    packet.draw = draw::<L, PARTS>(l, tables, packet);
+    packet.draw = draw::<L, PARTS>(l, prepared, packet);
 }
 
 /// The sky's radiance in a direction of this height, in units of the film.
 #[inline(always)]
-fn shade_miss<L: Lanes>(l: L, wide: &WideTables<L::Real>, height: L::F) -> V3<L::F> {
+fn shade_miss<L: Lanes>(l: L, broadcast: &BroadcastScene<L::Real>, height: L::F) -> V3<L::F> {
     let zero = l.constant(0.0);
     let channel = |channel: usize| {
-        let (middle, slope) = (l.load(&wide.sky_middle[channel]), l.load(&wide.sky_slope[channel]));
+        let (middle, slope) = (l.load(&broadcast.sky_middle[channel]), l.load(&broadcast.sky_slope[channel]));
         L::max(zero, L::mul_add(slope, height, middle))
     };
     V3 { x: channel(0), y: channel(1), z: channel(2) }
@@ -61,21 +61,21 @@ fn shade_miss<L: Lanes>(l: L, wide: &WideTables<L::Real>, height: L::F) -> V3<L:
 #[inline(always)]
 fn shade_hit<L: Lanes, const PARTS: u32>(
     l: L,
-    wide: &WideTables<L::Real>,
+    broadcast: &BroadcastScene<L::Real>,
     packet: &Packet<L>,
     miss: L::M,
     light: V3<L::F>,
 ) -> V3<L::F> {
-    let tables = &wide.tables;
+    let prepared = &broadcast.prepared;
     let (zero, full) = (l.constant(0.0), l.constant(FIXED_POINT_SCALE));
-    let shown = match tables.features.shading {
+    let shown = match prepared.features.shading {
         Shading::ImageGradient => {
             let position = pixel_position(l, l.load_u(&packet.blocks.pixel));
             // A single column or row has no far end: it is 0 everywhere.
             let share = |position: L::F, pixels: u32| {
                 position / l.constant(f64::from(pixels.saturating_sub(1).max(1))) * full
             };
-            let settings = &tables.settings;
+            let settings = &prepared.settings;
             return V3 {
                 x: share(position[0], settings.width),
                 y: share(position[1], settings.height),
@@ -85,8 +85,8 @@ fn shade_hit<L: Lanes, const PARTS: u32>(
         Shading::FirstHitRed => V3 { x: full, y: zero, z: zero },
         Shading::Normals | Shading::Path => {
             let half = l.constant(0.5 * FIXED_POINT_SCALE);
-            let record = HitRecords::load::<PARTS>(l, wide, packet);
-            let outward = hit_point::<L, PARTS>(l, wide, packet, &record).outward;
+            let record = HitRecords::load::<PARTS>(l, broadcast, packet);
+            let outward = hit_point::<L, PARTS>(l, broadcast, packet, &record).outward;
             let shade = |n: L::F| L::max(zero, L::mul_add(n, half, half));
             V3 { x: shade(outward.x), y: shade(outward.y), z: shade(outward.z) }
         }
@@ -119,14 +119,14 @@ fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::
 #[inline(always)]
 fn enter_block<L: Lanes>(
     l: L,
-    wide: &WideTables<L::Real>,
+    broadcast: &BroadcastScene<L::Real>,
     packet: &mut Packet<L>,
     work: &mut Work,
     done: u32,
 ) {
-    let retired = work.deal(done, &mut packet.blocks);
+    let retired = work.refill(done, &mut packet.blocks);
     packet.counter = L::select_u(l.mask(done), l.load_u(&packet.blocks.start), packet.counter);
     packet.alive = packet.alive & !l.mask(retired);
     let [x, y] = pixel_position(l, l.load_u(&packet.blocks.pixel));
-    packet.screen = screen(l, &wide.camera, x, y);
+    packet.screen = screen(l, &broadcast.camera, x, y);
 }

@@ -2,10 +2,10 @@
 
 use super::Packet;
 use crate::kernel::parts;
+use crate::prepared::PreparedScene;
 use crate::render_cpu::lanes::{Lanes, unit_float};
 use crate::render_cpu::rng::numbers;
 use crate::sampling::stream_stride;
-use crate::tables::Tables;
 
 /// The numbers for a packet's next rays.
 #[derive(Clone, Copy)]
@@ -24,11 +24,11 @@ pub(super) struct Draw<L: Lanes> {
 #[inline(always)]
 pub(super) fn draw<L: Lanes, const PARTS: u32>(
     l: L,
-    tables: &Tables<L::Real>,
+    prepared: &PreparedScene<L::Real>,
     packet: &Packet<L>,
 ) -> Draw<L> {
-    let with_lens = has_lens::<L, PARTS>(tables);
-    let (pixel, settings) = (l.load_u(&packet.blocks.pixel), &tables.settings);
+    let with_lens = has_lens::<L, PARTS>(prepared);
+    let (pixel, settings) = (l.load_u(&packet.blocks.pixel), &prepared.settings);
     let [first, second] = numbers(l, settings, pixel, packet.counter, packet.stream, with_lens);
     let unit = |u: [L::U; 2]| [unit_float(l, u[0]), unit_float(l, u[1])];
     let pair = unit(first);
@@ -39,19 +39,19 @@ pub(super) fn draw<L: Lanes, const PARTS: u32>(
 
 /// Whether rays start on a lens.
 #[inline(always)]
-pub(super) fn has_lens<L: Lanes, const PARTS: u32>(tables: &Tables<L::Real>) -> bool {
-    PARTS & parts::LENS != 0 && tables.camera.tau > L::Real::default()
+pub(super) fn has_lens<L: Lanes, const PARTS: u32>(prepared: &PreparedScene<L::Real>) -> bool {
+    PARTS & parts::LENS != 0 && prepared.camera.tau > L::Real::default()
 }
 
 /// The stream of a path's next ray.
 #[inline(always)]
-pub(super) fn next_stream<L: Lanes>(l: L, tables: &Tables<L::Real>, packet: &Packet<L>) -> L::U {
-    packet.stream + l.splat_u(stream_stride(tables.settings.sampler))
+pub(super) fn next_stream<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, packet: &Packet<L>) -> L::U {
+    packet.stream + l.splat_u(stream_stride(prepared.settings.sampler))
 }
 
 /// The stream of a path's last ray.
 #[inline(always)]
-pub(super) fn last_stream<L: Lanes>(l: L, tables: &Tables<L::Real>, packet: &Packet<L>) -> L::U {
-    let stride = stream_stride(tables.settings.sampler);
-    l.load_u(&packet.blocks.key) + l.splat_u(stride.wrapping_mul(tables.settings.max_depth - 1))
+pub(super) fn last_stream<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, packet: &Packet<L>) -> L::U {
+    let stride = stream_stride(prepared.settings.sampler);
+    l.load_u(&packet.blocks.key) + l.splat_u(stride.wrapping_mul(prepared.settings.max_depth - 1))
 }

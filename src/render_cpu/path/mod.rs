@@ -15,13 +15,13 @@ mod single;
 
 pub use single::SinglePath;
 
+use super::broadcast::BroadcastScene;
 use super::bvh::{EMPTY_STACK, Stack, traverse};
 use super::lanes::{Lanes, V3, select3};
 use super::sphere::{
     NONE, Nearest, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, book_point, book_root,
     near_root, nearest_root, speck_surface_point, surface_point,
 };
-use super::wide::WideTables;
 use super::work::{LaneBlocks, TileStats, Work};
 use crate::kernel::{LoadShading, parts};
 use crate::stages::Surface;
@@ -56,7 +56,7 @@ struct Packet<L: Lanes> {
 }
 
 impl<L: Lanes> Packet<L> {
-    /// All lanes at the end of a block of nothing, so that the first shading deals them work.
+    /// All lanes at the end of a block of nothing, so that the first shading refills them with work.
     #[inline(always)]
     fn idle(l: L) -> Self {
         let zero = l.constant(0.0);
@@ -82,22 +82,26 @@ impl<L: Lanes> Packet<L> {
 
 /// Traces all of `work` with the code that `PARTS` names; the job must need no other.
 #[inline(always)]
-pub fn trace<L: Lanes, const PARTS: u32>(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> TileStats {
+pub fn trace<L: Lanes, const PARTS: u32>(
+    l: L,
+    broadcast: &BroadcastScene<L::Real>,
+    work: &mut Work,
+) -> TileStats {
     let mut packets: [Packet<L>; PACKETS] =
         [Packet::idle(l), Packet::idle(l), Packet::idle(l), Packet::idle(l)];
     let mut stats = TileStats::default();
     let mut stack = EMPTY_STACK;
-    shade::<L, PARTS>(l, wide, &mut packets, work, &mut stats);
+    shade::<L, PARTS>(l, broadcast, &mut packets, work, &mut stats);
     loop {
         let mut alive = 0;
         for packet in &mut packets {
-            alive |= intersect::<L, PARTS>(l, wide, packet, &mut stack, &mut stats);
+            alive |= intersect::<L, PARTS>(l, broadcast, packet, &mut stack, &mut stats);
         }
         if alive == 0 {
             return stats;
         }
         stats.offered_lanes += (PACKETS * L::WIDTH) as u64;
-        shade::<L, PARTS>(l, wide, &mut packets, work, &mut stats);
+        shade::<L, PARTS>(l, broadcast, &mut packets, work, &mut stats);
     }
 }
 
@@ -105,16 +109,16 @@ pub fn trace<L: Lanes, const PARTS: u32>(l: L, wide: &WideTables<L::Real>, work:
 #[inline(always)]
 fn shade<L: Lanes, const PARTS: u32>(
     l: L,
-    wide: &WideTables<L::Real>,
+    broadcast: &BroadcastScene<L::Real>,
     packets: &mut [Packet<L>],
     work: &mut Work,
     stats: &mut TileStats,
 ) {
     for packet in &mut *packets {
-        collect::<L, PARTS>(l, wide, packet, work, stats);
+        collect::<L, PARTS>(l, broadcast, packet, work, stats);
     }
     for packet in packets {
-        send_on::<L, PARTS>(l, wide, packet);
+        send_on::<L, PARTS>(l, broadcast, packet);
     }
 }
 
@@ -122,7 +126,7 @@ fn shade<L: Lanes, const PARTS: u32>(
 #[inline(always)]
 fn intersect<L: Lanes, const PARTS: u32>(
     l: L,
-    wide: &WideTables<L::Real>,
+    broadcast: &BroadcastScene<L::Real>,
     packet: &mut Packet<L>,
     stack: &mut Stack,
     stats: &mut TileStats,
@@ -133,27 +137,27 @@ fn intersect<L: Lanes, const PARTS: u32>(
     }
     let active = packet.alive & !packet.absorbed;
     stats.rays += u64::from(L::bits(active).count_ones());
-    let (rays, tables) = (&packet.rays, &wide.tables);
+    let (rays, prepared) = (&packet.rays, &broadcast.prepared);
     let mut nearest = Nearest::nothing(l);
     let book_t_min =
-        if PARTS & parts::RULES != 0 { tables.features.surface.smallest_distance() } else { None };
+        if PARTS & parts::RULES != 0 { prepared.features.surface.smallest_distance() } else { None };
     if let Some(t_min) = book_t_min {
         let t_min = l.constant(t_min);
-        for sphere in wide.opaque.iter().chain(&wide.two_root) {
+        for sphere in broadcast.opaque.iter().chain(&broadcast.two_root) {
             let sphere = Spheres::load(l, sphere);
             nearest.take(book_root(l, rays, &sphere, t_min), sphere.number);
         }
     } else {
-        for sphere in &wide.opaque {
+        for sphere in &broadcast.opaque {
             let sphere = Spheres::load(l, sphere);
             nearest.take(near_root(l, rays, &sphere), sphere.number);
         }
-        match &tables.hierarchy {
+        match &prepared.hierarchy {
             Some(hierarchy) if PARTS & parts::HIERARCHY != 0 => {
-                traverse(l, hierarchy, &tables.two_root, rays, active, stack, &mut nearest);
+                traverse(l, hierarchy, &prepared.two_root, rays, active, stack, &mut nearest);
             }
             _ if PARTS & parts::GLASS != 0 => {
-                for sphere in &wide.two_root {
+                for sphere in &broadcast.two_root {
                     let sphere = Spheres::load(l, sphere);
                     nearest.take(nearest_root(l, rays, &sphere), sphere.number);
                 }
@@ -162,8 +166,8 @@ fn intersect<L: Lanes, const PARTS: u32>(
         }
         if PARTS & parts::EXTREMES != 0 {
             let one = l.splat_u(1);
-            let mut number = l.splat_u((tables.opaque.len() + tables.two_root.len()) as u32);
-            for sphere in &tables.anchored {
+            let mut number = l.splat_u((prepared.opaque.len() + prepared.two_root.len()) as u32);
+            for sphere in &prepared.anchored {
                 nearest.take(anchored_root(l, rays, sphere, number), number);
                 number = number + one;
             }
@@ -177,11 +181,11 @@ fn intersect<L: Lanes, const PARTS: u32>(
 #[inline(always)]
 fn hit_point<L: Lanes, const PARTS: u32>(
     l: L,
-    wide: &WideTables<L::Real>,
+    broadcast: &BroadcastScene<L::Real>,
     packet: &Packet<L>,
     record: &HitRecords<L>,
 ) -> SurfacePoint<L> {
-    let (rays, features) = (&packet.rays, &wide.tables.features);
+    let (rays, features) = (&packet.rays, &broadcast.prepared.features);
     let t = packet.nearest.distance();
     let (reference, curvature) = (record.reference(), record.curvature());
     if PARTS & parts::RULES != 0 && features.surface != Surface::Exact {

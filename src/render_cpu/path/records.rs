@@ -1,12 +1,12 @@
 //! The shading records of what was hit.
 
 use super::Packet;
-use crate::kernel::{Columns, GROUP, NONE, ROW_COLUMNS, parts};
+use crate::kernel::{Columns, GROUP, NONE, RECORD_COLUMNS, parts};
+use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::lanes::{Lanes, V3, WideU};
-use crate::render_cpu::wide::WideTables;
 
 /// Groups of columns that a record has.
-const GROUPS: usize = ROW_COLUMNS / GROUP;
+const GROUPS: usize = RECORD_COLUMNS / GROUP;
 
 /// The first group that only anchored spheres need.
 const ANCHORED_GROUP: usize = 3;
@@ -19,17 +19,17 @@ pub(super) struct HitRecords<L: Lanes> {
 impl<L: Lanes> HitRecords<L> {
     /// A lane without a hit gets some record.
     #[inline(always)]
-    pub fn load<const PARTS: u32>(l: L, wide: &WideTables<L::Real>, packet: &Packet<L>) -> Self {
-        let (tables, hit) = (&wide.tables, packet.nearest.sphere);
-        let with_anchored = PARTS & parts::EXTREMES != 0 && tables.features.anchored;
+    pub fn load<const PARTS: u32>(l: L, broadcast: &BroadcastScene<L::Real>, packet: &Packet<L>) -> Self {
+        let (prepared, hit) = (&broadcast.prepared, packet.nearest.sphere);
+        let with_anchored = PARTS & parts::EXTREMES != 0 && prepared.features.anchored;
         let is_needed = |group: usize| group != ANCHORED_GROUP || with_anchored;
         let mut groups = [[l.constant(0.0); GROUP]; GROUPS];
-        if tables.rows.len() <= L::PERMUTED_ROWS {
+        if prepared.records.len() <= L::PERMUTED_ROWS {
             // Few enough that a column fits a register.
             for (group, loaded) in groups.iter_mut().enumerate() {
                 if is_needed(group) {
                     for (column, number) in loaded.iter_mut().enumerate() {
-                        *number = l.permute(&wide.columns[GROUP * group + column], hit);
+                        *number = l.permute(&broadcast.columns[GROUP * group + column], hit);
                     }
                 }
             }
@@ -38,7 +38,7 @@ impl<L: Lanes> HitRecords<L> {
             L::store_u(l.keep(!L::eq_u(hit, l.splat_u(NONE)), hit), &mut numbers);
             for (group, loaded) in groups.iter_mut().enumerate() {
                 if is_needed(group) {
-                    *loaded = l.gather(&tables.rows, &numbers, group);
+                    *loaded = l.gather(&prepared.records, &numbers, group);
                 }
             }
         }

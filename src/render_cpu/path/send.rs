@@ -3,23 +3,27 @@
 use super::draw::has_lens;
 use super::{HitRecords, Packet, hit_point, pixel_position};
 use crate::kernel::{EYE, LoadShading, NEAR_ZERO, parts};
+use crate::prepared::PreparedScene;
+use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::{CameraRays, lens_ray, pinhole_ray};
 use crate::render_cpu::lanes::{Lanes, V3, dot, mul_add3, select3};
 use crate::render_cpu::material::{
     Incidence, Scatter, Surface, hemisphere, incidence_of, incidence_of_sine2, refracted, scatter, surface_of,
 };
 use crate::render_cpu::sphere::Rays;
-use crate::render_cpu::wide::WideTables;
 use crate::stages::Surface as SurfaceRule;
-use crate::tables::Tables;
 
 /// Sends paths on, or the next ones from the camera where they have ended.
 #[inline(always)]
-pub(super) fn send_on<L: Lanes, const PARTS: u32>(l: L, wide: &WideTables<L::Real>, packet: &mut Packet<L>) {
+pub(super) fn send_on<L: Lanes, const PARTS: u32>(
+    l: L,
+    broadcast: &BroadcastScene<L::Real>,
+    packet: &mut Packet<L>,
+) {
     let one = l.constant(1.0);
     let (hit, ended) = (packet.nearest.sphere, packet.ended);
-    let bounced = scatter_path::<L, PARTS>(l, wide, packet);
-    let camera = generate_camera_ray::<L, PARTS>(l, wide, packet);
+    let bounced = scatter_path::<L, PARTS>(l, broadcast, packet);
+    let camera = generate_camera_ray::<L, PARTS>(l, broadcast, packet);
     let next = select3::<L>(ended, camera.direction, bounced.direction);
     let length2 = dot::<L>(next, next);
     let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
@@ -28,7 +32,7 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(l: L, wide: &WideTables<L::Rea
     // A fuzzy reflection into the surface is absorbed.
     packet.absorbed = bounced.is_metal & !L::lt(l.constant(0.0), dot::<L>(next, bounced.normal)) & !ended;
     let mut left = l.fill(ended | bounced.inward, hit);
-    if PARTS & parts::EXTREMES != 0 && wide.tables.features.eye_on_surface {
+    if PARTS & parts::EXTREMES != 0 && broadcast.prepared.features.eye_on_surface {
         left = L::select_u(ended, l.splat_u(EYE), left);
     }
     packet.rays = Rays {
@@ -45,12 +49,12 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(l: L, wide: &WideTables<L::Rea
 #[inline(always)]
 fn generate_camera_ray<L: Lanes, const PARTS: u32>(
     l: L,
-    wide: &WideTables<L::Real>,
+    broadcast: &BroadcastScene<L::Real>,
     packet: &Packet<L>,
 ) -> CameraRays<L> {
-    let with_lens = has_lens::<L, PARTS>(&wide.tables);
+    let with_lens = has_lens::<L, PARTS>(&broadcast.prepared);
     let [u0, u1] = packet.draw.pair;
-    let jitter = match (wide.tables.features.antialiasing, with_lens) {
+    let jitter = match (broadcast.prepared.features.antialiasing, with_lens) {
         (false, _) => [l.constant(0.5); 2],
         (true, false) => [u0, u1],
         (true, true) => packet.draw.jitter,
@@ -58,9 +62,9 @@ fn generate_camera_ray<L: Lanes, const PARTS: u32>(
     if with_lens {
         let lens_radius = L::sqrt(u0);
         let on_lens = [lens_radius * packet.draw.cosine, lens_radius * packet.draw.sine];
-        lens_ray(l, &wide.camera, packet.screen, jitter, on_lens)
+        lens_ray(l, &broadcast.camera, packet.screen, jitter, on_lens)
     } else {
-        pinhole_ray(l, &wide.camera, packet.screen, jitter)
+        pinhole_ray(l, &broadcast.camera, packet.screen, jitter)
     }
 }
 
@@ -82,17 +86,17 @@ struct Bounced<L: Lanes> {
 #[inline(always)]
 fn scatter_path<L: Lanes, const PARTS: u32>(
     l: L,
-    wide: &WideTables<L::Real>,
+    broadcast: &BroadcastScene<L::Real>,
     packet: &mut Packet<L>,
 ) -> Bounced<L> {
     let (zero, one) = (l.constant(0.0), l.constant(1.0));
     let with_rules = PARTS & parts::RULES != 0;
-    let (tables, features) = (&wide.tables, &wide.tables.features);
+    let (prepared, features) = (&broadcast.prepared, &broadcast.prepared.features);
     let (hit, direction) = (packet.nearest.sphere, packet.rays.direction);
 
     // What was hit, where, and from which side.
-    let record = HitRecords::load::<PARTS>(l, wide, packet);
-    let point = hit_point::<L, PARTS>(l, wide, packet, &record);
+    let record = HitRecords::load::<PARTS>(l, broadcast, packet);
+    let point = hit_point::<L, PARTS>(l, broadcast, packet, &record);
     let outward_cosine = dot::<L>(direction, point.outward);
     let mut front = L::lt(outward_cosine, zero);
     if !with_rules || features.surface == SurfaceRule::Exact {
@@ -115,7 +119,7 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
     let mut bounced = if PARTS & parts::GLASS == 0 {
         scatter::<L, false>(l, &surface, laws, direction, normal, &incidence, front, unit, u0)
     } else if PARTS & parts::EXTREMES != 0 && features.steep_glass {
-        scatter_steeply(l, tables, packet, &surface, normal, &incidence, front, unit)
+        scatter_steeply(l, prepared, packet, &surface, normal, &incidence, front, unit)
     } else {
         scatter::<L, true>(l, &surface, laws, direction, normal, &incidence, front, unit, u0)
     };
@@ -126,7 +130,7 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
             bounced.direction = select3::<L>(is_lambertian, hemisphere(l, normal, unit), bounced.direction);
         }
         if features.reflectance_strips {
-            let reflectance = strip_reflectance(l, tables, l.load_u(&packet.blocks.pixel));
+            let reflectance = strip_reflectance(l, prepared, l.load_u(&packet.blocks.pixel));
             albedo = V3 { x: reflectance, y: reflectance, z: reflectance };
         }
     }
@@ -140,7 +144,7 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
 #[inline(always)]
 fn scatter_steeply<L: Lanes>(
     l: L,
-    tables: &Tables<L::Real>,
+    prepared: &PreparedScene<L::Real>,
     packet: &mut Packet<L>,
     surface: &Surface<L>,
     normal: V3<L::F>,
@@ -154,7 +158,7 @@ fn scatter_steeply<L: Lanes>(
     let is_known = runs_own_chord & L::lt(l.constant(0.0), surface.refraction_index);
     let incidence = incidence_of_sine2(l, L::select(is_known, packet.sine2, dot::<L>(across, across)));
     let coin = packet.draw.pair[0];
-    let laws = tables.features.dielectric_laws;
+    let laws = prepared.features.dielectric_laws;
     let mut bounced = scatter::<L, true>(l, surface, laws, direction, normal, &incidence, front, unit, coin);
     let through = refracted(l, across, normal, bounced.ratio, incidence.sine2);
     bounced.direction = select3::<L>(bounced.refracts, through, bounced.direction);
@@ -165,9 +169,9 @@ fn scatter_steeply<L: Lanes>(
 
 /// The reflectance of the picture's strip that a pixel lies in: 10, 30, 50, 70, 90 %.
 #[inline(always)]
-fn strip_reflectance<L: Lanes>(l: L, tables: &Tables<L::Real>, pixel: L::U) -> L::F {
+fn strip_reflectance<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, pixel: L::U) -> L::F {
     let [x, _] = pixel_position(l, pixel);
-    let strips = l.constant(5.0 / f64::from(tables.settings.width));
+    let strips = l.constant(5.0 / f64::from(prepared.settings.width));
     let strip = (x + l.constant(0.5)) * strips - l.constant(0.5);
     let strip = L::float_of(l.fixed_point(L::max(l.constant(0.0), strip)));
     L::mul_add(strip, l.constant(0.2), l.constant(0.1))

@@ -2,9 +2,9 @@
 
 use super::{Packet, intersect, parts, shade};
 use crate::kernel::Real;
+use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::bvh::{EMPTY_STACK, Stack};
 use crate::render_cpu::lanes::{Lanes, V3, Wide, WideU};
-use crate::render_cpu::wide::WideTables;
 use crate::render_cpu::work::{TileStats, Work};
 
 /// A packet of one lane, for a record of what it does.
@@ -16,11 +16,11 @@ pub struct SinglePath<L: Lanes> {
 impl<L: Lanes> SinglePath<L> {
     /// Takes the first sample of `work`.
     #[inline(always)]
-    pub fn start(l: L, wide: &WideTables<L::Real>, work: &mut Work) -> Self {
+    pub fn start(l: L, broadcast: &BroadcastScene<L::Real>, work: &mut Work) -> Self {
         let mut packet = Packet::idle(l);
         shade::<L, { parts::ALL }>(
             l,
-            wide,
+            broadcast,
             std::slice::from_mut(&mut packet),
             work,
             &mut TileStats::default(),
@@ -55,21 +55,21 @@ impl<L: Lanes> SinglePath<L> {
 
     /// Traces the ray and sends it on. Returns the number of the sphere that it met and the distance.
     #[inline(always)]
-    pub fn advance(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) -> (u32, f64) {
+    pub fn advance(&mut self, l: L, broadcast: &BroadcastScene<L::Real>, work: &mut Work) -> (u32, f64) {
         let mut stats = TileStats::default();
-        intersect::<L, { parts::ALL }>(l, wide, &mut self.packet, &mut self.stack, &mut stats);
+        intersect::<L, { parts::ALL }>(l, broadcast, &mut self.packet, &mut self.stack, &mut stats);
         let (mut sphere, mut distance) = (WideU::default(), Wide::default());
         L::store_u(self.packet.nearest.sphere, &mut sphere);
         L::store(self.packet.nearest.distance(), &mut distance);
-        shade::<L, { parts::ALL }>(l, wide, std::slice::from_mut(&mut self.packet), work, &mut stats);
+        shade::<L, { parts::ALL }>(l, broadcast, std::slice::from_mut(&mut self.packet), work, &mut stats);
         (sphere.0[0], distance.0[0].to_f64())
     }
 
     /// Ends an absorbed path.
     #[inline(always)]
-    pub fn finish(&mut self, l: L, wide: &WideTables<L::Real>, work: &mut Work) {
+    pub fn finish(&mut self, l: L, broadcast: &BroadcastScene<L::Real>, work: &mut Work) {
         if self.is_alive() {
-            self.advance(l, wide, work);
+            self.advance(l, broadcast, work);
         }
     }
 }

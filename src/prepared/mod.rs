@@ -10,7 +10,8 @@ mod validate;
 
 use crate::film::FIXED_POINT_SCALE;
 use crate::kernel::{
-    AnchoredSphere, CameraTable, Features, Real, Roots, Row, ShadingRecord, SortedSpheres, UNDER_EYE,
+    AnchoredSphere, CameraTable, Features, Real, RecordColumns, Roots, ShadingRecord, SortedSpheres,
+    UNDER_EYE,
 };
 use crate::render::{RenderJob, RenderSettings};
 use crate::scene::{Material, Scene, Sphere};
@@ -30,7 +31,7 @@ const HIERARCHY_MIN_SPHERES: usize = 24;
 ///
 /// Spheres are numbered by their row, in the order `opaque`, `two_root`, `anchored`.
 #[derive(Clone, Debug)]
-pub struct Tables<R> {
+pub struct PreparedScene<R> {
     /// Centre and squared radius of spheres that no ray is ever inside of: only the nearer root counts.
     pub opaque: Vec<[R; 4]>,
     /// Centre and squared radius of the others. Where there is a hierarchy, all spheres, in the order of its leaves,
@@ -43,7 +44,7 @@ pub struct Tables<R> {
     /// Wall time that building it took.
     pub hierarchy_time: Duration,
     /// By row, what shading needs: a [`ShadingRecord`].
-    pub rows: Vec<Row<R>>,
+    pub records: Vec<RecordColumns<R>>,
     /// By row, the sphere's index in the scene.
     pub scene_index: Vec<u32>,
     /// The camera.
@@ -65,15 +66,15 @@ pub struct Tables<R> {
     warnings: Vec<String>,
 }
 
-impl<R: Real> Tables<R> {
+impl<R: Real> PreparedScene<R> {
     /// Sorts, anchors and rounds the scene, and builds the hierarchy if one is worth it.
     pub fn new(job: &RenderJob) -> Self {
-        Tables::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES)
+        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES)
     }
 
     /// The same without a hierarchy, however many spheres there are: to compare with.
     pub fn as_list(job: &RenderJob) -> Self {
-        Tables::with_hierarchy_from(job, usize::MAX)
+        PreparedScene::with_hierarchy_from(job, usize::MAX)
     }
 
     fn with_hierarchy_from(job: &RenderJob, least_spheres: usize) -> Self {
@@ -102,16 +103,16 @@ impl<R: Real> Tables<R> {
         };
         let mut opaque: Vec<[R; 4]> = listed.iter().enumerate().map(packed).collect();
         let two_root = opaque.split_off(if has_hierarchy { 0 } else { one_root });
-        let mut rows = Vec::with_capacity(listed.len() + groups.anchored.len() + 1);
-        rows.extend(listed.iter().map(|i| shading_row(scene, *i, groups.origin, None)));
+        let mut records = Vec::with_capacity(listed.len() + groups.anchored.len() + 1);
+        records.extend(listed.iter().map(|i| shading_record(scene, *i, groups.origin, None)));
         let (bottom, top) = (scene.sky.bottom * FIXED_POINT_SCALE, scene.sky.top * FIXED_POINT_SCALE);
-        let mut tables = Tables {
+        let mut prepared = PreparedScene {
             opaque,
             two_root,
             anchored: Vec::new(),
             hierarchy,
             hierarchy_time,
-            rows,
+            records,
             scene_index: listed,
             camera: CameraTable::new(job.camera(), settings.width, settings.height, groups.origin),
             sky_middle: rounded((bottom + top) / 2.0),
@@ -124,22 +125,22 @@ impl<R: Real> Tables<R> {
             facts,
             warnings: Vec::new(),
         };
-        tables.see(job, groups);
-        tables
+        prepared.see(job, groups);
+        prepared
     }
 
-    /// The tables of `job`; where there are those of a job that differs in camera and settings alone, the
+    /// The prepared scene of `job`; where there is that of a job that differs in camera and settings alone, the
     /// hierarchy is not built again.
     pub fn renewed(old: Option<(Self, RenderJob)>, job: &RenderJob) -> Self {
-        if let Some((mut tables, before)) = old
-            && tables.follow(&before, job)
+        if let Some((mut prepared, before)) = old
+            && prepared.follow(&before, job)
         {
-            return tables;
+            return prepared;
         }
-        Tables::new(job)
+        PreparedScene::new(job)
     }
 
-    /// Makes the tables of `before` those of `job`, if they have a hierarchy and it would be the same, so that camera
+    /// Makes the prepared scene of `before` that of `job`, if it has a hierarchy and that would be the same, so that camera
     /// and settings alone differ; else does nothing and returns false.
     pub fn follow(&mut self, before: &RenderJob, job: &RenderJob) -> bool {
         if self.hierarchy.is_none() || !job.shares_scene_with(before) {
@@ -161,16 +162,16 @@ impl<R: Real> Tables<R> {
     fn see(&mut self, job: &RenderJob, groups: Groups) {
         let scene = job.scene();
         let listed = self.opaque.len() + self.two_root.len();
-        self.rows.truncate(listed);
+        self.records.truncate(listed);
         self.scene_index.truncate(listed);
         self.anchored = groups.anchored.iter().map(|a| anchored_sphere(scene, a, groups.origin)).collect();
         for (anchored, sphere) in groups.anchored.iter().zip(&self.anchored) {
-            self.rows.push(shading_row(scene, anchored.index, groups.origin, Some(sphere)));
+            self.records.push(shading_record(scene, anchored.index, groups.origin, Some(sphere)));
             self.scene_index.push(anchored.index);
         }
-        if self.rows.is_empty() {
+        if self.records.is_empty() {
             // A ray that hits nothing looks up row 0 and ignores it.
-            self.rows.push(Row::default());
+            self.records.push(RecordColumns::default());
         }
         self.warnings = if job.rules().surface == Surface::Exact {
             self.facts.warnings(job, &groups)
@@ -209,11 +210,11 @@ impl<R: Real> Tables<R> {
         indices.iter().map(|list| size_of_val(list.as_slice())).sum::<usize>()
             + packed.iter().map(|list| size_of_val(list.as_slice())).sum::<usize>()
             + size_of_val(self.anchored.as_slice())
-            + size_of_val(self.rows.as_slice())
+            + size_of_val(self.records.as_slice())
             + nodes
     }
 
-    /// The spheres of `two_root` as the scene has them. The tables must be the job's.
+    /// The spheres of `two_root` as the scene has them. The prepared scene must be the job's.
     pub fn spheres_of_hierarchy<'a>(&'a self, job: &'a RenderJob) -> impl Iterator<Item = &'a Sphere> {
         let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());
         indices.map(|index| &job.scene().spheres[*index as usize])
@@ -237,12 +238,12 @@ fn anchored_sphere<R: Real>(scene: &Scene, anchored: &Anchored, origin: DVec3) -
     }
 }
 
-fn shading_row<R: Real>(
+fn shading_record<R: Real>(
     scene: &Scene,
     index: u32,
     origin: DVec3,
     anchored: Option<&AnchoredSphere<R>>,
-) -> Row<R> {
+) -> RecordColumns<R> {
     let sphere = &scene.spheres[index as usize];
     let (albedo, weight, refraction_index) = match *scene.material_of(sphere) {
         Material::Lambertian { albedo } => (albedo, 1.0, 0.0),

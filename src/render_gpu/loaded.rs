@@ -1,22 +1,22 @@
-//! A job on the device: tables and hierarchy in buffers, the kernel, the film.
+//! A job on the device: prepared scene and hierarchy in buffers, the kernel, the film.
 
 use super::dispatches::TURN_LIMIT;
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
 use super::layout::{GpuJob, WORKGROUP_SIZE, tile_size};
-use super::options::DrillPoint;
+use super::options::InjectionPoint;
 use super::scene::SceneData;
 use super::shader_source::EntryPoint;
 use super::{GpuRenderer, HierarchyKind, failed};
-use crate::kernel::{Features, ROW_COLUMNS, words_of};
+use crate::kernel::{Features, RECORD_COLUMNS, words_of};
+use crate::prepared::PreparedScene;
 use crate::render::{RenderError, RenderJob};
 use crate::stages::Surface;
-use crate::tables::Tables;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// A job on the device.
-pub(super) struct Prepared {
+pub(super) struct Loaded {
     pub(super) job: RenderJob,
     pub(super) scene: SceneOnDevice,
     pub(super) features: Features,
@@ -26,7 +26,7 @@ pub(super) struct Prepared {
 
 /// A scene in buffers, seen by a camera.
 pub(super) struct SceneOnDevice {
-    pub(super) tables: Tables<f32>,
+    pub(super) prepared: PreparedScene<f32>,
     /// By number, the sphere's index in the scene.
     pub(super) scene_index: Vec<u32>,
     /// Nodes of the hierarchy.
@@ -41,12 +41,12 @@ pub(super) struct SceneOnDevice {
 impl GpuRenderer {
     /// Builds what `job` needs, unless that is there.
     pub(super) fn get_ready(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
-        if self.prepared.as_ref().is_none_or(|prepared| prepared.job != *job) {
-            let old = self.prepared.take();
+        if self.loaded.as_ref().is_none_or(|loaded| loaded.job != *job) {
+            let old = self.loaded.take();
             self.dispatches.abandon();
-            self.drill(DrillPoint::Prepare, self.preparations);
+            self.inject(InjectionPoint::Prepare, self.preparations);
             self.preparations += 1;
-            self.prepared = Some(self.built(job, old, cancel)?);
+            self.loaded = Some(self.built(job, old, cancel)?);
         }
         Ok(())
     }
@@ -54,16 +54,16 @@ impl GpuRenderer {
     fn built(
         &mut self,
         job: &RenderJob,
-        old: Option<Prepared>,
+        old: Option<Loaded>,
         cancel: &AtomicBool,
-    ) -> Result<Prepared, RenderError> {
+    ) -> Result<Loaded, RenderError> {
         self.gpu.faults.check().map_err(failed)?;
         let (mut seen, old_film) =
             old.map_or((None, None), |old| (Some((old.scene, old.job)), Some(old.film)));
-        let follows = seen.as_mut().is_some_and(|(scene, before)| scene.tables.follow(before, job));
+        let follows = seen.as_mut().is_some_and(|(scene, before)| scene.prepared.follow(before, job));
         let scene = match seen {
             Some((scene, _)) if follows => {
-                let data = GpuJob::new(&scene.tables, scene.node_count);
+                let data = GpuJob::new(&scene.prepared, scene.node_count);
                 self.gpu.queue.write_buffer(&scene.job_buffer, 0, bytemuck::cast_slice(&words_of(&[data])));
                 self.renew_anchored(&scene);
                 self.report.hierarchy_time = Duration::ZERO;
@@ -75,10 +75,10 @@ impl GpuRenderer {
                 self.scene_on_device(job)?
             }
         };
-        let features = self.features(&scene.tables);
-        self.check_lists(&features, &scene.tables).map_err(failed)?;
+        let features = self.features(&scene.prepared);
+        self.check_lists(&features, &scene.prepared).map_err(failed)?;
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &features, 0);
-        self.messages.extend(scene.tables.warnings().iter().cloned());
+        self.messages.extend(scene.prepared.warnings().iter().cloned());
         let film = self.film_buffers(job, old_film).map_err(failed)?;
         self.make_room(job).map_err(failed)?;
         let kernel = self.kernels.get(&self.gpu, EntryPoint::PathTrace, &features, 0, cancel)?;
@@ -88,42 +88,42 @@ impl GpuRenderer {
         }
         self.report.features = features.describe();
         self.report.compile_time = kernel.compile_time;
-        Ok(Prepared { job: job.clone(), scene, features, kernel, film })
+        Ok(Loaded { job: job.clone(), scene, features, kernel, film })
     }
 
     /// Where spheres are anchored depends on the eye.
     fn renew_anchored(&self, scene: &SceneOnDevice) {
-        let tables = &scene.tables;
-        let anchored = words_of(&tables.anchored);
-        let first = tables.opaque.len() + tables.two_root.len();
-        let rows: Vec<[f32; ROW_COLUMNS]> = tables.rows[first..].iter().map(|row| row.0).collect();
+        let prepared = &scene.prepared;
+        let anchored = words_of(&prepared.anchored);
+        let first = prepared.opaque.len() + prepared.two_root.len();
+        let records: Vec<[f32; RECORD_COLUMNS]> = prepared.records[first..].iter().map(|row| row.0).collect();
         let queue = &self.gpu.queue;
         queue.write_buffer(&scene.anchored_buffer, 0, bytemuck::cast_slice(&anchored));
-        let offset = (first * ROW_COLUMNS * size_of::<f32>()) as u64;
-        queue.write_buffer(&scene.rows_buffer, offset, bytemuck::cast_slice(&rows));
+        let offset = (first * RECORD_COLUMNS * size_of::<f32>()) as u64;
+        queue.write_buffer(&scene.rows_buffer, offset, bytemuck::cast_slice(&records));
     }
 
-    /// Builds tables and hierarchy, while the kernel is compiled, and copies them to the device.
+    /// Builds prepared scene and hierarchy, while the kernel is compiled, and copies them to the device.
     fn scene_on_device(&mut self, job: &RenderJob) -> Result<SceneOnDevice, RenderError> {
-        let tables = Tables::<f32>::new(job);
-        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&tables), 0);
+        let prepared = PreparedScene::<f32>::new(job);
+        self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&prepared), 0);
         let begin = Instant::now();
-        let data = SceneData::new(job, &tables, self.options.hierarchy).map_err(failed)?;
-        self.report.hierarchy_time = tables.hierarchy_time + begin.elapsed();
-        self.copied(tables, data).map_err(failed)
+        let data = SceneData::new(job, &prepared, self.options.hierarchy).map_err(failed)?;
+        self.report.hierarchy_time = prepared.hierarchy_time + begin.elapsed();
+        self.copied(prepared, data).map_err(failed)
     }
 
-    fn features(&self, tables: &Tables<f32>) -> Features {
-        let needed = tables.features;
+    fn features(&self, prepared: &PreparedScene<f32>) -> Features {
+        let needed = prepared.features;
         let features = if self.options.specialise { needed } else { needed.generalised() };
         let cwbvh = features.hierarchy && self.options.hierarchy == HierarchyKind::Cwbvh;
         let features = Features { cwbvh, ..features };
-        Features { aside: self.dispatches.whole_samples(&features, tables).is_none(), ..features }
+        Features { aside: self.dispatches.whole_samples(&features, prepared).is_none(), ..features }
     }
 
     /// Refuses lists that are longer than a driver's loops.
-    fn check_lists(&self, features: &Features, tables: &Tables<f32>) -> Result<(), String> {
-        let turns = turns_over_lists(features, tables);
+    fn check_lists(&self, features: &Features, prepared: &PreparedScene<f32>) -> Result<(), String> {
+        let turns = turns_over_lists(features, prepared);
         if self.gpu.adapter.threads_in_step() > 1 && turns >= u64::from(TURN_LIMIT) {
             return Err(format!(
                 "each ray is tested against {turns} spheres, but loops of {} end after {TURN_LIMIT} turns; render this scene on the CPU",
@@ -153,28 +153,28 @@ impl GpuRenderer {
         self.options.film_limit.map_or(limit, |wanted| wanted.min(limit))
     }
 
-    fn copied(&self, tables: Tables<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
+    fn copied(&self, prepared: PreparedScene<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
         let gpu = &self.gpu;
         let limit = self.binding_limit();
         let storage = |label, data: &[u8]| {
             if data.len() as u64 > limit {
                 return Err(format!(
                     "the {label} of {} spheres take {} bytes, but the adapter binds at most {limit}; render this scene on the CPU",
-                    tables.rows.len(),
+                    prepared.records.len(),
                     data.len(),
                 ));
             }
             gpu.filled(label, data, wgpu::BufferUsages::STORAGE)
         };
-        let anchored: Vec<[u32; 8]> = at_least_one(words_of(&tables.anchored).as_chunks().0.to_vec());
-        let job = GpuJob::new(&tables, scene.node_count);
+        let anchored: Vec<[u32; 8]> = at_least_one(words_of(&prepared.anchored).as_chunks().0.to_vec());
+        let job = GpuJob::new(&prepared, scene.node_count);
         let job_buffer =
             gpu.filled("job", bytemuck::cast_slice(&words_of(&[job])), wgpu::BufferUsages::UNIFORM)?;
         let buffers = [
             storage("spheres", bytemuck::cast_slice(&scene.spheres))?,
             // At least one element of each, as the shader's types ask for.
             storage("anchored spheres", bytemuck::cast_slice(&anchored))?,
-            storage("rows", bytemuck::cast_slice(&scene.rows))?,
+            storage("records", bytemuck::cast_slice(&scene.records))?,
             storage("nodes", bytemuck::cast_slice(&at_least_one(scene.nodes)))?,
         ];
         let bound: Vec<&wgpu::Buffer> = std::iter::once(&job_buffer).chain(&buffers).collect();
@@ -187,7 +187,7 @@ impl GpuRenderer {
             scene_index: scene.scene_index,
             node_count: scene.node_count,
             job_buffer,
-            tables,
+            prepared,
         })
     }
 
@@ -210,10 +210,10 @@ impl GpuRenderer {
 }
 
 /// Turns of one ray's loops over lists. Twin: `turns_over_lists` in shaders/path.wgsl.
-pub(super) fn turns_over_lists(features: &Features, tables: &Tables<f32>) -> u64 {
+pub(super) fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
     let is_in_hierarchy = features.hierarchy && features.surface == Surface::Exact;
-    let listed = if is_in_hierarchy { 0 } else { tables.opaque.len() + tables.two_root.len() };
-    (tables.anchored.len() + listed) as u64
+    let listed = if is_in_hierarchy { 0 } else { prepared.opaque.len() + prepared.two_root.len() };
+    (prepared.anchored.len() + listed) as u64
 }
 
 fn at_least_one<T: bytemuck::Zeroable>(mut items: Vec<T>) -> Vec<T> {

@@ -1,8 +1,8 @@
 //! Drills: the program under kills, full disks, limits, closed pipes and other runs on the same film. What it had
 //! rendered must be there afterwards, to the bit.
 //!
-//! Each runs a few rounds. For long series by hand, WEEKENDER_DRILLS is the number of rounds:
-//! `WEEKENDER_DRILLS=150 cargo test --release --test drills -- --nocapture`.
+//! Each runs a few rounds. For long series by hand, WEEKENDER_FAULT_ROUNDS is the number of rounds:
+//! `WEEKENDER_FAULT_ROUNDS=150 cargo test --release --test fault_injection -- --nocapture`.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
@@ -28,7 +28,7 @@ const ENDLESS: [&str; 8] =
     ["--samples", "4294967296", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png"];
 
 fn rounds(usual: u32) -> u32 {
-    std::env::var("WEEKENDER_DRILLS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(usual)
+    std::env::var("WEEKENDER_FAULT_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(usual)
 }
 
 fn weekender(at: &Path, arguments: &[&str]) -> Command {
@@ -96,7 +96,7 @@ fn names(at: &Path) -> Vec<String> {
     names
 }
 
-/// Numbers that look random; a drill says which it began with.
+/// Numbers that look random; each test says which it began with.
 struct Dice(u64);
 
 impl Dice {

@@ -1,4 +1,4 @@
-//! The control: the same picture by a plain C89 program, which is compiled when it is asked for.
+//! The baseline: the same picture by a plain C89 program, which is compiled when it is asked for.
 
 use crate::render::{RenderJob, RenderSettings};
 use crate::scene::{Camera, Parameter, Scene};
@@ -21,9 +21,9 @@ pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"
 /// Time between looks at whether the caller wants to stop.
 const POLL: Duration = Duration::from_millis(20);
 
-/// A control that cannot be had or did not end well.
+/// A baseline that cannot be had or did not end well.
 #[derive(Debug, thiserror::Error)]
-pub enum ControlError {
+pub enum BaselineError {
     /// No compiler.
     #[error("there is no C compiler {compiler:?} ({reason}); install one or name it in CC")]
     NoCompiler {
@@ -40,7 +40,7 @@ pub enum ControlError {
         /// Its first words.
         message: String,
     },
-    /// What the control cannot do.
+    /// What the baseline cannot do.
     #[error("{0}")]
     Unfit(&'static str),
     /// It ended without figures.
@@ -54,19 +54,19 @@ pub enum ControlError {
     Files(#[from] io::Error),
 }
 
-/// The compiled control.
-pub struct Control {
+/// The compiled baseline.
+pub struct Baseline {
     directory: TempDir,
     /// The compiler.
     pub compiler: String,
 }
 
-/// What the control said of a run.
+/// What the baseline said of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlRun {
     /// Wall time of tracing, seconds.
     pub seconds: f64,
-    /// Processor time of tracing, seconds, as the control measures it.
+    /// Processor time of tracing, seconds, as the baseline measures it.
     pub processor_seconds: f64,
     /// Pixels times samples.
     pub paths: u64,
@@ -74,15 +74,15 @@ pub struct ControlRun {
     pub rays: u64,
 }
 
-impl Control {
+impl Baseline {
     /// Compiles it with the compiler that the environment's CC names, or cc.
     ///
     /// # Errors
-    /// [`ControlError::NoCompiler`], [`ControlError::Compile`] or [`ControlError::Files`].
-    pub fn compile() -> Result<Self, ControlError> {
+    /// [`BaselineError::NoCompiler`], [`BaselineError::Compile`] or [`BaselineError::Files`].
+    pub fn compile() -> Result<Self, BaselineError> {
         let compiler = std::env::var("CC").ok().filter(|name| !name.trim().is_empty());
         let compiler = compiler.unwrap_or_else(|| "cc".to_owned());
-        let directory = tempfile::Builder::new().prefix("weekender-control-").tempdir()?;
+        let directory = tempfile::Builder::new().prefix("weekender-baseline-").tempdir()?;
         let source = directory.path().join("rt_weekend.c");
         fs::write(&source, SOURCE)?;
         let mut words = compiler.split_whitespace();
@@ -94,29 +94,29 @@ impl Control {
             .arg("-lm")
             .stdin(Stdio::null())
             .output()
-            .map_err(|reason| ControlError::NoCompiler { compiler: compiler.clone(), reason })?;
+            .map_err(|reason| BaselineError::NoCompiler { compiler: compiler.clone(), reason })?;
         if !output.status.success() {
             let message =
                 String::from_utf8_lossy(&output.stderr).lines().take(3).collect::<Vec<_>>().join("; ");
-            return Err(ControlError::Compile { compiler, message });
+            return Err(BaselineError::Compile { compiler, message });
         }
-        Ok(Control { directory, compiler })
+        Ok(Baseline { directory, compiler })
     }
 
     /// Writes what it is to render.
     ///
     /// # Errors
-    /// [`ControlError::Unfit`] for a stage's rules, [`ControlError::Files`].
-    pub fn write_scene(&self, job: &RenderJob, name: &str) -> Result<PathBuf, ControlError> {
+    /// [`BaselineError::Unfit`] for a stage's rules, [`BaselineError::Files`].
+    pub fn write_scene(&self, job: &RenderJob, name: &str) -> Result<PathBuf, BaselineError> {
         if !job.rules().are_finished() {
-            return Err(ControlError::Unfit("it has the rules of the finished renderer alone"));
+            return Err(BaselineError::Unfit("it has the rules of the finished renderer alone"));
         }
         let path = self.directory.path().join(format!("{name}.txt"));
         fs::write(&path, scene_text(job.scene(), job.camera()))?;
         Ok(path)
     }
 
-    /// A file that goes away with the control.
+    /// A file that goes away with the baseline.
     pub fn scratch(&self, name: &str) -> PathBuf {
         self.directory.path().join(name)
     }
@@ -125,7 +125,7 @@ impl Control {
     /// shown or .pfm linear. Ends early when `is_cancelled` says so.
     ///
     /// # Errors
-    /// [`ControlError::Run`] or [`ControlError::Cancelled`].
+    /// [`BaselineError::Run`] or [`BaselineError::Cancelled`].
     pub fn run(
         &self,
         scene: Option<&Path>,
@@ -134,8 +134,8 @@ impl Control {
         seed: u32,
         out: Option<&Path>,
         is_cancelled: &dyn Fn() -> bool,
-    ) -> Result<ControlRun, ControlError> {
-        let failed = |reason: io::Error| ControlError::Run(reason.to_string());
+    ) -> Result<ControlRun, BaselineError> {
+        let failed = |reason: io::Error| BaselineError::Run(reason.to_string());
         let RenderSettings { width, height, max_depth, .. } = settings;
         let mut command = Command::new(program_in(self.directory.path()));
         command.args([*width, *height].map(|x| x.to_string()));
@@ -182,11 +182,11 @@ impl Control {
         }
         let output = child.wait_with_output().map_err(failed)?;
         match run {
-            _ if is_cancelled() => Err(ControlError::Cancelled),
+            _ if is_cancelled() => Err(BaselineError::Cancelled),
             Some(run) if output.status.success() => Ok(run),
             _ => {
                 let complaint = String::from_utf8_lossy(&output.stderr);
-                Err(ControlError::Run(format!("{}, {}", output.status, complaint.trim())))
+                Err(BaselineError::Run(format!("{}, {}", output.status, complaint.trim())))
             }
         }
     }
@@ -208,10 +208,10 @@ fn figures(line: &str, wall: Duration) -> Option<ControlRun> {
     })
 }
 
-/// A scene in the control's format.
+/// A scene in the baseline's format.
 fn scene_text(scene: &Scene, camera: &Camera) -> String {
     let three = |v: DVec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
-    // vup may be parallel to the view, which the control does not expect; the basis has been put right.
+    // vup may be parallel to the view, which the baseline does not expect; the basis has been put right.
     let up = camera.basis().v;
     let mut text = format!(
         "camera {} {} {} {:?} {:?} {:?}\nsky {} {}\n",

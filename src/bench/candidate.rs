@@ -1,9 +1,9 @@
-//! Who is measured: the control, levels and lane counts of the CPU, a GPU.
+//! Who is measured: the baseline, levels and lane counts of the CPU, a GPU.
 
 use super::figures::{Kind, Row, Run};
 use crate::backends::{self, BackendChoice};
+use crate::baseline::{Baseline, BaselineError};
 use crate::cli::BenchOptions;
-use crate::control::{Control, ControlError};
 use crate::recipe::plain_name;
 use crate::render::{RenderError, RenderJob, Renderer};
 use crate::render_cpu::{CpuOptions, Isa};
@@ -16,14 +16,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 const WARM_UP_SECONDS: f64 = 0.2;
 
 /// One row of a scene, ready to run.
-pub struct Contender {
+pub struct Candidate {
     /// Its figures so far.
     pub row: Row,
     runner: Option<Runner>,
 }
 
 enum Runner {
-    Control { control: Rc<Control>, scene: PathBuf },
+    Baseline { baseline: Rc<Baseline>, scene: PathBuf },
     Renderer(Box<dyn Renderer>),
 }
 
@@ -31,34 +31,34 @@ enum Runner {
 #[derive(Debug)]
 pub struct Cancelled;
 
-/// All contenders of a job, in the order of the table.
-pub fn contenders(
+/// All candidates of a job, in the order of the table.
+pub fn candidates(
     options: &BenchOptions,
     name: &str,
     job: &RenderJob,
-    control: &Result<Rc<Control>, ControlError>,
-) -> Vec<Contender> {
-    let mut found = vec![Contender::control(name, job, control)];
+    baseline: &Result<Rc<Baseline>, BaselineError>,
+) -> Vec<Candidate> {
+    let mut found = vec![Candidate::baseline(name, job, baseline)];
     for isa in &options.levels {
         for lanes in isa.lane_counts() {
             let kind = if *lanes == 1 { Kind::Scalar } else { Kind::Packets };
-            found.push(Contender::cpu(*isa, *lanes, 1, kind, job));
+            found.push(Candidate::cpu(*isa, *lanes, 1, kind, job));
         }
     }
     let best = options.levels.last().copied().unwrap_or(Isa::Baseline);
     if options.threads > 1 {
-        found.push(Contender::cpu(best, 1, options.threads, Kind::Threads, job));
+        found.push(Candidate::cpu(best, 1, options.threads, Kind::Threads, job));
         if best.native_lanes() > 1 {
-            found.push(Contender::cpu(best, best.native_lanes(), options.threads, Kind::Threads, job));
+            found.push(Candidate::cpu(best, best.native_lanes(), options.threads, Kind::Threads, job));
         }
     }
     if options.adapter.is_some() || adapters().iter().any(AdapterInfo::is_fit) {
-        found.push(Contender::gpu(options, job));
+        found.push(Candidate::gpu(options, job));
     }
     found
 }
 
-impl Contender {
+impl Candidate {
     fn new(name: String, kind: Kind, lanes: usize, threads: usize, made: Result<Runner, String>) -> Self {
         let (runner, skipped) = match made {
             Ok(runner) => (Some(runner), None),
@@ -74,24 +74,24 @@ impl Contender {
             paths_per_second: None,
             rays_per_second: None,
             lanes_in_use: None,
-            ratio_to_control: None,
+            ratio_to_baseline: None,
             efficiency: None,
             skipped,
         };
-        Contender { row, runner }
+        Candidate { row, runner }
     }
 
-    fn control(name: &str, job: &RenderJob, control: &Result<Rc<Control>, ControlError>) -> Self {
-        let made = control.as_ref().map_err(ToString::to_string).and_then(|control| {
-            let scene = control.write_scene(job, &plain_name(name));
+    fn baseline(name: &str, job: &RenderJob, baseline: &Result<Rc<Baseline>, BaselineError>) -> Self {
+        let made = baseline.as_ref().map_err(ToString::to_string).and_then(|baseline| {
+            let scene = baseline.write_scene(job, &plain_name(name));
             let scene = scene.map_err(|error| error.to_string())?;
-            Ok(Runner::Control { control: Rc::clone(control), scene })
+            Ok(Runner::Baseline { baseline: Rc::clone(baseline), scene })
         });
-        let name = match control {
-            Ok(control) => format!("C89, {} -O2, 1 thread", control.compiler),
+        let name = match baseline {
+            Ok(baseline) => format!("C89, {} -O2, 1 thread", baseline.compiler),
             Err(_) => "C89, 1 thread".to_owned(),
         };
-        Contender::new(name, Kind::Control, 1, 1, made)
+        Candidate::new(name, Kind::Baseline, 1, 1, made)
     }
 
     /// A level of the CPU.
@@ -105,7 +105,7 @@ impl Contender {
         let count =
             |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
         let name = format!("{isa}, {}, {}", count(lanes, "lane"), count(threads, "thread"));
-        Contender::new(name, kind, lanes, threads, prepared(&BackendChoice::Cpu(options), job))
+        Candidate::new(name, kind, lanes, threads, prepared(&BackendChoice::Cpu(options), job))
     }
 
     fn gpu(options: &BenchOptions, job: &RenderJob) -> Self {
@@ -117,7 +117,7 @@ impl Contender {
         };
         let name = info.as_ref().map_or_else(|| "GPU".to_owned(), |info| info.device.clone());
         let (lanes, threads) = info.map_or((0, 0), |info| (info.lanes, info.threads));
-        Contender::new(name, Kind::Gpu, lanes, threads, made)
+        Candidate::new(name, Kind::Gpu, lanes, threads, made)
     }
 
     /// Whether it can be run.
@@ -129,7 +129,7 @@ impl Contender {
     /// `limit_seconds` allows, at most `samples`.
     ///
     /// # Errors
-    /// [`Cancelled`]. A contender that fails is left out from then on.
+    /// [`Cancelled`]. A candidate that fails is left out from then on.
     pub fn warm_up(
         &mut self,
         job: &RenderJob,
@@ -157,7 +157,7 @@ impl Contender {
     /// Runs it and keeps the figures.
     ///
     /// # Errors
-    /// [`Cancelled`]. A contender that fails is left out from then on.
+    /// [`Cancelled`]. A candidate that fails is left out from then on.
     pub fn measure(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), Cancelled> {
         let run = self.run(job, self.row.samples_per_pixel, cancel)?;
         self.row.runs.extend(run);
@@ -168,9 +168,9 @@ impl Contender {
     fn run(&mut self, job: &RenderJob, samples: u64, cancel: &AtomicBool) -> Result<Option<Run>, Cancelled> {
         let outcome = match &mut self.runner {
             None => return Ok(None),
-            Some(Runner::Control { control, scene }) => {
+            Some(Runner::Baseline { baseline, scene }) => {
                 let is_cancelled = || cancel.load(Ordering::Relaxed);
-                match control.run(Some(scene), job.settings(), samples, 1, None, &is_cancelled) {
+                match baseline.run(Some(scene), job.settings(), samples, 1, None, &is_cancelled) {
                     Ok(run) => Ok(Run {
                         seconds: run.seconds,
                         paths: run.paths,
@@ -179,7 +179,7 @@ impl Contender {
                         offered_lanes: 0,
                         rmse: None,
                     }),
-                    Err(ControlError::Cancelled) => return Err(Cancelled),
+                    Err(BaselineError::Cancelled) => return Err(Cancelled),
                     Err(error) => Err(error.to_string()),
                 }
             }

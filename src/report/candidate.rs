@@ -3,8 +3,8 @@
 use super::data::{Curve, Measured, Run};
 use super::reference::{Reference, film_means};
 use crate::backends;
+use crate::baseline::{Baseline, BaselineError};
 use crate::cli::ReportBackend;
-use crate::control::{Control, ControlError};
 use crate::film::Film;
 use crate::output::{Encoding, read_picture};
 use crate::render::{RenderJob, Renderer, SamplerKind};
@@ -23,34 +23,34 @@ pub struct Limits {
 }
 
 /// Who renders a curve.
-pub enum Contender {
+pub enum Candidate {
     /// A backend, whose picture grows.
     Renderer(Box<dyn Renderer>),
-    /// The control, which begins anew for every number of samples.
-    Control(Control),
+    /// The baseline, which begins anew for every number of samples.
+    Baseline(Baseline),
 }
 
-impl Contender {
-    /// Makes it ready. `None` for a control that is not there and was not asked for.
+impl Candidate {
+    /// Makes it ready. `None` for a baseline that is not there and was not asked for.
     ///
     /// # Errors
     /// What is missing.
     pub fn of(backend: &ReportBackend) -> Result<Option<Self>> {
         Ok(match backend {
-            ReportBackend::Renderer(choice) => Some(Contender::Renderer(backends::create(choice)?)),
-            ReportBackend::Control { is_asked_for } => match Control::compile() {
-                Ok(control) => Some(Contender::Control(control)),
+            ReportBackend::Renderer(choice) => Some(Candidate::Renderer(backends::create(choice)?)),
+            ReportBackend::Baseline { is_asked_for } => match Baseline::compile() {
+                Ok(baseline) => Some(Candidate::Baseline(baseline)),
                 Err(error) if *is_asked_for => return Err(error.into()),
                 Err(_) => None,
             },
         })
     }
 
-    /// Which of the samplers it has: the control has one of its own, of independent numbers.
+    /// Which of the samplers it has: the baseline has one of its own, of independent numbers.
     pub fn samplers(&self, asked_for: &[SamplerKind]) -> Vec<SamplerKind> {
         match self {
-            Contender::Renderer(_) => asked_for.to_vec(),
-            Contender::Control(_) => vec![SamplerKind::Independent],
+            Candidate::Renderer(_) => asked_for.to_vec(),
+            Candidate::Baseline(_) => vec![SamplerKind::Independent],
         }
     }
 
@@ -69,21 +69,21 @@ impl Contender {
     ) -> Result<Option<Run>> {
         let begin = Instant::now();
         let (about, prepare_seconds, points) = match self {
-            Contender::Renderer(renderer) => {
+            Candidate::Renderer(renderer) => {
                 let mut growing = Growing::new(renderer.as_mut(), job)?;
                 let prepared = begin.elapsed();
                 growing.warm_up()?;
                 let points = powers_of_two(limits, go_on, |samples| growing.grow(samples, reference))?;
                 (growing.about(), prepared, points)
             }
-            Contender::Control(control) => {
-                let scene = control.write_scene(job, "report")?;
+            Candidate::Baseline(baseline) => {
+                let scene = baseline.write_scene(job, "report")?;
                 let prepared = begin.elapsed();
                 let points = powers_of_two(limits, go_on, |samples| {
-                    let measured = by_control(control, &scene, job, samples, reference, go_on);
+                    let measured = by_baseline(baseline, &scene, job, samples, reference, go_on);
                     measured.context("the C89 program")
                 })?;
-                (format!("C89, {} -O2, 1 thread", control.compiler), prepared, points)
+                (format!("C89, {} -O2, 1 thread", baseline.compiler), prepared, points)
             }
         };
         Ok(points.map(|points| Run {
@@ -180,19 +180,19 @@ impl<'a> Growing<'a> {
     }
 }
 
-fn by_control(
-    control: &Control,
+fn by_baseline(
+    baseline: &Baseline,
     scene: &Path,
     job: &RenderJob,
     samples: u64,
     reference: &Reference,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<Measured>> {
-    let out = control.scratch("report.pfm");
+    let out = baseline.scratch("report.pfm");
     let settings = job.settings();
-    let ran = control.run(Some(scene), settings, samples, settings.seed, Some(&out), &|| !go_on());
+    let ran = baseline.run(Some(scene), settings, samples, settings.seed, Some(&out), &|| !go_on());
     let run = match ran {
-        Err(ControlError::Cancelled) => return Ok(None),
+        Err(BaselineError::Cancelled) => return Ok(None),
         ran => ran?,
     };
     // The encoding is that of whole numbers, of which a PFM has none.

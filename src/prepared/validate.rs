@@ -1,10 +1,10 @@
-//! Whether tables are what kernels rely on: every index in range, ties in order, boxes around what they hold.
+//! Whether a prepared scene is what kernels rely on: every index in range, ties in order, boxes around what they hold.
 
-use super::Tables;
+use super::PreparedScene;
 use super::hierarchy::Hierarchy;
 use crate::kernel::{
-    AnchoredSphere, COUNT_MASK, EYE, Features, LoadShading, Node, ROOTS_MASK, Real, Roots, Row, STACK_SIZE,
-    UNDER_EYE,
+    AnchoredSphere, COUNT_MASK, EYE, Features, LoadShading, Node, ROOTS_MASK, Real, RecordColumns, Roots,
+    STACK_SIZE, UNDER_EYE,
 };
 use crate::render::RenderJob;
 
@@ -19,8 +19,8 @@ macro_rules! ensure {
     };
 }
 
-impl<R: Real> Tables<R> {
-    /// Checks all that kernels take for granted of the tables of `job`. In debug builds every table that is made is
+impl<R: Real> PreparedScene<R> {
+    /// Checks all that kernels take for granted of the prepared scene of `job`. In debug builds every prepared scene is
     /// checked.
     ///
     /// # Errors
@@ -59,8 +59,8 @@ impl<R: Real> Tables<R> {
             "{} opaque spheres are beside the hierarchy",
             self.opaque.len()
         );
-        let rows = self.rows.len();
-        ensure!(rows == count.max(1), "{count} spheres have {rows} shading records");
+        let records = self.records.len();
+        ensure!(records == count.max(1), "{count} spheres have {records} shading records");
         let indices = self.scene_index.len();
         ensure!(indices == count, "{count} spheres have {indices} indices of the scene");
         let of_scene = job.scene().spheres.len();
@@ -112,9 +112,9 @@ impl<R: Real> Tables<R> {
     fn validate_rows(&self) -> Result<(), String> {
         let zero = R::default();
         for (number, (row, [x, y, z, radius2])) in
-            self.rows.iter().zip(self.opaque.iter().chain(&self.two_root)).enumerate()
+            self.records.iter().zip(self.opaque.iter().chain(&self.two_root)).enumerate()
         {
-            validate_row(number, row)?;
+            validate_record(number, row)?;
             ensure!(row.reference() == [*x, *y, *z], "the shading record of sphere {number} is of another");
             ensure!(row.anchoring() == zero, "sphere {number} is in a list and anchored");
             let is_opaque = number < self.opaque.len() || *radius2 < zero;
@@ -124,8 +124,8 @@ impl<R: Real> Tables<R> {
             );
         }
         let first = self.opaque.len() + self.two_root.len();
-        for (number, (row, sphere)) in self.rows[first..].iter().zip(&self.anchored).enumerate() {
-            validate_row(first + number, row)?;
+        for (number, (row, sphere)) in self.records[first..].iter().zip(&self.anchored).enumerate() {
+            validate_record(first + number, row)?;
             let anchoring = if sphere.roots() == Roots::Farther { 2.0 } else { 1.0 };
             ensure!(
                 row.anchoring().to_f64() == anchoring
@@ -138,7 +138,7 @@ impl<R: Real> Tables<R> {
     }
 }
 
-fn validate_row<R: Real>(number: usize, row: &Row<R>) -> Result<(), String> {
+fn validate_record<R: Real>(number: usize, row: &RecordColumns<R>) -> Result<(), String> {
     let zero = R::default();
     ensure!(row.0.iter().all(|x| x.to_f64().is_finite()), "the shading record of sphere {number} is {row:?}");
     ensure!(row.radius() > zero && row.curvature() > zero, "sphere {number} has no radius: {row:?}");
@@ -237,7 +237,7 @@ mod tests {
         Recipe::find(scene).expect("a built-in scene").job().expect("valid")
     }
 
-    /// A job whose tables have anchored spheres beside a hierarchy.
+    /// A job whose prepared scene has anchored spheres beside a hierarchy.
     fn on_the_ground() -> RenderJob {
         let job = job("field:300");
         let mut camera = *job.camera();
@@ -250,9 +250,9 @@ mod tests {
         let stages = Stage::ALL.iter().map(|stage| (stage.id, stage.recipe().job().expect("valid")));
         let scenes = BuiltinScene::ALL.iter().map(|scene| (scene.name, job(scene.name)));
         for (name, job) in stages.chain(scenes).chain([("ground", on_the_ground())]) {
-            assert_eq!(Tables::<f32>::new(&job).validate(&job), Ok(()), "{name}");
-            assert_eq!(Tables::<f64>::new(&job).validate(&job), Ok(()), "{name}");
-            assert_eq!(Tables::<f32>::as_list(&job).validate(&job), Ok(()), "{name}");
+            assert_eq!(PreparedScene::<f32>::new(&job).validate(&job), Ok(()), "{name}");
+            assert_eq!(PreparedScene::<f64>::new(&job).validate(&job), Ok(()), "{name}");
+            assert_eq!(PreparedScene::<f32>::as_list(&job).validate(&job), Ok(()), "{name}");
         }
     }
 
@@ -261,33 +261,33 @@ mod tests {
         let cases = crate::stress::cases().iter().filter(|case| case.recipe.scene.spheres.len() < 5000);
         for (case, form) in cases.flat_map(|case| case.forms().iter().map(move |form| (case, *form))) {
             let job = case.recipe_in(form).job().expect("valid");
-            assert_eq!(Tables::<f32>::new(&job).validate(&job), Ok(()), "{} {form:?}", case.id);
-            assert_eq!(Tables::<f64>::new(&job).validate(&job), Ok(()), "{} {form:?}", case.id);
+            assert_eq!(PreparedScene::<f32>::new(&job).validate(&job), Ok(()), "{} {form:?}", case.id);
+            assert_eq!(PreparedScene::<f64>::new(&job).validate(&job), Ok(()), "{} {form:?}", case.id);
         }
     }
 
     #[test]
     fn tables_that_follow_a_camera_are_valid() {
         let before = job("field:300");
-        let mut tables = Tables::<f32>::new(&before);
+        let mut prepared = PreparedScene::<f32>::new(&before);
         let job = on_the_ground().seen_by(*on_the_ground().camera(), *before.settings()).expect("valid");
         let shared = before.seen_by(*job.camera(), *job.settings()).expect("valid");
-        if tables.follow(&before, &shared) {
-            assert_eq!(tables.validate(&shared), Ok(()));
+        if prepared.follow(&before, &shared) {
+            assert_eq!(prepared.validate(&shared), Ok(()));
         }
         let mut camera = *before.camera();
         camera.look_from.x += 0.25;
         let moved = before.seen_by(camera, *before.settings()).expect("valid");
-        let mut tables = Tables::<f32>::new(&before);
-        assert!(tables.follow(&before, &moved));
-        assert_eq!(tables.validate(&moved), Ok(()));
+        let mut prepared = PreparedScene::<f32>::new(&before);
+        assert!(prepared.follow(&before, &moved));
+        assert_eq!(prepared.validate(&moved), Ok(()));
     }
 
-    /// What is done to tables, and a part of what the check must say.
-    type Damage = (&'static str, fn(&mut Tables<f32>));
+    /// What is done to a prepared scene, and a part of what the check must say.
+    type Damage = (&'static str, fn(&mut PreparedScene<f32>));
 
     fn refuses(job: &RenderJob, damages: &[Damage]) {
-        let whole = Tables::<f32>::new(job);
+        let whole = PreparedScene::<f32>::new(job);
         assert_eq!(whole.validate(job), Ok(()));
         for (expected, damage) in damages {
             let mut damaged = whole.clone();
@@ -302,66 +302,66 @@ mod tests {
         refuses(
             &job("three-spheres"),
             &[
-                ("shading records", |tables| tables.rows.truncate(1)),
-                ("indices of the scene", |tables| tables.scene_index.push(0)),
-                ("listed of a scene of", |tables| tables.scene_index[0] = 77),
-                ("listed twice", |tables| tables.scene_index[1] = tables.scene_index[0]),
-                ("features are", |tables| tables.features.two_root = false),
-                ("features are", |tables| tables.features.opaque_count += 1),
-                ("samples", |tables| tables.block_limit = 3),
-                ("order of the scene", |tables| tables.groups.two_root.reverse()),
-                ("but should be", |tables| tables.scene_index.swap(0, 1)),
-                ("squared radius", |tables| tables.two_root[0][3] = -0.25),
-                ("squared radius", |tables| tables.two_root[0][3] = f32::NAN),
-                ("is of another", |tables| tables.rows.swap(0, 1)),
-                ("in a list and anchored", |tables| tables.rows[0].0[15] = 1.0),
-                ("one root and a refraction", |tables| tables.rows[0].0[9..11].fill(1.5)),
-                ("is glass and is not", |tables| tables.rows[0].0[10] = 1.5),
-                ("has no radius", |tables| tables.rows[0].0[8] = 0.0),
-                ("unit vector's part", |tables| tables.rows[0].0[7] = 1.5),
-                ("shading record of sphere", |tables| tables.rows[0].0[4] = f32::NAN),
+                ("shading records", |prepared| prepared.records.truncate(1)),
+                ("indices of the scene", |prepared| prepared.scene_index.push(0)),
+                ("listed of a scene of", |prepared| prepared.scene_index[0] = 77),
+                ("listed twice", |prepared| prepared.scene_index[1] = prepared.scene_index[0]),
+                ("features are", |prepared| prepared.features.two_root = false),
+                ("features are", |prepared| prepared.features.opaque_count += 1),
+                ("samples", |prepared| prepared.block_limit = 3),
+                ("order of the scene", |prepared| prepared.groups.two_root.reverse()),
+                ("but should be", |prepared| prepared.scene_index.swap(0, 1)),
+                ("squared radius", |prepared| prepared.two_root[0][3] = -0.25),
+                ("squared radius", |prepared| prepared.two_root[0][3] = f32::NAN),
+                ("is of another", |prepared| prepared.records.swap(0, 1)),
+                ("in a list and anchored", |prepared| prepared.records[0].0[15] = 1.0),
+                ("one root and a refraction", |prepared| prepared.records[0].0[9..11].fill(1.5)),
+                ("is glass and is not", |prepared| prepared.records[0].0[10] = 1.5),
+                ("has no radius", |prepared| prepared.records[0].0[8] = 0.0),
+                ("unit vector's part", |prepared| prepared.records[0].0[7] = 1.5),
+                ("shading record of sphere", |prepared| prepared.records[0].0[4] = f32::NAN),
             ],
         );
     }
 
     #[test]
     fn a_damaged_hierarchy_is_refused() {
-        fn tree(tables: &mut Tables<f32>) -> &mut Hierarchy<f32> {
-            tables.hierarchy.as_mut().expect("a hierarchy")
+        fn tree(prepared: &mut PreparedScene<f32>) -> &mut Hierarchy<f32> {
+            prepared.hierarchy.as_mut().expect("a hierarchy")
         }
-        fn leaf(tables: &mut Tables<f32>) -> &mut Node<f32> {
-            let nodes = &mut tree(tables).nodes;
+        fn leaf(prepared: &mut PreparedScene<f32>) -> &mut Node<f32> {
+            let nodes = &mut tree(prepared).nodes;
             nodes.iter_mut().rfind(|node| node.count & COUNT_MASK > 0).expect("a leaf")
         }
         refuses(
             &job("field:300"),
             &[
-                ("beside the hierarchy", |tables| {
-                    let sphere = tables.two_root.remove(0);
-                    tables.opaque.push(sphere);
+                ("beside the hierarchy", |prepared| {
+                    let sphere = prepared.two_root.remove(0);
+                    prepared.opaque.push(sphere);
                 }),
-                ("ranks", |tables| tree(tables).ranks.truncate(1)),
-                ("once each", |tables| tree(tables).ranks[0] = tree(tables).ranks[1]),
-                ("but should be", |tables| tree(tables).ranks.swap(0, 1)),
-                ("have one root", |tables| tables.two_root[0][3] *= -1.0),
-                ("two parents", |tables| tree(tables).nodes[0].first = 0),
-                ("is named, but there are", |tables| tree(tables).nodes[0].first = 1 << 20),
-                ("two parents", |tables| {
-                    let nodes = &mut tree(tables).nodes;
+                ("ranks", |prepared| tree(prepared).ranks.truncate(1)),
+                ("once each", |prepared| tree(prepared).ranks[0] = tree(prepared).ranks[1]),
+                ("but should be", |prepared| tree(prepared).ranks.swap(0, 1)),
+                ("have one root", |prepared| prepared.two_root[0][3] *= -1.0),
+                ("two parents", |prepared| tree(prepared).nodes[0].first = 0),
+                ("is named, but there are", |prepared| tree(prepared).nodes[0].first = 1 << 20),
+                ("two parents", |prepared| {
+                    let nodes = &mut tree(prepared).nodes;
                     let root = nodes[0].first as usize;
                     (nodes[root], nodes[root].count) = (nodes[root + 1], nodes[root + 1].count);
                     let whole = nodes[0];
                     (nodes[root].low, nodes[root].high) = (whole.low, whole.high);
                 }),
-                ("reaches out of", |tables| tree(tables).nodes[0].low[0] += 0.5),
-                ("reaches out of the leaf", |tables| {
-                    let leaf = leaf(tables);
+                ("reaches out of", |prepared| tree(prepared).nodes[0].low[0] += 0.5),
+                ("reaches out of the leaf", |prepared| {
+                    let leaf = leaf(prepared);
                     leaf.high[1] = leaf.low[1];
                 }),
-                ("reaches farther than", |tables| tree(tables).extent = 1.0),
-                ("names the spheres", |tables| leaf(tables).count += 1000),
-                ("no axis", |tables| tree(tables).nodes[0].count |= 3 << 30),
-                ("is in ", |tables| leaf(tables).count -= 1),
+                ("reaches farther than", |prepared| tree(prepared).extent = 1.0),
+                ("names the spheres", |prepared| leaf(prepared).count += 1000),
+                ("no axis", |prepared| tree(prepared).nodes[0].count |= 3 << 30),
+                ("is in ", |prepared| leaf(prepared).count -= 1),
             ],
         );
     }
@@ -371,12 +371,12 @@ mod tests {
         refuses(
             &on_the_ground(),
             &[
-                ("flags", |tables| tables.anchored[0].flags |= 8),
-                ("length^2", |tables| tables.anchored[0].inward = [0.5, 0.5, 0.5]),
-                ("no curvature", |tables| tables.anchored[0].curvature = 0.0),
-                ("is of another", |tables| tables.anchored[0].anchor[0] += 1.0),
-                ("features are", |tables| tables.anchored[0].flags |= UNDER_EYE),
-                ("spheres have", |tables| tables.anchored.clear()),
+                ("flags", |prepared| prepared.anchored[0].flags |= 8),
+                ("length^2", |prepared| prepared.anchored[0].inward = [0.5, 0.5, 0.5]),
+                ("no curvature", |prepared| prepared.anchored[0].curvature = 0.0),
+                ("is of another", |prepared| prepared.anchored[0].anchor[0] += 1.0),
+                ("features are", |prepared| prepared.anchored[0].flags |= UNDER_EYE),
+                ("spheres have", |prepared| prepared.anchored.clear()),
             ],
         );
     }

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// A backend that is to take over.
-pub(super) struct Upcoming {
+pub(super) struct Pending {
     pub choice: BackendChoice,
     /// Comes once.
     pub outcome: Receiver<Result<Ready, String>>,
@@ -21,7 +21,7 @@ pub(super) struct Ready {
     pub took: Duration,
 }
 
-impl Upcoming {
+impl Pending {
     /// Starts to prepare `job`; `None` if the system gives no thread.
     pub fn start(
         choice: BackendChoice,
@@ -43,6 +43,6 @@ impl Upcoming {
             let _ = sender.send(ready);
         };
         std::thread::Builder::new().name("prepare".to_owned()).spawn(prepare).ok()?;
-        Some(Upcoming { choice, outcome })
+        Some(Pending { choice, outcome })
     }
 }

@@ -1,0 +1,53 @@
+//! A job's prepared scene as packets read them: what every lane needs, spread out in memory, so that an instruction takes it
+//! from there.
+
+use super::lanes::{MAX_LANES, Wide};
+use super::sphere::BroadcastSphere;
+use crate::kernel::{CameraTable, RECORD_COLUMNS, Real};
+use crate::prepared::PreparedScene;
+
+/// PreparedScene, and the parts of them that are read in every step.
+#[derive(Clone, Debug)]
+pub struct BroadcastScene<R> {
+    /// All of them.
+    pub prepared: PreparedScene<R>,
+    /// `PreparedScene::opaque`.
+    pub opaque: Vec<BroadcastSphere<R>>,
+    /// `PreparedScene::two_root`, unless there is a hierarchy over them.
+    pub two_root: Vec<BroadcastSphere<R>>,
+    /// `PreparedScene::camera`.
+    pub camera: CameraTable<Wide<R>>,
+    /// `PreparedScene::sky_middle`.
+    pub sky_middle: [Wide<R>; 3],
+    /// `PreparedScene::sky_slope`.
+    pub sky_slope: [Wide<R>; 3],
+    /// The first of `PreparedScene::records` by column, for kernels that hold a column in a register.
+    pub columns: Box<[Wide<R>; RECORD_COLUMNS]>,
+}
+
+impl<R: Real> BroadcastScene<R> {
+    /// Spreads what is to be spread.
+    pub fn new(prepared: PreparedScene<R>) -> Self {
+        let numbered = |spheres: &[[R; 4]], first: usize| {
+            let broadcast =
+                |(index, sphere): (usize, &[R; 4])| BroadcastSphere::new(*sphere, (first + index) as u32);
+            spheres.iter().enumerate().map(broadcast).collect()
+        };
+        let listed = if prepared.hierarchy.is_some() { &[][..] } else { &prepared.two_root };
+        let mut columns = Box::new([Wide::default(); RECORD_COLUMNS]);
+        for (index, row) in prepared.records.iter().take(MAX_LANES).enumerate() {
+            for (column, number) in columns.iter_mut().zip(row.0) {
+                column.0[index] = number;
+            }
+        }
+        BroadcastScene {
+            opaque: numbered(&prepared.opaque, 0),
+            two_root: numbered(listed, prepared.opaque.len()),
+            camera: prepared.camera.map(Wide::splat),
+            sky_middle: prepared.sky_middle.map(Wide::splat),
+            sky_slope: prepared.sky_slope.map(Wide::splat),
+            columns,
+            prepared,
+        }
+    }
+}
