@@ -93,6 +93,19 @@ mod tests {
     }
 
     #[test]
+    fn known_values_have_known_colours() {
+        // A third of the way up is the third of seven colours, halfway the fourth.
+        for (scale, third, middle) in [
+            (HeatScale::ERROR, 10_f64.powf(-8.0 / 3.0), 1e-2),
+            (HeatScale::RAYS, 32_f64.cbrt(), 32_f64.sqrt()),
+            (HeatScale::OCCUPANCY, 1.0 / 3.0, 0.5),
+        ] {
+            assert_eq!(scale.colour(third), [101, 21, 110], "{}", scale.title);
+            assert_eq!(scale.colour(middle), [159, 42, 99], "{}", scale.title);
+        }
+    }
+
+    #[test]
     fn marks_are_evenly_spaced_from_end_to_end() {
         for scale in SCALES {
             let last = scale.marks.len() - 1;

@@ -343,6 +343,39 @@ fn a_resumed_film_equals_an_uninterrupted_one() {
 }
 
 #[test]
+fn seconds_add_up_over_runs() {
+    use weekender::film::{checkpoint, key};
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    let seconds = |name: &str| -> Option<f64> {
+        let description = checkpoint::load(&at(name)).unwrap().description;
+        description.get(key::SECONDS).map(|seconds| seconds.parse().unwrap())
+    };
+    render(directory.path(), &["--samples", "4", "--out", "film.exr"]);
+    let first = seconds("film.exr").unwrap();
+    assert!(first > 0.0 && first < 500.0, "{first}");
+    // An earlier run that took long.
+    let mut kept = checkpoint::load(&at("film.exr")).unwrap();
+    kept.description.set(key::SECONDS, 1000.0);
+    checkpoint::save(&at("film.exr"), &kept.film, &kept.description).unwrap();
+    let resume = ["--resume", "film.exr", "--samples", "64"];
+    render(
+        directory.path(),
+        &[&resume[..], &["--checkpoint", "more.exr", "--out", "more.png", "--json", "more.json"]].concat(),
+    );
+    let both = seconds("more.exr").unwrap();
+    let json: Value = serde_json::from_slice(&std::fs::read(at("more.json")).unwrap()).unwrap();
+    let of_run = json["trace_seconds"].as_f64().unwrap();
+    assert!(of_run > 1e-5 && (both - 1000.0 - of_run).abs() < 1e-6, "{both} of 1000 and {of_run}");
+    // Where the first run does not say what it took, nobody knows the sum.
+    let mut silent = weekender::film::Description::new(kept.description.recipe());
+    silent.set(key::SAMPLES, 4);
+    checkpoint::save(&at("film.exr"), &kept.film, &silent).unwrap();
+    render(directory.path(), &[&resume[..], &["--out", "unknown.exr"]].concat());
+    assert_eq!(seconds("unknown.exr"), None);
+}
+
+#[test]
 fn films_of_other_pictures_are_not_resumed() {
     let directory = temp();
     render(directory.path(), &["--samples", "2", "--checkpoint", "film.exr"]);
@@ -427,6 +460,19 @@ fn json_has_its_keys() {
     ] {
         assert!(json[key].is_number(), "{key}: {}", json[key]);
     }
+    let number = |key: &str| json[key].as_f64().unwrap();
+    let parts = ["prepare_seconds", "hierarchy_seconds", "trace_seconds", "write_seconds"].map(number);
+    assert!(
+        number("write_seconds") > 0.0 && number("total_seconds") > parts.iter().sum::<f64>() - 1e-6,
+        "{json}"
+    );
+    for (speed, count) in [("paths_per_second", "paths"), ("rays_per_second", "rays")] {
+        assert!(
+            (number(speed) * number("trace_seconds") / number(count) - 1.0).abs() < 1e-9,
+            "{speed}: {json}"
+        );
+    }
+    assert!(number("rays") > number("paths") && number("paths") == 32.0 * 18.0 * 16.0, "{json}");
     let history = json["history"].as_array().unwrap();
     assert_eq!(history.last().unwrap()["samples_per_pixel"], 16);
 

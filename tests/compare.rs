@@ -98,6 +98,22 @@ fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
     assert!(text.contains("float") && text.contains("verdict"), "{text}");
 }
 
+#[test]
+fn a_picture_is_read_as_its_recipe_has_it_encoded() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    // Linear bytes, and bytes whose upper half alone is linear: the recipe tells, whatever --encoding says of others.
+    for stage in ["diffuse", "gamut"] {
+        render(at, "film.exr", &["--stage", stage, "--samples", "64"]);
+        render(at, "picture.png", &["--stage", stage, "--samples", "64"]);
+        for encoding in ["linear", "gamma2", "srgb"] {
+            let (code, found) = json(&["film.exr", "picture.png", "--encoding", encoding], at);
+            assert_eq!(code, 0, "{stage}, {encoding}: {found}");
+            assert!(found["rms"].as_f64().unwrap() < 0.01, "{stage}, {encoding}: {found}");
+        }
+    }
+}
+
 /// A PFM of 64x16 pixels, of which the first 60 columns are `value`.
 fn pfm(at: &Path, name: &str, value: f32) {
     let pixel = |i: usize| if i % 64 < 60 { value } else { 0.25 + i as f32 / 4096.0 };

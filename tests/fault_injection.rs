@@ -333,6 +333,55 @@ fn a_signal_that_arrives_twice_is_one() {
     assert_eq!(names(at), ["g.exr", "g.png"]);
 }
 
+#[test]
+fn a_second_signal_ends_the_program_at_once() {
+    // One pass of this takes far longer than the drill.
+    let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];
+    let flags = ["--samples", "1000", "--out", "g.png", "--checkpoint", "g.exr", "--progress", "on"];
+    for milliseconds in [800, 3000, 10_000] {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let mut child = weekender(at, &[&picture[..], &flags].concat()).spawn().unwrap();
+        let mut stderr = BufReader::new(child.stderr.take().unwrap());
+        stderr.read_line(&mut String::new()).unwrap();
+        sleep(Duration::from_millis(milliseconds));
+        signal(&child, "INT");
+        sleep(Duration::from_millis(700));
+        if child.try_wait().unwrap().is_some() && names(at).is_empty() {
+            // It came before the first pass, which a busy machine may begin late.
+            continue;
+        }
+        signal(&child, "INT");
+        let status = wait(&mut child);
+        let mut told = String::new();
+        stderr.read_to_string(&mut told).unwrap();
+        assert_eq!(status.code(), Some(130), "{told}");
+        assert!(told.contains("ended at once"), "{told}");
+        assert!(names(at).is_empty(), "nothing is written: {:?}", names(at));
+        return;
+    }
+    panic!("no pass was under way when the first signal came");
+}
+
+#[test]
+fn a_signal_ends_the_gallery_of_stages_with_the_present_one() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let flags = ["--stage", "all", "--samples", "4294967296", "--estimate-error", "off", "--out", "gallery"];
+    let mut child = batch(at, "on", &[&flags[..], &["--json", "figures.json"]].concat()).spawn().unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    stderr.read_line(&mut String::new()).unwrap();
+    sleep(Duration::from_millis(300));
+    signal(&child, "INT");
+    assert_eq!(wait(&mut child).code(), Some(130));
+    let pictures = names(&at.join("gallery"));
+    assert!(pictures.len() <= 1, "one stage at most: {pictures:?}");
+    let figures: serde_json::Value =
+        serde_json::from_slice(&fs::read(at.join("figures.json")).unwrap()).unwrap();
+    assert_eq!(figures["stages"].as_array().map(Vec::len), Some(1), "{figures}");
+    assert_eq!(figures["stages"][0]["ended_by"], "stopped");
+}
+
 /// Runs the program under limits of the shell.
 fn limited(at: &Path, limits: &str, arguments: &[&str]) -> Output {
     let mut command = Command::new("sh");

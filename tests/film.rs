@@ -9,9 +9,9 @@ use std::ops::Range;
 use std::path::Path;
 use weekender::files::InputError;
 use weekender::film::{
-    CheckpointError, Description, FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, FilmError, MergeError, PixelSum,
-    RADIANCE_LIMIT, SAMPLE_LIMIT, SampleRanges, checkpoint, fixed_point, key, merge_files, same_recipe_text,
-    to_byte,
+    CheckpointError, Description, ErrorEstimate, FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, FilmError,
+    MergeError, PixelSum, RADIANCE_LIMIT, SAMPLE_LIMIT, SampleRanges, checkpoint, fixed_point, key,
+    merge_files, same_recipe_text, to_byte,
 };
 use weekender::output::decode_description;
 use weekender::stages::Transfer;
@@ -79,6 +79,22 @@ fn the_order_of_samples_does_not_matter() {
     let mut merged = noisy_film(5, 3, 2, &[3..90]);
     merged.merge(&noisy_film(5, 3, 2, &[90..128, 0..3])).unwrap();
     assert_eq!(forward, merged);
+}
+
+#[test]
+fn merged_films_have_rejected_the_samples_of_both() {
+    let mut film = Film::new(1, 1, 2);
+    film.record(0..4, 3).unwrap();
+    let mut other = Film::new(1, 1, 2);
+    other.record(4..6, 2).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let paths = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
+    for (path, film) in paths.iter().zip([&film, &other]) {
+        checkpoint::save(path, film, &description()).unwrap();
+    }
+    assert_eq!(merge_files(&paths, same_recipe_text).unwrap().film.rejected(), 5);
+    film.merge(&other).unwrap();
+    assert_eq!((film.rejected(), film.sample_count()), (5, 6));
 }
 
 #[test]
@@ -212,6 +228,38 @@ fn the_estimate_knows_how_far_off_it_may_be() {
     let mut same = Film::new(4, 3, 2);
     same.record(0..2, 0).unwrap();
     assert_eq!(same.error().unwrap().rmse_deviation, 0.0);
+}
+
+#[test]
+fn an_uncertainty_is_a_share_of_the_error() {
+    let estimate = ErrorEstimate { rmse: 0.1, rmse_deviation: 0.002, rel_mse: 0.0 };
+    assert_eq!(estimate.uncertainty(), "± 2.0 %");
+    assert!((estimate.pixels_in_effect() - 625.0).abs() < 1e-6, "{}", estimate.pixels_in_effect());
+    let none = ErrorEstimate { rmse: 0.0, rmse_deviation: 0.0, rel_mse: 0.0 };
+    assert_eq!(none.uncertainty(), "± 0.1 %");
+}
+
+/// A film of two samples whose first `noisy` pixels have all the noise.
+fn film_with_noise_in(pixels: u32, noisy: usize) -> Film {
+    let mut film = Film::new(pixels, 1, 2);
+    for pixel in 0..pixels as usize {
+        let by = if pixel < noisy { 0.5 } else { 0.0 };
+        add(&mut film, pixel, 0, [0.5 + by; 3]);
+        add(&mut film, pixel, 1, [0.5 - by; 3]);
+    }
+    film.record(0..2, 0).unwrap();
+    film
+}
+
+#[test]
+fn an_estimate_of_few_pixels_among_many_is_in_doubt() {
+    for (pixels, noisy, is_doubted) in
+        [(1000, 50, true), (1000, 1000, false), (1000, 300, false), (150, 50, false), (150, 5, true)]
+    {
+        let film = film_with_noise_in(pixels, noisy);
+        let doubt = film.doubt(&film.error().unwrap());
+        assert_eq!(doubt.is_some(), is_doubted, "{noisy} of {pixels}: {doubt:?}");
+    }
 }
 
 #[test]
@@ -550,6 +598,7 @@ fn merged_files_are_the_film_of_one_run() {
     assert!(error.contains("stranger.exr") && error.contains("`width = 7`") && error.contains("`width = 8`"));
     let trusting = merge_files(&[&paths[0], &stranger], |_, _| Ok(())).unwrap();
     assert_eq!(trusting.film.sample_count(), 5);
+    assert_eq!(trusting.description.get(key::SAMPLES), Some("5"), "with a gap");
     checkpoint::save(&stranger, &noisy_film(3, 5, 2, &[50..51]), &description()).unwrap();
     let error = merge_files(&[&paths[0], &stranger], same_recipe_text).unwrap_err();
     assert!(matches!(error, MergeError::Film { reason: FilmError::Size { .. }, .. }));

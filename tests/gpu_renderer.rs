@@ -132,6 +132,43 @@ fn specialised_is_general() {
     }
 }
 
+/// Where nothing but the fuzz of metals takes the random direction.
+#[test]
+fn fuzzy_metal_alone_is_the_cpus() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let job = |fuzz: f64| {
+        let mut scene = Scene::default();
+        let metal = scene.add_material("metal", Material::Metal { albedo: DVec3::new(0.9, 0.7, 0.5), fuzz });
+        for x in [-1.0, 0.0, 1.0] {
+            scene.add_sphere(DVec3::new(x, 0.0, -1.0), 0.5, metal);
+        }
+        job_of(&scene, Camera::default(), [64, 36], 20, SamplerKind::Sobol, false)
+    };
+    for fuzz in [0.4, 1.0] {
+        let job = job(fuzz);
+        let (a, b) = (rendered(&mut gpu, &job, 1), rendered(&mut cpu(), &job, 1));
+        assert!(!gpu.report().features.contains("lambertian"), "{}", gpu.report().features);
+        let parted = |a: &Film, b: &Film| {
+            let pairs = a.means().into_iter().zip(b.means());
+            pairs.filter(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3)).count()
+        };
+        assert!(parted(&a, &b) <= 3, "{fuzz}: {}", parted(&a, &b));
+        let polished = rendered(&mut cpu(), &fuzzless(&job), 1);
+        assert!(parted(&b, &polished) > 200, "{fuzz} is seen: {}", parted(&b, &polished));
+    }
+}
+
+/// The same job of polished metals.
+fn fuzzless(job: &RenderJob) -> RenderJob {
+    let mut scene = job.scene().clone();
+    for material in &mut scene.materials {
+        if let Material::Metal { fuzz, .. } = &mut material.material {
+            *fuzz = 0.0;
+        }
+    }
+    RenderJob::new(scene, *job.camera(), *job.settings(), *job.rules()).unwrap()
+}
+
 #[test]
 fn hierarchies_agree() {
     let options = |hierarchy| GpuOptions { hierarchy, ..GpuOptions::default() };

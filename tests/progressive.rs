@@ -7,7 +7,9 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use weekender::backends::{BackendChoice, Together};
 use weekender::film::{Film, PixelSum};
-use weekender::progressive::{EndReason, Factory, Phase, Plan, Progressive, Stop, Work};
+use weekender::progressive::{
+    EndReason, Factory, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, Stop, Work,
+};
 use weekender::recipe::Recipe;
 use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
@@ -343,6 +345,101 @@ fn the_noise_target_ends_it() {
     assert_eq!(status.error, progressive.finish().unwrap().error());
 }
 
+/// A target that the first samples meet: their estimate is too rough to be trusted.
+#[test]
+fn a_noise_target_is_not_looked_at_before_its_first_samples() {
+    let progressive =
+        started(CPU, Plan { stop: Stop { noise: Some(1e9), ..Stop::default() }, ..Plan::endless() });
+    let status = progressive.wait_until_over();
+    assert_eq!(status.phase, Phase::Done(EndReason::NoiseTarget));
+    assert_eq!((status.samples_per_pixel, NOISE_TARGET_FIRST_SAMPLES), (16, 16));
+}
+
+/// Keeps samples to itself until they are collected, as a graphics device does.
+struct Holding {
+    fake: Fake,
+    held: Vec<Range<u64>>,
+    traced: Arc<Mutex<u64>>,
+}
+
+impl Renderer for Holding {
+    fn info(&self) -> BackendInfo {
+        self.fake.info()
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        self.held.clear();
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.fake.accumulate(job, range, film, cancel)
+    }
+
+    fn advance(
+        &mut self,
+        _: &RenderJob,
+        range: Range<u64>,
+        _: &mut Film,
+        _: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        std::thread::sleep(PAUSE);
+        *self.traced.lock().unwrap() += range.end - range.start;
+        self.held.push(range);
+        Ok(Stats::default())
+    }
+
+    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
+        let mut stats = Stats::default();
+        for range in std::mem::take(&mut self.held) {
+            stats.add(&self.fake.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
+        }
+        Ok(stats)
+    }
+}
+
+#[test]
+fn a_pause_brings_home_what_the_device_holds() {
+    let traced = Arc::new(Mutex::new(0));
+    let count = Arc::clone(&traced);
+    let progressive = Progressive::with_factory(Box::new(move |choice| {
+        let fake = Fake { name: choice.name(), pause: Duration::ZERO, fails_at: None, panics_at: None };
+        Ok(Box::new(Holding { fake, held: Vec::new(), traced: Arc::clone(&count) }))
+    }));
+    let mut progressive = progressive.unwrap();
+    // Passes stay short enough for the samples to be added up while they are waited for.
+    let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
+    progressive.start(Work::new(job(2), CPU, plan));
+    for more in [64, 512] {
+        let begin = std::time::Instant::now();
+        let first = *traced.lock().unwrap();
+        while *traced.lock().unwrap() < first + more {
+            assert!(begin.elapsed() < PATIENCE, "stuck: {:?}", progressive.status());
+            std::thread::sleep(PAUSE);
+        }
+        progressive.pause();
+        while progressive.wait(Duration::from_millis(20)).phase != Phase::Paused {
+            assert!(begin.elapsed() < PATIENCE, "no pause: {:?}", progressive.status());
+        }
+        // All that was traced is in the film, and is told.
+        let held = *traced.lock().unwrap();
+        let status = progressive.status();
+        assert_eq!((status.samples_per_pixel, status.stats.paths), (held, 4 * held));
+        progressive.resume();
+    }
+    progressive.stop();
+    let status = progressive.wait_until_over();
+    let held = *traced.lock().unwrap();
+    assert_eq!(status.samples_per_pixel, held);
+    assert_eq!(progressive.finish(), Some(expected(held)));
+}
+
 #[test]
 fn a_stop_keeps_the_film_and_can_be_taken_back() {
     let progressive = started(CPU, Plan::samples(2000));
@@ -356,6 +453,7 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
     }
     progressive.set_plan(Plan::samples(2100));
     wait_for(&progressive, 2100);
+    assert_eq!(progressive.status().planned_samples_per_pixel, 2100);
     assert_eq!(progressive.finish(), Some(expected(2100)));
 }
 
@@ -385,6 +483,10 @@ fn a_film_goes_on_where_it_has_gaps() {
     progressive.start(Work { film: Some(film), ..Work::new(job(2), CPU, Plan::samples(100)) });
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
+    // The history is that of this render: what the film held before has no seconds.
+    let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
+    assert!(history.first().is_some_and(|first| (32..40).contains(first)), "{history:?}");
+    assert!(status.history.iter().all(|point| point.trace_seconds > 0.0), "{:?}", status.history);
     assert_eq!(progressive.finish(), Some(expected(100)));
 }
 

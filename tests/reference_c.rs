@@ -11,6 +11,9 @@ use weekender::film::Film;
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
+use weekender::scene::Camera;
+use weekender::scene::builtin::metals;
+use weekender::stages::Rules;
 use weekender::statistics::blocks::{BlockTest, Differences, Noise};
 
 const WIDTH: usize = 128;
@@ -91,11 +94,10 @@ fn blocks([theirs, ours]: &[Halves; 2], samples: u64) -> BlockTest {
     })
 }
 
-fn check(scene: &str, samples: u64) {
-    let job = job(scene);
+fn check(name: &str, job: &RenderJob, samples: u64) {
     let baseline = Baseline::compile().expect("a C compiler is needed: install one or name it in CC");
     let directory = tempfile::tempdir().unwrap();
-    let text = baseline.write_scene(&job, "scene").unwrap();
+    let text = baseline.write_scene(job, "scene").unwrap();
     let out = directory.path().join("picture.pfm");
     let theirs: Halves = [1, 2].map(|seed| {
         let run =
@@ -107,25 +109,36 @@ fn check(scene: &str, samples: u64) {
     });
     let mut film = job.new_film();
     let mut renderer = CpuRenderer::new(CpuOptions::default()).unwrap();
-    renderer.accumulate(&job, 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
+    renderer.accumulate(job, 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
 
     let test = blocks(&[theirs, of_film(&film)], samples);
     let (excess, largest) = (test.largest_excess(), test.largest);
     println!(
-        "{scene}: sum of z^2 {excess:.2} deviations above, largest {largest:.2} of {:.2}",
+        "{name}: sum of z^2 {excess:.2} deviations above, largest {largest:.2} of {:.2}",
         test.largest_limit
     );
-    assert!(test.is_within() && !test.is_too_near(), "{scene}: {excess} deviations, largest {largest}");
+    assert!(test.is_within() && !test.is_too_near(), "{name}: {excess} deviations, largest {largest}");
 }
 
 #[test]
 fn three_spheres_are_the_same_picture() {
-    check("three-spheres", 512);
+    check("three-spheres", &job("three-spheres"), 512);
 }
 
 #[test]
 fn the_book_is_the_same_picture() {
-    check("book", 64);
+    check("book", &job("book"), 64);
+}
+
+/// What fuzz means between 0 and 1, where a wrong power of it would not show at either end.
+#[test]
+fn fuzzy_metals_are_the_same_picture() {
+    let of_book = job("three-spheres");
+    for fuzz in [0.25, 0.6] {
+        let job =
+            RenderJob::new(metals(fuzz, fuzz), Camera::BOOK, *of_book.settings(), Rules::FINISHED).unwrap();
+        check(&format!("metals of fuzz {fuzz}"), &job, 128);
+    }
 }
 
 #[test]

@@ -376,7 +376,24 @@ mod tests {
     }
 
     #[test]
-    fn help_says_something() {
-        assert!(Command::all().into_iter().all(|command| command.help().len() > 8));
+    fn help_says_more_than_the_name() {
+        let words = |text: &str| -> HashSet<String> {
+            text.split(|c: char| !c.is_alphanumeric())
+                .filter(|word| !word.is_empty())
+                .map(str::to_lowercase)
+                .collect()
+        };
+        for command in Command::all() {
+            let (name, help) = (command.name(), command.help());
+            let new = words(help).difference(&words(&name)).count();
+            assert!(new >= 2, "{name:?} is explained by {help:?}");
+            assert!(help.starts_with(char::is_uppercase) || help.starts_with(char::is_numeric), "{help:?}");
+            // Commands of one kind, such as themes, may share a text.
+            let is_other = |other: &Command| {
+                std::mem::discriminant(other) != std::mem::discriminant(&command) && other.help() == help
+            };
+            let other = Command::all().into_iter().find(is_other).map(|other| other.name());
+            assert_eq!(other, None, "explained as {name:?} is");
+        }
     }
 }

@@ -238,3 +238,45 @@ fn coloured(layer: Layer, image: &LayerImage, transfer: Transfer) -> Vec<u8> {
     }
     rgb8
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+
+    #[test]
+    fn a_coarse_layer_is_the_picture_made_smaller() {
+        // The divisor is the least with which the coarse layer has at most 20,000 pixels.
+        for ([width, height], divisor, size) in
+            [([640, 360], 4, [160, 90]), ([203, 101], 2, [102, 51]), ([160, 90], 1, [160, 90])]
+        {
+            let mut recipe = Recipe::builtin("three-spheres").unwrap();
+            (recipe.settings.width, recipe.settings.height) = (width, height);
+            let order = Order {
+                number: 1,
+                layer: Layer::Normals,
+                job: recipe.job().unwrap(),
+                is_coarse: true,
+                cancel: Arc::default(),
+            };
+            let (slot, context) = (Slot::default(), Context::default());
+            order.trace(&mut None, &slot, &context).unwrap();
+            let Traced { image, rgb8, divisor: found, .. } = slot.lock().unwrap().take().unwrap();
+            assert_eq!((found, [image.width, image.height]), (divisor, size), "{width}x{height}");
+            let texture = Texture::new(size, &rgb8, None);
+            let [column, row] = size.map(|length| length / 2);
+            let middle = image.mean([column, row]);
+            // The ball in the middle faces the eye; the sky above it does not look like it.
+            assert!(middle[2] > 0.9 && image.mean([column, 0])[2] > 0.99, "{middle:?}");
+            let shown = ShownLayer { texture, divisor: found, layer: Layer::Normals, image };
+            let mut layers = Layers::default();
+            layers.shown = Some(shown);
+            for [x, y] in [[column, row], [column, 0], [size[0] - 1, size[1] - 1]] {
+                let expected = layers.shown.as_ref().unwrap().image.mean([x, y]);
+                let pixel = [x * divisor, y * divisor];
+                assert_eq!(layers.value_at(pixel), Some((Layer::Normals, expected)), "{pixel:?}");
+            }
+            assert_eq!(layers.samples(Layer::Normals), u64::from(divisor == 1));
+        }
+    }
+}

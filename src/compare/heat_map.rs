@@ -45,3 +45,40 @@ pub(super) fn write(
     }
     image.write_to(writer, ImageFormat::Png).map_err(io::Error::other)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Film;
+    use crate::statistics::blocks::{Differences, Noise};
+    use std::io::Cursor;
+
+    #[test]
+    fn a_known_difference_has_its_colour() {
+        let side = |pixels: Vec<[f64; 3]>| {
+            let film = Film::new(48, 8, 1);
+            Side { film: None, pixels, ..Side::of_film(String::new(), String::new(), film) }
+        };
+        let black = vec![[0.0; 3]; 48 * 8];
+        let mut other = black.clone();
+        // In blocks of 8 columns: those that are farthest off are framed, and their inside is looked at.
+        other[3 * 48 + 4] = [0.01, -0.01, 0.01];
+        other[3 * 48 + 12] = [0.0, 0.0, 0.01 * 3.0_f64.sqrt()];
+        other[3 * 48 + 20] = [1e-4; 3];
+        let noise = Noise::Spread;
+        let test = BlockTest::of(&Differences {
+            width: 48,
+            values: &other,
+            noise,
+            steps: None,
+            tolerance: 0.0,
+            rare: 0.0,
+        });
+        let mut png = Cursor::new(Vec::new());
+        write(&side(black), &side(other.clone()), &test, &mut png).unwrap();
+        let map = image::load_from_memory(png.get_ref()).unwrap().to_rgb8();
+        let colours = [4, 12, 20, 28].map(|x| map.get_pixel(x, 3).0);
+        // The middle of the scale, twice, and its dark end.
+        assert_eq!(colours, [[159, 42, 99], [159, 42, 99], [0, 0, 4], [0, 0, 4]]);
+    }
+}

@@ -36,7 +36,7 @@ pub struct PairedSamples {
     pub parted: u64,
     /// Root of the mean square difference of the others.
     pub rms: f64,
-    /// Mean difference of the others.
+    /// Mean difference of the others, second less first.
     pub bias: f64,
 }
 
@@ -61,7 +61,7 @@ impl PairedSums {
     pub fn add(&mut self, a: &Film, b: &Film) {
         for pixel in 0..a.width() as usize * a.height() as usize {
             let (a, b) = (a.pixel_sum(pixel).radiance(), b.pixel_sum(pixel).radiance());
-            let difference = [0, 1, 2].map(|channel| a[channel] - b[channel]);
+            let difference = [0, 1, 2].map(|channel| b[channel] - a[channel]);
             self.count += 1;
             if difference.iter().any(|x| x.abs() > PARTED) {
                 self.parted += 1;
@@ -468,6 +468,48 @@ mod tests {
             assert!(!compare(&float(other), &end, None).is_equal(), "{other}");
         }
         assert!(!compare(&whole(0.5), &float(f64::INFINITY), None).is_equal());
+    }
+
+    #[test]
+    fn what_is_beyond_whole_numbers_is_left_out_on_both_sides() {
+        let whole = |value: f64| {
+            let mut side = side(1, 0.0);
+            (side.film, side.limit) = (None, 0.99);
+            side.pixels.iter_mut().take(80 * 8).for_each(|pixel| *pixel = [value; 3]);
+            side.steps = Some(vec![[0.002; 3]; 80 * 48]);
+            side
+        };
+        let film = |value: f64| {
+            let mut side = side(1, 0.0);
+            side.pixels.iter_mut().take(80 * 8).for_each(|pixel| *pixel = [value; 3]);
+            side
+        };
+        // As bright as the other can tell, or brighter: not known, and no difference.
+        for (a, b) in [(f64::NAN, 5.0), (f64::NAN, 0.99), (0.988, 0.99)] {
+            for found in [compare(&whole(a), &film(b), None), compare(&film(b), &whole(a), None)] {
+                assert!(found.is_equal(), "{a} and {b}: {:?}", found.reasons);
+                assert_eq!(found.left_out, 3 * 80 * 8, "{a} and {b}");
+            }
+        }
+        assert_eq!(compare(&whole(0.5), &film(0.5), None).left_out, 0);
+        assert!(!compare(&whole(0.5), &film(0.6), None).is_equal());
+    }
+
+    #[test]
+    fn a_bias_is_the_second_less_the_first() {
+        let (dark, bright) = (side(1, 0.0), side(1, 2e-3));
+        for (first, second, sign) in [(&dark, &bright, 1.0), (&bright, &dark, -1.0)] {
+            let mut sums = PairedSums::default();
+            sums.add(first.film.as_ref().unwrap(), second.film.as_ref().unwrap());
+            let found = compare(first, second, Some(sums.finish()));
+            assert!((found.bias - sign * 2e-3).abs() < 1e-6, "{}", found.bias);
+            // A path that has parted tells no bias: these films' sums, of two samples, differ by too much.
+            assert_eq!(found.paired.unwrap().parted, 80 * 48);
+        }
+        let (dark, bright) = (side(1, 0.0), side(1, 1e-5));
+        let mut sums = PairedSums::default();
+        sums.add(dark.film.as_ref().unwrap(), bright.film.as_ref().unwrap());
+        assert!((sums.finish().bias - 2e-5).abs() < 1e-6, "{:?}", sums.finish());
     }
 
     #[test]

@@ -195,6 +195,28 @@ mod tests {
     use crate::film::to_byte;
     use proptest::prelude::*;
 
+    /// A PPM of one row of these bytes.
+    fn of_bytes(bytes: &[u8], encoding: Encoding) -> ReadPicture {
+        let header = format!("P6 {} 1 255 ", bytes.len() / 3);
+        let file = [header.as_bytes(), bytes].concat();
+        decode_picture(io::Cursor::new(&file), file.len() as u64, encoding).unwrap()
+    }
+
+    #[test]
+    fn whole_numbers_end_where_the_last_of_them_begins() {
+        let srgb = ((254.5 / 255.0_f64 + 0.055) / 1.055).powf(2.4);
+        for (encoding, limit) in [
+            (Encoding::Book(Transfer::Linear), 255.0 / 256.0),
+            (Encoding::Book(Transfer::Gamma2), (255.0_f64 / 256.0).powi(2)),
+            (Encoding::Srgb, srgb),
+        ] {
+            let read = of_bytes(&[254, 255, 0], encoding);
+            assert!((read.limit - limit).abs() < 1e-12, "{encoding:?}: {}", read.limit);
+            let [below, end, zero] = read.pixels[0];
+            assert!(below < read.limit && end.is_nan() && zero < below, "{:?}", read.pixels);
+        }
+    }
+
     proptest! {
         #[test]
         fn a_byte_stands_for_the_values_that_become_it(x in 0.0..1.2_f64) {

@@ -119,6 +119,17 @@ mod tests {
     }
 
     #[test]
+    fn a_pass_is_at_most_twice_as_long_as_the_one_before() {
+        // Where alignment does not keep it short.
+        let (mut sizer, held, planned) = (PassSizer::new(2), SampleRanges::default(), 1 << 20..1 << 21);
+        for length in [2, 4, 8, 16] {
+            let pass = sizer.next(&held, planned.clone(), None).unwrap();
+            assert_eq!(pass.end - pass.start, length);
+            sizer.measured(length, FAST, TARGET);
+        }
+    }
+
+    #[test]
     fn slow_passes_stay_small_and_the_time_left_cuts_them() {
         let mut sizer = PassSizer::new(2);
         let held = SampleRanges::default();

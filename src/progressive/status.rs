@@ -134,3 +134,19 @@ impl Status {
 fn per_second(count: u64, time: Duration) -> f64 {
     if time.is_zero() { 0.0 } else { count as f64 / time.as_secs_f64() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn speeds_are_counts_over_the_seconds_of_tracing() {
+        let stats = Stats { paths: 100, rays: 300, busy_lanes: 6, offered_lanes: 8, ..Stats::default() };
+        let trace = Duration::from_secs(2);
+        let mut status = Status { stats, trace, elapsed: Duration::from_secs(5), ..Status::default() };
+        assert_eq!((status.paths_per_second(), status.rays_per_second()), (50.0, 150.0));
+        assert_eq!(status.lane_occupancy(), Some(0.75));
+        (status.stats, status.trace) = (Stats::default(), Duration::ZERO);
+        assert_eq!((status.paths_per_second(), status.lane_occupancy()), (0.0, None));
+    }
+}

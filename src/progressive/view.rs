@@ -121,6 +121,38 @@ mod tests {
     }
 
     #[test]
+    fn halves_of_different_counts_are_weighed() {
+        // Two samples of 3 in one half, one of 0 in the other: (3 - 0)^2 2 1 / 3^2.
+        let mut film = Film::new(1, 1, 2);
+        film.halves_mut()[0][0] = PixelSum([6 << 24; 3]);
+        film.record(0..3, 0).unwrap();
+        let error = standard_error(&film, 0).unwrap();
+        assert!(error.iter().all(|x| (x - 2.0_f64.sqrt()).abs() < 1e-12), "{error:?}");
+        assert!((film.error().unwrap().rmse - error[0]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_known_error_has_its_colour() {
+        // A hundredth is in the middle of a scale of four powers of ten, where the fourth of seven colours is.
+        let middle = [159, 42, 99];
+        let film = film(1, 1);
+        let off = |by: [f32; 3]| {
+            let means = vec![by.map(|x| 1.0 + x)];
+            let view = View::Difference(Arc::new(Reference { means, ..Reference::of(&film) }));
+            view.resolve(&film, Transfer::Linear, None)
+        };
+        assert_eq!(off([0.01, -0.01, 0.01]), middle);
+        // All of it in one channel: the root of the mean square is the same.
+        assert_eq!(off([0.0, 0.01 * 3.0_f32.sqrt(), 0.0]), middle);
+        let mut noisy = Film::new(1, 1, 2);
+        for (half, k) in [98, 100].into_iter().enumerate() {
+            noisy.halves_mut()[half][0] = PixelSum([(k << 24) / 100; 3]);
+        }
+        noisy.record(0..2, 0).unwrap();
+        assert_eq!(View::StandardError.resolve(&noisy, Transfer::Linear, None), middle);
+    }
+
+    #[test]
     fn views_show_what_they_say() {
         let film = film(1, 1);
         let shown = |view: View, tiles| view.resolve(&film, Transfer::Linear, tiles);

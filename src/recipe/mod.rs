@@ -185,6 +185,13 @@ mod tests {
     }
 
     #[test]
+    fn plain_names_have_no_sign_that_a_file_system_minds() {
+        assert_eq!(plain_name("field:100"), "field-100");
+        assert_eq!(plain_name("a/b\\c\"d*e?f<g>h|i\0j"), "a-b-c-d-e-f-g-h-i-j");
+        assert_eq!(plain_name("Köln 1_2.3-4"), "Köln 1_2.3-4");
+    }
+
+    #[test]
     fn samples_have_limits() {
         let with = |samples_per_pixel| Recipe { samples_per_pixel, ..Stage::ALL[0].recipe() }.check_samples();
         with(1).expect("least");

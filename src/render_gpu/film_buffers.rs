@@ -313,3 +313,88 @@ fn add_rows(film: &mut Film, first_row: u32, sums: &[u64]) {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::{RenderJob, Renderer};
+    use crate::render_gpu::{GpuError, GpuOptions, GpuRenderer};
+    use crate::scene::builtin::{BOOK_CAMERA, field};
+    use crate::stages::Rules;
+    use std::io::Write;
+    use std::mem::offset_of;
+    use std::sync::atomic::AtomicBool;
+
+    /// On any adapter; without one a test says so, and fails where `WEEKENDER_REQUIRE_GPU=1`.
+    fn renderer() -> Option<GpuRenderer> {
+        let adapter = std::env::var("WEEKENDER_TEST_ADAPTER").ok();
+        match GpuRenderer::new(GpuOptions { adapter, allow_software: true, ..GpuOptions::default() }) {
+            Ok(renderer) => Some(renderer),
+            Err(GpuError::None) if std::env::var("WEEKENDER_REQUIRE_GPU").as_deref() != Ok("1") => {
+                // Past the harness, which keeps what a test prints to itself while it passes.
+                std::io::stderr().write_all(b"NOT TESTED: there is no graphics adapter\n").unwrap();
+                None
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    fn job() -> RenderJob {
+        let settings = RenderSettings { width: 40, height: 24, max_depth: 6, ..RenderSettings::default() };
+        RenderJob::new(field(300).0, BOOK_CAMERA, settings, Rules::FINISHED).unwrap()
+    }
+
+    /// Sets two words of the device's counters, the lower first.
+    fn set(gpu: &GpuRenderer, offset: usize, words: [u32; 2]) {
+        let counters = &gpu.loaded.as_ref().unwrap().film.counters;
+        gpu.gpu.queue.write_buffer(counters, offset as u64, bytemuck::cast_slice(&words));
+    }
+
+    fn traced(gpu: &mut GpuRenderer, job: &RenderJob, samples: Range<u64>) -> (Stats, Film) {
+        let mut film = job.new_film();
+        let stats = gpu.accumulate(job, samples, &mut film, &AtomicBool::new(false)).unwrap();
+        (stats, film)
+    }
+
+    #[test]
+    fn rays_are_counted_beyond_32_bits() {
+        let Some(mut gpu) = renderer() else { return };
+        let job = job();
+        gpu.prepare(&job, &AtomicBool::new(false)).unwrap();
+        let (plain, _) = traced(&mut gpu, &job, 0..4);
+        assert!(plain.rays > 40 * 24 * 4 && plain.rays < 40 * 24 * 4 * 6, "{plain:?}");
+        // Counters that overflow with the next ray, and one that has done so before.
+        for words in [[u32::MAX, 0], [u32::MAX - 1000, 2], [0, 1]] {
+            set(&gpu, offset_of!(GpuCounters, rays), words);
+            let before = u64::from(words[0]) | u64::from(words[1]) << 32;
+            assert_eq!(traced(&mut gpu, &job, 0..4).0.rays, before + plain.rays, "{words:?}");
+        }
+    }
+
+    #[test]
+    fn rejected_samples_are_counted_on_the_device() {
+        let Some(mut gpu) = renderer() else { return };
+        let job = job();
+        // With one ray a path there is the sky, and black.
+        let settings = RenderSettings { max_depth: 1, ..*job.settings() };
+        let sky = job.seen_by(*job.camera(), settings).unwrap();
+        let mut seen = 0;
+        for samples in [0..1, 1..2] {
+            let (_, clean) = traced(&mut gpu, &sky, samples);
+            assert_eq!(clean.rejected(), 0);
+            seen += (0..40 * 24).filter(|pixel| clean.pixel_sum(*pixel).0 != [0; 3]).count() as u64;
+        }
+        assert!(seen > 200 && seen < 2 * 40 * 24, "{seen} samples meet the sky");
+        // A sky that no scene may have, which goes to the device with the next job of the scene.
+        gpu.prepare(&job, &AtomicBool::new(false)).unwrap();
+        gpu.loaded.as_mut().unwrap().scene.prepared.sky_middle[1] = f32::INFINITY;
+        let (stats, film) = traced(&mut gpu, &sky, 0..2);
+        assert_eq!(film.rejected(), seen);
+        assert_eq!(stats.rejected, film.rejected());
+        assert!((0..40 * 24).all(|pixel| film.pixel_sum(pixel).0 == [0; 3]), "nothing of them is added");
+        // And beyond 32 bits.
+        set(&gpu, offset_of!(GpuCounters, rejected), [u32::MAX, 0]);
+        let (again, _) = traced(&mut gpu, &sky, 0..2);
+        assert_eq!(again.rejected, stats.rejected + u64::from(u32::MAX));
+    }
+}

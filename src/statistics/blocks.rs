@@ -307,6 +307,32 @@ mod tests {
     }
 
     #[test]
+    fn what_is_known_counts_as_endless_freedom() {
+        // One pixel has all the noise, which is of one degree of freedom, and half the variance is known: by Welch and
+        // Satterthwaite 4 degrees. Student's two-sided quantile there is 2.7764 at 5 %, that of a normal number 1.960.
+        let share = 8.0 * 8.0;
+        let mut variances = vec![[0.0; 3]; 64];
+        variances[20] = [share * share; 3];
+        let of = |tolerance: f64, deviations: f64| {
+            let total = (1.0 + tolerance * tolerance).sqrt();
+            let values = vec![[deviations * total; 3]; 64];
+            let noise = Noise::Variances(&variances);
+            BlockTest::of(&Differences {
+                width: 8,
+                values: &values,
+                noise,
+                steps: None,
+                tolerance,
+                rare: 0.0,
+            })
+        };
+        for (tolerance, quantile) in [(1.0, 2.7764), (2.0_f64.sqrt(), 2.2622)] {
+            let z = of(tolerance, quantile).blocks[0].z;
+            assert!(z.iter().all(|z| (z - 1.960).abs() < 0.03), "{tolerance}: {z:?}");
+        }
+    }
+
+    #[test]
     fn a_rare_path_that_both_halves_hold_is_no_difference() {
         let none = vec![[0.0; 3]; 64];
         let mut values = none.clone();

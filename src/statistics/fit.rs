@@ -167,6 +167,18 @@ mod tests {
     }
 
     #[test]
+    fn the_slopes_deviation_is_that_of_a_regression() {
+        // Logarithms 0, 1, 2 of the time and 0, 1, 0 of the error. About their mean of 1/3 the squares are 2/3, with one
+        // degree of freedom; the times' squares are 2.
+        let points = [(0.0_f64, 0.0_f64), (1.0, 1.0), (2.0, 0.0)];
+        let law = PowerLaw::through(&points.map(|(t, e)| Point { time: t.exp(), error: e.exp() })).unwrap();
+        assert!(law.slope.abs() < 1e-12, "{law:?}");
+        assert!((law.scatter - (2.0_f64 / 3.0).sqrt()).abs() < 1e-12, "{law:?}");
+        assert!((law.slope_deviation - (1.0_f64 / 3.0).sqrt()).abs() < 1e-12, "{law:?}");
+        assert_eq!(PowerLaw::through(&curve(-0.5, 2)).unwrap().slope_deviation, 0.0);
+    }
+
+    #[test]
     fn targets_are_met_between_points_and_beyond() {
         let points = curve(-0.5, 7);
         let within = time_to(&points, 0.02).unwrap();
@@ -192,6 +204,29 @@ mod tests {
         let alone = predict(&[], now, now.error / 2.0).unwrap();
         assert!((alone.time / now.time - 4.0).abs() < 1e-6);
         assert!(alone.range[1] - alone.range[0] > found.range[1] - found.range[0]);
+    }
+
+    #[test]
+    fn a_prediction_reaches_two_deviations_to_either_side() {
+        let now = Point { time: 3.0, error: 0.01 };
+        let found = predict(&[], now, 0.005).unwrap();
+        // Half the error is 4 times the time; its logarithm is off by .02 / .5 for the estimate, and by .08 / .5 of
+        // itself for the slope.
+        let log_factor = 4.0_f64.ln();
+        let deviation = (0.04_f64.powi(2) + (0.16 * log_factor).powi(2)).sqrt();
+        let expected = [-2.0, 0.0, 2.0].map(|deviations| 12.0 * (deviations * deviation).exp());
+        for (found, expected) in [found.range[0], found.time, found.range[1]].into_iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn estimates_from_just_before_do_not_count() {
+        let mut points = curve(-0.6, 6);
+        let now = points.pop().unwrap();
+        let before = predict(&points, now, now.error / 2.0);
+        points.push(Point { time: 0.95 * now.time, error: 3.0 * now.error });
+        assert_eq!(predict(&points, now, now.error / 2.0), before);
     }
 
     proptest! {

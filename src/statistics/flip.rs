@@ -241,6 +241,33 @@ mod tests {
     }
 
     #[test]
+    fn a_dot_is_spread_as_the_papers_gaussians_have_it() {
+        // `sum a sqrt(pi / b) exp(-pi^2 x^2 / b)` with the constants of the paper's table 1, at `x` of 0, 2, 4 and 9
+        // of 67 pixels a degree, over its value at 0; and that value over the sum of all weights.
+        let expected = [
+            ([1.0, 0.153_944_087_638_8, 0.000_561_632_273_9, 0.0], 0.148_902_643_575_7),
+            ([1.0, 0.190_265_327_944_8, 0.001_310_504_800_1, 0.0], 0.132_045_740_867_8),
+            ([1.0, 0.769_530_875_318_5, 0.358_232_424_778_8, 0.008_033_484_860_9], 0.020_012_846_957_7),
+        ];
+        let mut dot = vec![0.0; 41 * 41];
+        dot[20 * 41 + 20] = 1.0;
+        for (channel, (ratios, peak)) in expected.into_iter().enumerate() {
+            let spread = contrast_filtered(&dot, 41, CONTRAST[channel]);
+            let at = |x: usize, y: usize| spread[(20 + y) * 41 + 20 + x];
+            assert!((at(0, 0) - peak).abs() < 1e-9, "channel {channel}: {}", at(0, 0));
+            for (x, ratio) in [0, 2, 4, 9].into_iter().zip(ratios) {
+                for value in [at(x, 0), at(0, x)] {
+                    assert!(
+                        (value / peak - ratio).abs() < 1e-9,
+                        "channel {channel} at {x}: {}",
+                        value / peak
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
     fn what_is_too_fine_to_be_seen_counts_for_less() {
         let chequers = |side: usize| -> Vec<[f64; 3]> {
             let sign = |x: usize, y: usize| if (x / side + y / side).is_multiple_of(2) { 1.0 } else { -1.0 };

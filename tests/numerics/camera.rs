@@ -9,7 +9,40 @@ use weekender::kernel::CameraTable;
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, Wide};
 use weekender::scene::builtin::{LeftSphere, three_spheres};
-use weekender::scene::{Camera, SceneError};
+use weekender::scene::{Camera, Scene, SceneError, Sky};
+
+/// A sky whose three channels tell which way a ray goes up.
+const SKY: Sky = Sky { bottom: DVec3::new(0.0, 1.0, 0.5), top: DVec3::new(1.0, 0.0, 0.5) };
+
+/// The picture of an empty scene, each pixel the mean over a fine grid.
+fn expected_sky(camera: &Camera, width: u32, height: u32) -> Vec<[f64; 3]> {
+    const GRID: u32 = 32;
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let of_pixel = |(x, y): (u32, u32)| {
+        let mut sum = DVec3::ZERO;
+        for (i, j) in (0..GRID).flat_map(|i| (0..GRID).map(move |j| (i, j))) {
+            let [x, y] =
+                [(x, i), (y, j)].map(|(pixel, k)| f64::from(pixel) + (f64::from(k) + 0.5) / f64::from(GRID));
+            let (_, direction) = view_ray(camera, width, height, x, y);
+            sum += SKY.bottom.lerp(SKY.top, 0.5 * (direction.normalize().y + 1.0));
+        }
+        (sum / f64::from(GRID * GRID)).to_array()
+    };
+    pixels.map(of_pixel).collect()
+}
+
+/// Whether an empty scene shows the sky that `camera` looks at.
+fn assert_sees_the_sky(camera: Camera, [width, height]: [u32; 2]) {
+    let scene = Scene { sky: SKY, ..Scene::default() };
+    for mut renderer in [widest(), baseline()] {
+        let film = render(&mut renderer, &job(&scene, camera, size(width, height)), 0..64);
+        for (pixel, expected) in expected_sky(&camera, width, height).iter().enumerate() {
+            let mean = film.mean(pixel);
+            let off = (0..3).map(|i| (mean[i] - expected[i]).abs()).fold(0.0, f64::max);
+            assert!(off < 0.02, "{camera:?}, pixel {pixel}: {mean:?}, expected {expected:?}");
+        }
+    }
+}
 
 #[test]
 fn case_31_up_along_the_view() {
@@ -21,13 +54,10 @@ fn case_31_up_along_the_view() {
             let frame = DMat3::from_cols(basis.u, basis.v, basis.w);
             let off = frame.transpose() * frame - DMat3::IDENTITY;
             assert!(off.to_cols_array().iter().all(|x| x.abs() < 1e-12), "{camera:?}: {basis:?}");
-            let film = render(
-                &mut widest(),
-                &job(&three_spheres(LeftSphere::HollowGlass), camera, size(8, 8)),
-                0..2,
-            );
-            assert!(mean(&film) > 0.0);
+            assert!((frame.determinant() - 1.0).abs() < 1e-12, "not mirrored: {basis:?}");
+            assert!((basis.w + view.normalize()).length() < 1e-12, "{camera:?}: {basis:?}");
         }
+        assert_sees_the_sky(Camera { look_at: view, vup: view, ..Camera::BOOK }, [8, 8]);
     }
     let nowhere = Camera { look_from: DVec3::ONE, look_at: DVec3::ONE, ..Camera::BOOK };
     assert!(matches!(nowhere.validate(), Err(SceneError::NoDirection { .. })));
@@ -41,10 +71,9 @@ fn case_32_fields_of_view() {
         assert!(vfov_degrees.is_nan() || refused.contains("within 0.01 and 179 degrees"), "{refused}");
     }
     for vfov_degrees in [0.01, 179.0] {
-        let camera = Camera { vfov_degrees, ..Camera::BOOK };
-        let film =
-            render(&mut widest(), &job(&three_spheres(LeftSphere::HollowGlass), camera, size(16, 9)), 0..4);
-        assert!(mean(&film) > 0.0);
+        for look_at in [DVec3::NEG_Z, DVec3::new(1.0, 0.8, -1.0), DVec3::new(0.0, -3.0, -1.0)] {
+            assert_sees_the_sky(Camera { vfov_degrees, look_at, ..Camera::BOOK }, [16, 9]);
+        }
     }
 }
 
@@ -64,7 +93,12 @@ fn case_33_lenses() {
                 assert!(is_valid, "{camera:?}");
                 let scene = three_spheres(LeftSphere::HollowGlass);
                 for mut renderer in [widest(), baseline()] {
-                    render(&mut renderer, &job(&scene, camera, size(16, 9)), 0..4);
+                    let film = render(&mut renderer, &job(&scene, camera, size(16, 9)), 0..4);
+                    assert_eq!(film.rejected(), 0);
+                    // No light is brighter than the sky's 1, and the sky is somewhere to be seen.
+                    let channels = || film.means().into_iter().flatten();
+                    assert!(channels().all(|x| (0.0..=1.0).contains(&x)), "{camera:?}");
+                    assert!(channels().any(|x| x > 0.3), "{camera:?}");
                 }
             }
             Err(error) => {

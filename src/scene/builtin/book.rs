@@ -60,6 +60,7 @@ pub fn book() -> Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::HashSet;
 
     #[test]
     fn the_book_has_485_spheres_in_the_books_proportions() {
@@ -82,9 +83,25 @@ mod tests {
     fn small_spheres_keep_clear_of_the_golden_one() {
         let scene = book();
         let golden_foot = DVec3::new(4.0, 0.2, 0.0);
+        let mut cells = HashSet::new();
         for sphere in scene.spheres.iter().filter(|sphere| sphere.radius == 0.2) {
-            assert!(sphere.center.distance(golden_foot) > 0.9);
-            assert_eq!(sphere.center.y, 0.2);
+            let center = sphere.center;
+            assert!(center.distance(golden_foot) > 0.9, "{center}");
+            assert_eq!(center.y, 0.2);
+            let [x, z] = [center.x.floor(), center.z.floor()];
+            assert!(center.x - x <= 0.9 && center.z - z <= 0.9, "{center}");
+            assert!(cells.insert([x as i32, z as i32]), "two spheres in one cell: {center}");
+        }
+        // Of the 22 x 22 cells those alone are empty whose sphere would have come too close.
+        let all = (-11..11).flat_map(|x| (-11..11).map(move |z| [x, z]));
+        let empty: Vec<[i32; 2]> = all.filter(|cell| !cells.remove(cell)).collect();
+        assert_eq!((empty.len(), cells.len()), (3, 0), "{empty:?}, {cells:?}");
+        for [x, z] in empty {
+            let mut draws = Draws::new(SEED, (22 * (x + 11) + z + 11) as u64);
+            draws.unit();
+            let [across, along] = [draws.unit(), draws.unit()].map(|share| 0.9 * share);
+            let center = DVec3::new(f64::from(x) + across, 0.2, f64::from(z) + along);
+            assert!(center.distance(golden_foot) < 0.9 + 1e-4, "{center} was left out");
         }
     }
 }
