@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use super::origin::Source;
+use std::borrow::Cow;
 use std::fmt::Write;
 
 impl Document {
@@ -69,10 +70,10 @@ impl Document {
     }
 }
 
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=".contains(c);
-    if word.chars().all(is_plain) { word.to_owned() } else { format!("'{}'", word.replace('\'', r"'\''")) }
+/// A word as a shell takes it. A NUL, which no argument can have, stays as it is.
+fn quoted(word: &str) -> Cow<'_, str> {
+    shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
+}
 }
 
 #[cfg(test)]
@@ -128,6 +129,8 @@ mod tests {
     #[test]
     fn names_are_quoted_where_a_shell_needs_it() {
         assert_eq!(quoted("a-b.toml"), "a-b.toml");
-        assert_eq!(quoted("my scene's.toml"), r"'my scene'\''s.toml'");
+        for name in ["my scene's.toml", "$HOME/a b", "a\"b", ""] {
+            assert_eq!(shlex::split(&quoted(name)), Some(vec![name.to_owned()]), "{name}");
+        }
     }
 }
