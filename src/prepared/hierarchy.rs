@@ -8,10 +8,10 @@ use super::parted;
 use crate::kernel::{COUNT_MASK, Node, Real, STACK_SIZE};
 use crate::scene::Sphere;
 use glam::DVec3;
+use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
-use obvhs::BvhBuildParams;
 use std::time::Duration;
 
 /// Most levels of a tree: what a traversal has room for.

@@ -20,11 +20,11 @@ mod small_programs;
 mod turns;
 
 pub use device::{AdapterInfo, adapters};
-pub use turns::TURN_LIMIT;
 pub use options::{
     BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, HierarchyKind, INTERACTIVE_TARGET,
     InjectionPoint,
 };
+pub use turns::TURN_LIMIT;
 
 use crate::film::Film;
 use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};

@@ -74,7 +74,6 @@ impl Document {
 fn quoted(word: &str) -> Cow<'_, str> {
     shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
 }
-}
 
 #[cfg(test)]
 mod tests {
