@@ -1,4 +1,4 @@
-//! Which file a path leads to, and whether that file is still the one that was seen.
+//! File identity: which file a path refers to, and whether that file has changed since it was last seen.
 
 use std::ffi::OsString;
 use std::fs::{self, Metadata};
@@ -6,27 +6,27 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// Most links that lead from one to the next.
+/// The longest chain of symbolic links that is followed.
 const LINK_LIMIT: usize = 40;
 
-/// The file that a path leads to, whether it is there or would be made. Two paths lead to one file if these are
-/// equal, whatever links, `./` or capitals they go by.
+/// The file that a path refers to, whether or not it exists yet. Two paths refer to the same file if their identities
+/// are equal, regardless of links, `./` or letter case.
 #[derive(Clone, Debug)]
 pub struct FileIdentity {
-    /// The file, or the deepest directory on its path that is there.
+    /// The file, or the deepest directory on its path that exists.
     base: Node,
-    /// Where that is.
+    /// The path of `base`.
     place: PathBuf,
-    /// What does not exist yet on the path below it.
+    /// The part of the path below `base`, which does not exist yet.
     rest: Vec<OsString>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Node {
-    /// Device and number on it.
+    /// Device number and inode number.
     #[cfg(unix)]
     Number(u64, u64),
-    /// The one path without links.
+    /// The canonical path, without links.
     Path(PathBuf),
 }
 
@@ -44,7 +44,7 @@ impl Node {
 }
 
 impl FileIdentity {
-    /// Where `path` leads. `None` for devices and pipes, which any number of writers may share.
+    /// The file that `path` refers to. `None` for devices and pipes, which any number of writers may share.
     pub fn of(path: &Path) -> Option<FileIdentity> {
         if fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir()) {
             return None;
@@ -70,7 +70,8 @@ impl FileIdentity {
         }
     }
 
-    /// Whether both lead to one file. Two files that do not exist yet and differ in capitals alone are tried out.
+    /// Whether both refer to the same file. For two files that do not exist yet and differ only in letter case, this asks
+    /// the file system.
     pub fn is_same_as(&self, other: &FileIdentity) -> bool {
         if self.base != other.base || self.rest.len() != other.rest.len() {
             return false;
@@ -82,7 +83,7 @@ impl FileIdentity {
     }
 }
 
-/// Whether names in `directory` that differ in capitals alone are one name.
+/// Whether `directory` treats names that differ only in letter case as the same name.
 fn ignores_case(directory: &Path) -> bool {
     let Ok(probe) = super::leftovers::create_in(directory, &mut tempfile::Builder::new()) else {
         return false;
@@ -91,10 +92,10 @@ fn ignores_case(directory: &Path) -> bool {
     directory.join(name.to_string_lossy().to_uppercase()).exists()
 }
 
-/// Where links at the end of `path` lead, also if nothing is there.
+/// Follows the links at the end of `path`, even if their target does not exist.
 ///
 /// # Errors
-/// Links that cannot be read or lead round in a circle.
+/// If a link cannot be read or the links form a cycle.
 pub(super) fn follow_links(path: &Path) -> io::Result<PathBuf> {
     let mut path = path.to_owned();
     for _ in 0..LINK_LIMIT {
@@ -107,8 +108,8 @@ pub(super) fn follow_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::new(ErrorKind::InvalidInput, "it is a link that leads back to itself"))
 }
 
-/// What tells a file from one that has taken its place, and from itself with other content: identity, length and
-/// time of change.
+/// Identity, length and modification time. Together they distinguish a file from another one that replaced it, and
+/// from the same file with different content.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Stamp {
     node: Node,
@@ -117,10 +118,10 @@ pub(crate) struct Stamp {
 }
 
 impl Stamp {
-    /// That of the regular file at `path`; `None` if there is none.
+    /// The stamp of the regular file at `path`; `None` if there is no such file.
     ///
     /// # Errors
-    /// Files that cannot be looked at.
+    /// If the file cannot be examined.
     pub fn of(path: &Path) -> io::Result<Option<Stamp>> {
         match fs::metadata(path) {
             Ok(found) if found.is_file() => Ok(Some(Stamp::of_metadata(path, &found))),
@@ -148,13 +149,13 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
         fs::create_dir(at("d")).unwrap();
-        // Neither is there.
+        // Neither exists.
         assert!(same(&at("new"), &at("./d/../new")) && same(&at("d/x"), &at("./d/./x")));
         assert!(same(&at("gone/deeper/x"), &at("./gone/deeper/x")));
         assert!(!same(&at("new"), &at("other")) && !same(&at("d/x"), &at("x")));
         fs::write(at("new"), "").unwrap();
         assert!(same(&at("new"), &at("./d/../new")) && !same(&at("new"), &at("d")));
-        // Capitals are what the file system makes of them.
+        // Whether case matters depends on the file system.
         let is_blind = at("NEW").exists();
         assert_eq!(same(&at("new"), &at("NEW")), is_blind);
         assert_eq!(same(&at("unborn"), &at("UNBORN")), is_blind);

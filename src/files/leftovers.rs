@@ -1,8 +1,8 @@
-//! Files that are not finished: how they are told from those that a killed program left behind.
+//! Unfinished files, and how to recognize those that a killed program left behind.
 //!
-//! Whoever writes one holds a lock on it, which ends with the program, however that ends. So a file of that name
-//! whose lock is free belongs to nobody, and the next run in its directory removes it. Where the file system has no
-//! locks, age decides.
+//! The writer of an unfinished file holds a lock on it, which the system releases when the program ends for any
+//! reason. A file with such a name and a free lock therefore has no owner, and the next run in its directory removes
+//! it. On file systems without locks, the file's age decides.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -13,24 +13,24 @@ use tempfile::{Builder, NamedTempFile};
 const PREFIX: &str = ".weekender-";
 const SUFFIX: &str = ".part";
 
-/// Without locks, a file that nobody has changed for so long is nobody's.
+/// On file systems without locks, a file that has not changed for this long has no owner.
 const OLD: Duration = Duration::from_secs(24 * 3600);
 
-/// How often a new file is made again, if a run that cleans up has taken it for old before it was locked.
+/// How many times a new file is created again if another run's cleanup removed it before it was locked.
 const ATTEMPTS: usize = 8;
 
-/// A new unfinished file in `directory`, locked. It goes away when it is dropped.
+/// Creates a new unfinished file in `directory` and locks it. Dropping it deletes the file.
 ///
 /// # Errors
-/// Those of the file system.
+/// Errors of the file system.
 pub(super) fn create_in(directory: &Path, builder: &mut Builder<'_, '_>) -> io::Result<NamedTempFile> {
     builder.prefix(PREFIX).suffix(SUFFIX);
     for _ in 0..ATTEMPTS {
         let file = builder.tempfile_in(directory)?;
         match file.as_file().try_lock() {
-            // A run that cleans up has it, and removes it.
+            // Another run's cleanup holds the lock and removes the file.
             Err(TryLockError::WouldBlock) => {}
-            // A file system without locks is none the worse for it: see above.
+            // A file system without locks works too: the file's age decides.
             Ok(()) | Err(TryLockError::Error(_)) if fs::symlink_metadata(file.path()).is_ok() => {
                 return Ok(file);
             }
@@ -40,7 +40,7 @@ pub(super) fn create_in(directory: &Path, builder: &mut Builder<'_, '_>) -> io::
     Err(io::Error::other("new files disappear at once"))
 }
 
-/// Removes the unfinished files that killed programs left in `directory`. What cannot be removed stays.
+/// Removes the unfinished files that killed programs left in `directory`. Files that cannot be removed stay.
 pub(super) fn remove_from(directory: &Path) {
     let Ok(entries) = fs::read_dir(directory) else { return };
     for entry in entries.flatten() {
@@ -53,9 +53,9 @@ pub(super) fn remove_from(directory: &Path) {
     }
 }
 
-/// Removes a file that nobody writes.
+/// Removes a file that nobody is writing.
 fn remove_ownerless(path: &Path) {
-    // The lock is held until the file is gone: who waits for it then sees that.
+    // The lock is held until the file is gone, so whoever waits for the lock sees that.
     let Ok(file) = File::open(path) else { return };
     let is_ownerless = match file.try_lock() {
         Ok(()) => true,
@@ -66,7 +66,7 @@ fn remove_ownerless(path: &Path) {
         }
     };
     if is_ownerless {
-        // Another run may have removed it.
+        // Another run may already have removed it.
         let _ = fs::remove_file(path);
     }
 }

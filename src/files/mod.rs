@@ -1,4 +1,4 @@
-//! Files: read once it is known what they are and how long, written whole or not at all.
+//! File access: inputs are checked for kind and length before they are read; outputs are written whole or not at all.
 
 mod identity;
 mod leftovers;

@@ -1,32 +1,32 @@
-//! Files that the program is given: what they are and how long is found out before anything is read.
+//! Input files: their kind and length are checked before anything is read.
 
 use crate::memory::words;
 use std::fs::{self, File, FileType};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-/// A file that cannot be read, or not with sense.
+/// A file that cannot be read or is not a sensible input.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum InputError {
-    /// The system would not hand it over.
+    /// The system could not open or read the file.
     #[error("cannot read {}: {reason}; check its name and whether you may read it", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error message.
         reason: String,
     },
-    /// A directory, a device, a pipe.
+    /// The path is a directory, a device or a pipe.
     #[error("{} is {kind}, but a file is needed; {remedy}", path.display())]
     NotFile {
-        /// What was named.
+        /// The path as given.
         path: PathBuf,
-        /// What it is.
+        /// What kind of thing it is, in words.
         kind: &'static str,
-        /// What to do.
+        /// What the user can do about it.
         remedy: &'static str,
     },
-    /// Longer than anything of its kind.
+    /// The file is longer than the limit for its kind.
     #[error(
         "{} has {}, but {what} of more than {} is not read; check that it is the right file",
         path.display(), words(*bytes), words(*limit)
@@ -34,11 +34,11 @@ pub enum InputError {
     TooLong {
         /// The file.
         path: PathBuf,
-        /// Its length.
+        /// Length in bytes.
         bytes: u64,
-        /// What it should be.
+        /// What the file was expected to be.
         what: &'static str,
-        /// Most bytes of it that are read.
+        /// The longest length in bytes that is accepted.
         limit: u64,
     },
 }
@@ -49,10 +49,10 @@ impl InputError {
     }
 }
 
-/// Opens a file and says its length in bytes.
+/// Opens a file and returns it with its length in bytes.
 ///
 /// # Errors
-/// [`InputError`]: what is no file is not opened, since some of it never ends and some never begins.
+/// [`InputError`]. Only regular files are opened: some other kinds never end, and some block forever.
 pub fn open(path: &Path) -> Result<(File, u64), InputError> {
     let unreadable = |reason: io::Error| InputError::unreadable(path, reason);
     let found = fs::metadata(path).map_err(unreadable)?;
@@ -64,7 +64,7 @@ pub fn open(path: &Path) -> Result<(File, u64), InputError> {
     Ok((file, length))
 }
 
-/// What it is and what to do, unless it is a file.
+/// What the path is and what the user can do, unless it is a regular file.
 fn no_file(kind: FileType) -> Option<(&'static str, &'static str)> {
     let save = "save what it gives and name that";
     if kind.is_file() {
@@ -86,7 +86,7 @@ fn no_file(kind: FileType) -> Option<(&'static str, &'static str)> {
     Some(("a device", save))
 }
 
-/// Reads a file of at most `limit` bytes; `what` is what it should be, such as "a scene file".
+/// Reads a file of at most `limit` bytes. `what` says what the file should be, such as "a scene file".
 ///
 /// # Errors
 /// [`InputError`].
@@ -98,7 +98,7 @@ pub fn read(path: &Path, what: &'static str, limit: u64) -> Result<Vec<u8>, Inpu
     }
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(length as usize).map_err(|error| InputError::unreadable(path, error))?;
-    // Some files have a length of 0 and content all the same; others grow.
+    // Some files report a length of 0 but have content; others grow while they are read.
     file.take(limit + 1).read_to_end(&mut bytes).map_err(|error| InputError::unreadable(path, error))?;
     if bytes.len() as u64 > limit {
         return Err(too_long(bytes.len() as u64));
@@ -123,7 +123,7 @@ mod tests {
             ),
             "{message}"
         );
-        // A file that grows to no end.
+        // A file that keeps growing.
         let sparse = directory.path().join("sparse");
         File::create(&sparse).unwrap().set_len(1 << 40).unwrap();
         assert!(

@@ -1,4 +1,4 @@
-//! Files that are written whole or not at all: beside their place, then renamed.
+//! Output files that are written whole or not at all: first beside their destination, then renamed.
 
 use super::identity::follow_links;
 use super::leftovers;
@@ -7,13 +7,13 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// A file that cannot be written. What was there before is as it was.
+/// A file that could not be written. The previous file is unchanged.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {reason}; {}", path.display(), remedy(reason))]
 pub struct WriteError {
     /// The file.
     pub path: PathBuf,
-    /// What the system said.
+    /// The system's error.
     pub reason: io::Error,
 }
 
@@ -36,13 +36,13 @@ fn remedy(reason: &io::Error) -> &'static str {
     }
 }
 
-/// Writes `path` by `write`: to a new file in the same directory, which then takes the old one's place. If
-/// anything fails, the old file is as it was and the new one is gone. A link is followed, also if nothing is where it
-/// leads; a device or a pipe is written to directly. The file has the usual permissions, or those of the file that it
+/// Writes `path` with `write`: to a new file in the same directory, which then replaces the old one. If anything
+/// fails, the old file is unchanged and the new one is deleted. Links are followed, even if their target does not
+/// exist. Devices and pipes are written directly. The file gets the usual permissions, or those of the file it
 /// replaces.
 ///
 /// # Errors
-/// [`WriteError`], be it from `write` or from the file system.
+/// [`WriteError`], from `write` or from the file system.
 pub fn replace_file(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
@@ -50,7 +50,7 @@ pub fn replace_file(
     NewFile::write(path, write)?.put()
 }
 
-/// Writes a text in place of `path`, as [`replace_file`] does.
+/// Replaces `path` with a text, as [`replace_file`] does.
 ///
 /// # Errors
 /// [`WriteError`].
@@ -58,15 +58,15 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), WriteError> {
     replace_file(path, |writer| writer.write_all(text.as_bytes()))
 }
 
-/// Finds out whether [`replace_file`] could write `path`. It leaves nothing behind, and a file that is there as
-/// it is; unfinished files that killed runs left in its directory are removed.
+/// Checks whether [`replace_file`] could write `path`. The check creates nothing that stays and does not change an
+/// existing file. It removes unfinished files that killed runs left in the directory.
 ///
 /// # Errors
-/// [`WriteError`]: no such directory, a directory of that name, no permission, a file marked read-only, a name
-/// that the file system does not take.
+/// [`WriteError`]: the directory does not exist, a directory has that name, permission is missing, the file is marked
+/// read-only, or the file system does not accept the name.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let check = || match Target::find(path)? {
-        // To open a pipe would wait for its reader, and end what it reads.
+        // Opening a pipe would wait for its reader, and closing it would end the reader's input.
         Target::Device { is_pipe: true, .. } => Ok(()),
         Target::Device { path, .. } => OpenOptions::new().write(true).open(path).map(drop),
         Target::File { directory, old, .. } => {
@@ -77,15 +77,15 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     check().map_err(|reason| WriteError { path: path.to_owned(), reason })
 }
 
-/// A file that is written but not yet in its place. Dropped, it is gone.
+/// A file that is written but not yet at its destination. Dropping it deletes the file.
 pub(crate) struct NewFile {
     named: PathBuf,
-    /// The file and its place; `None` if it has been written in place, to a device.
+    /// The file and its destination; `None` if it was written directly, to a device.
     pending: Option<(NamedTempFile, PathBuf)>,
 }
 
 impl NewFile {
-    /// Writes it beside its place.
+    /// Writes the file beside its destination.
     pub fn write(
         path: &Path,
         write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
@@ -96,18 +96,18 @@ impl NewFile {
         }
     }
 
-    /// Where it is until then. On Unix it stays the same file, with the same time of change.
+    /// The file's path before it is put in place. On Unix, renaming keeps the same file and modification time.
     pub fn pending_path(&self) -> Option<&Path> {
         self.pending.as_ref().map(|(file, _)| file.path())
     }
 
-    /// Puts it in its place.
+    /// Moves the file to its destination.
     pub fn put(self) -> Result<(), WriteError> {
         let Some((file, place)) = self.pending else { return Ok(()) };
         file.persist(place).map(drop).map_err(|error| WriteError { path: self.named, reason: error.error })
     }
 
-    /// Puts it in its place if nothing is there; whether it could.
+    /// Moves the file to its destination if nothing exists there. Returns whether it was moved.
     pub fn put_new(self) -> Result<bool, WriteError> {
         let Some((file, place)) = self.pending else { return Ok(true) };
         match file.persist_noclobber(place) {
@@ -118,10 +118,10 @@ impl NewFile {
     }
 }
 
-/// As [`check_writable`] for a film, which is not written from its beginning to its end.
+/// Like [`check_writable`], for a film, which is not written sequentially.
 ///
 /// # Errors
-/// As [`check_writable`], and for pipes.
+/// Those of [`check_writable`], and an error for pipes.
 pub fn check_replaceable(path: &Path) -> Result<(), WriteError> {
     if fs::metadata(path).is_ok_and(|found| is_pipe(&found)) {
         let reason = io::Error::new(ErrorKind::NotSeekable, "a film cannot go through a pipe");
@@ -142,7 +142,7 @@ impl Target {
             Ok(found) if !found.is_file() => {
                 return Ok(Target::Device { path: named.to_owned(), is_pipe: is_pipe(&found) });
             }
-            // A rename would replace it all the same, but whoever marked it did not want that.
+            // A rename would replace a read-only file anyway, but the user marked it to prevent that.
             Ok(found) if found.permissions().readonly() => {
                 return Err(io::Error::new(ErrorKind::PermissionDenied, "the file is marked read-only"));
             }
@@ -175,7 +175,7 @@ impl Target {
     }
 }
 
-/// What at the end of a path, which is there or not, says that it is a directory.
+/// The ending of `path` that marks it as a directory, if there is one. The path need not exist.
 fn directory_ending(path: &Path) -> Option<&'static str> {
     let bytes = path.as_os_str().as_encoded_bytes();
     let ends = [&b"/"[..], b"/."].into_iter().zip(["/", "/."]);
@@ -224,7 +224,7 @@ fn try_write(
         Target::File { path, directory, old } => {
             let new = new_file_in(&directory, old.as_ref())?;
             fill(new.as_file())?;
-            // Without it, a machine that stops after the rename may come back with an empty file.
+            // Without this, a system that crashes after the rename may come back with an empty file.
             new.as_file().sync_data()?;
             Ok(Some((new, path)))
         }

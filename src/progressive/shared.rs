@@ -1,4 +1,4 @@
-//! What the render thread and its readers share: the status and one picture.
+//! State that the render thread shares with its readers: the status and one picture.
 
 use super::{Phase, Status};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -8,13 +8,13 @@ use std::time::Duration;
 /// A film resolved for display.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Which start it belongs to, as [`Status::run`].
+    /// The run it belongs to, as [`Status::run`].
     pub run: u64,
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Samples per pixel that it shows.
+    /// Samples per pixel in the picture.
     pub samples_per_pixel: u64,
     /// Three bytes a pixel, top row first.
     pub rgb8: Vec<u8>,
@@ -32,7 +32,7 @@ pub(super) struct Shared {
 }
 
 impl Shared {
-    /// Replaces the status, unless that of a later start is there.
+    /// Replaces the status, unless the current one belongs to a later run.
     pub(super) fn publish(&self, status: &Status) {
         let mut mine = lock(&self.status);
         if status.run >= mine.run {
@@ -46,7 +46,7 @@ impl Shared {
         }
     }
 
-    /// Sets what is called, on the render thread, when a picture is there or the phase has changed.
+    /// Sets the callback that the render thread calls when a picture is ready or the phase has changed.
     pub(super) fn set_notice(&self, notice: Notice) {
         *lock(&self.notice) = Some(notice);
     }
@@ -83,7 +83,7 @@ impl Shared {
         lock(&self.picture).take()
     }
 
-    /// Asks for a picture; false if that had been asked before.
+    /// Asks for a picture; returns false if a request was already pending.
     pub(super) fn want_picture(&self) -> bool {
         !self.is_picture_wanted.swap(true, Ordering::AcqRel)
     }
@@ -94,7 +94,7 @@ impl Shared {
 
     pub(super) fn put_picture(&self, picture: Picture) {
         let mut slot = lock(&self.picture);
-        // Before the picture can be taken: the wish that follows is for the next.
+        // Cleared before the picture can be taken: a request that follows is for the next picture.
         self.is_picture_wanted.store(false, Ordering::Release);
         *slot = Some(picture);
         drop(slot);
@@ -102,7 +102,7 @@ impl Shared {
     }
 }
 
-/// What these locks hold is whole after every statement, so a reader's panic does not spoil it.
+/// Locks `mutex`. The data is consistent after every statement, so a panic of a reader does not corrupt it.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,4 @@
-//! What a progressive render says about itself while it runs.
+//! The status of a progressive render.
 
 use super::EndReason;
 use crate::film::ErrorEstimate;
@@ -6,21 +6,21 @@ use crate::render::{BackendInfo, Stats};
 use serde::Serialize;
 use std::time::Duration;
 
-/// Where a render stands.
+/// The phase of a render.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Phase {
-    /// Nothing has been asked for, or it was abandoned.
+    /// No render was started, or it was abandoned.
     #[default]
     Idle,
-    /// PreparedScene, hierarchy and kernels are being built.
+    /// The prepared scene, hierarchy and kernels are being built.
     Preparing,
     /// Samples are being added.
     Tracing,
-    /// Waiting to be resumed.
+    /// The render waits to be resumed.
     Paused,
-    /// Over; the film can be had.
+    /// The render has ended; the film can be taken.
     Done(EndReason),
-    /// Neither the backend nor its fallback could go on. The film holds what was rendered before.
+    /// Neither the backend nor its fallback could continue. The film holds what was rendered before.
     Failed(String),
 }
 
@@ -34,7 +34,7 @@ impl Phase {
 /// The error at one moment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HistoryPoint {
-    /// Who traced the newest samples: [`BackendInfo::name`].
+    /// The backend that traced the newest samples: [`BackendInfo::name`].
     pub backend: &'static str,
     /// Samples per pixel in the film.
     pub samples_per_pixel: u64,
@@ -49,60 +49,60 @@ pub struct HistoryPoint {
 /// How many samples one backend has added since the start.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contribution {
-    /// The backend.
+    /// The backend that added them.
     #[serde(flatten)]
     pub backend: BackendInfo,
     /// Samples per pixel.
     pub samples_per_pixel: u64,
 }
 
-/// The numbers of a render. Everything counts from its start; only the film's figures include what it held
+/// The figures of a render. They count from its start; only the film's own figures include what the film held
 /// before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Status {
-    /// Which start this belongs to: 0 before the first, then one more each.
+    /// The run that this belongs to: 0 before the first start, then one more for each start.
     pub run: u64,
-    /// Where it stands.
+    /// The current phase.
     pub phase: Phase,
-    /// The backend at work.
+    /// The backend in use.
     pub backend: Option<BackendInfo>,
     /// Samples per pixel in the film.
     pub samples_per_pixel: u64,
-    /// Samples per pixel that the film should have in the end.
+    /// Samples per pixel that the film should reach.
     pub planned_samples_per_pixel: u64,
     /// Samples in the film that were NaN, infinite or negative.
     pub rejected_samples: u64,
-    /// Sums over the passes.
+    /// Statistics summed over the passes.
     pub stats: Stats,
-    /// Wall time of preparing.
+    /// Wall time of preparation.
     pub prepare: Duration,
-    /// What the kernel in use contains, in words.
+    /// What the current kernel contains, in words.
     pub kernel: String,
-    /// Of that, wall time of building the hierarchy.
+    /// Wall time of building the hierarchy, which is part of `prepare`.
     pub hierarchy: Duration,
-    /// Wall time of passes.
+    /// Wall time of all passes.
     pub trace: Duration,
     /// Wall time since the start, without pauses.
     pub elapsed: Duration,
-    /// The latest estimate of the film's error; it can be some passes old.
+    /// The latest estimate of the film's error; it can be a few passes old.
     pub error: Option<ErrorEstimate>,
-    /// Why that estimate is in doubt, in words.
+    /// Why the estimate is doubtful, in words.
     pub doubt: Option<String>,
     /// The error at powers of two of samples per pixel.
     pub history: Vec<HistoryPoint>,
-    /// Who has added how much, in the order of first appearance.
+    /// Which backends have added how many samples, in order of first appearance.
     pub contributions: Vec<Contribution>,
-    /// What went wrong and was dealt with, for the user to read.
+    /// Problems that were handled, as messages for the user.
     pub messages: Vec<String>,
 }
 
 impl Status {
-    /// Paths a second of tracing.
+    /// Paths per second of tracing.
     pub fn paths_per_second(&self) -> f64 {
         per_second(self.stats.paths, self.trace)
     }
 
-    /// Rays a second of tracing.
+    /// Rays per second of tracing.
     pub fn rays_per_second(&self) -> f64 {
         per_second(self.stats.rays, self.trace)
     }

@@ -1,4 +1,4 @@
-//! What of a film is shown: the picture itself, or something about it as a heat map.
+//! What is shown of a film: the picture itself, or a heat map of one of its properties.
 
 use crate::film::Film;
 use crate::heat::HeatScale;
@@ -12,11 +12,11 @@ pub enum View {
     /// The picture with the job's transfer.
     #[default]
     Picture,
-    /// The standard error of each pixel's mean, as the halves show it; black with one half.
+    /// The standard error of each pixel's mean, estimated from the halves; black with only one half.
     StandardError,
-    /// How far each pixel is from a reference. A film of another size is shown as a picture.
+    /// The difference of each pixel from a reference. A film of another size is shown as a picture.
     Difference(Arc<Reference>),
-    /// How full the packets were, tile by tile; dark where there is no such figure.
+    /// How full the packets were, per tile; dark where this is not known.
     Occupancy,
 }
 
@@ -27,18 +27,18 @@ pub struct Reference {
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Row by row from the top.
+    /// Linear RGB, row by row from the top.
     pub means: Vec<[f32; 3]>,
 }
 
 impl Reference {
-    /// What a film shows now.
+    /// A reference with the film's current means.
     pub fn of(film: &Film) -> Self {
         Reference { width: film.width(), height: film.height(), means: film.means() }
     }
 }
 
-/// The standard error of a pixel's mean, linear RGB, as the halves show it; see [`Film::error`].
+/// The standard error of a pixel's mean, linear RGB, estimated from the halves; see [`Film::error`].
 pub fn standard_error(film: &Film, pixel: usize) -> Option<[f64; 3]> {
     let [half_a, half_b] = film.halves() else { return None };
     let (a, b) = (film.half_sample_count(0) as f64, film.half_sample_count(1) as f64);
@@ -51,7 +51,7 @@ pub fn standard_error(film: &Film, pixel: usize) -> Option<[f64; 3]> {
 }
 
 impl View {
-    /// What the colours mean; `None` where they are those of the picture.
+    /// The scale of the heat map; `None` for the picture itself.
     pub fn scale(&self) -> Option<HeatScale> {
         match self {
             View::Picture => None,
@@ -60,7 +60,7 @@ impl View {
         }
     }
 
-    /// The film in this view, three bytes a pixel, top row first.
+    /// Resolves the film in this view: three bytes per pixel, top row first.
     pub(super) fn resolve(
         &self,
         film: &Film,
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_known_error_has_its_colour() {
-        // A hundredth is in the middle of a scale of four powers of ten, where the fourth of seven colours is.
+        // 0.01 is in the middle of a scale of four decades, which has the fourth of seven colours.
         let middle = [159, 42, 99];
         let film = film(1, 1);
         let off = |by: [f32; 3]| {
@@ -142,7 +142,7 @@ mod tests {
             view.resolve(&film, Transfer::Linear, None)
         };
         assert_eq!(off([0.01, -0.01, 0.01]), middle);
-        // All of it in one channel: the root of the mean square is the same.
+        // All of the difference in one channel: the root mean square is the same.
         assert_eq!(off([0.0, 0.01 * 3.0_f32.sqrt(), 0.0]), middle);
         let mut noisy = Film::new(1, 1, 2);
         for (half, k) in [98, 100].into_iter().enumerate() {

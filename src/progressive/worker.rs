@@ -1,4 +1,4 @@
-//! The render thread: obeys commands, then renders a pass, and so on.
+//! The render thread: it alternates between obeying commands and rendering passes.
 
 use super::guard::Backend;
 use super::guard::{dismiss, guarded};
@@ -64,7 +64,7 @@ impl Worker {
     pub(super) fn run(mut self) {
         let _note = DeathNote(Arc::clone(&self.shared));
         loop {
-            // Whatever panics, the film is not touched by it: renderers promise that, and others only look at it.
+            // No panic can corrupt the film: renderers promise not to touch it, and everything else only reads it.
             match catch_unwind(AssertUnwindSafe(|| self.turn())) {
                 Ok(true) => {}
                 Ok(false) => return,
@@ -90,7 +90,7 @@ impl Worker {
         match command {
             Some(Command::Finish) => return false,
             Some(Command::Take(taker)) => {
-                // A taker who has gone away does not want it.
+                // If the receiver is gone, nobody needs the film.
                 let _ = taker.send(self.take_film());
                 return true;
             }
@@ -152,7 +152,7 @@ impl Worker {
     }
 
     fn start(&mut self, run: u64, work: Work, cancel: Arc<AtomicBool>) {
-        // The old film goes before the new one comes, so that both need not fit into memory.
+        // Drop the old film before the new one is made, so that both need not fit into memory.
         self.render = None;
         let Work { job, backend: choice, renderer, plan, film } = work;
         if let Some(renderer) = renderer {
@@ -173,7 +173,7 @@ impl Worker {
         }
     }
 
-    /// Brings the film up to date: it is about to be looked at, or someone else goes on with it.
+    /// Collects the renderer's pending samples, before the film is read or another renderer continues it.
     fn collect(&mut self) {
         let (Some(render), Some((_, renderer))) = (&mut self.render, &mut self.backend) else { return };
         let begin = Instant::now();
@@ -184,7 +184,7 @@ impl Worker {
         }
     }
 
-    /// A renderer that failed is not asked again, not even for another job.
+    /// Discards a renderer that failed. It is not used again, even for another job.
     fn give_up_backend(&mut self, error: &RenderError) {
         dismiss(self.backend.take());
         if let Some(render) = &mut self.render {

@@ -1,12 +1,12 @@
-//! In what two jobs differ, in words.
+//! Describes in words how two jobs differ.
 
 use crate::recipe::file;
 use crate::render::RenderJob;
 
-/// Whether two recipes, as files hold them, have the same samples.
+/// Checks whether two recipes, given as text, describe the same samples.
 ///
 /// # Errors
-/// What differs, or what is wrong with one of them, in words.
+/// What differs, or what is wrong with one of the recipes, in words.
 pub fn same_job(first: &str, other: &str) -> Result<(), String> {
     let (first, other) = (job(first)?, job(other)?);
     difference(&first, &other).map_or(Ok(()), Err)
@@ -18,7 +18,7 @@ fn job(text: &str) -> Result<RenderJob, String> {
     recipe.job().map_err(|error| error.to_string())
 }
 
-/// The first thing in which two jobs differ, in words that a user can act on; `None` if their samples are the same.
+/// The first difference between two jobs, in words that a user can act on; `None` if their samples are the same.
 pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
     let (a, b) = (first.settings(), other.settings());
     let half_words = |is_on: bool| if is_on { "on" } else { "off" };

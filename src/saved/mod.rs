@@ -1,5 +1,5 @@
-//! Saved files, read: a scene file, a picture that says how it was made, or a film with its samples. Whatever opens
-//! or resumes one does so here.
+//! Reads saved files: a scene file, a picture that describes how it was made, or a film with its samples. All code that
+//! opens or resumes a file uses this module.
 
 mod difference;
 
@@ -12,22 +12,22 @@ use crate::render::{JobError, RenderJob};
 use crate::stages::Stage;
 use std::path::{Path, PathBuf};
 
-/// A file that cannot be opened or resumed. The message names the file and what to do.
+/// Why a file cannot be opened or resumed. The message names the file and says what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// A scene file that cannot be read.
+    /// The scene file cannot be read.
     #[error(transparent)]
     Scene(#[from] file::FileError),
-    /// A film that is damaged, of another version, or cannot be read.
+    /// The film is damaged, of another version, or cannot be read.
     #[error(transparent)]
     Film(CheckpointError),
-    /// A file that is named like a film but is none, and does not say how it was made.
+    /// The file is named like a film, but is not a film and does not describe how it was made.
     #[error(transparent)]
     NotFilm(CheckpointError),
-    /// A picture that cannot be read or does not say how it was made.
+    /// The picture cannot be read or does not describe how it was made.
     #[error(transparent)]
     Picture(OutputError),
-    /// What it says that it was made from cannot be understood.
+    /// The recipe in the file cannot be parsed.
     #[error("the recipe in {} cannot be read: {reason}", path.display())]
     Recipe {
         /// The file.
@@ -35,7 +35,7 @@ pub enum OpenError {
         /// What is wrong with the recipe.
         reason: Box<file::FileError>,
     },
-    /// What it says that it was made from is no picture.
+    /// The recipe in the file cannot be rendered.
     #[error("the recipe in {} cannot be rendered: {reason}", path.display())]
     Job {
         /// The file.
@@ -43,13 +43,13 @@ pub enum OpenError {
         /// What is wrong with the recipe.
         reason: Box<JobError>,
     },
-    /// The film does not belong to its recipe.
+    /// The film does not match its recipe.
     #[error("{} holds a film of another shape than its recipe says; render it again", path.display())]
     Shape {
         /// The file.
         path: PathBuf,
     },
-    /// The film of a picture other than the one that is to go on.
+    /// The film is of a different job than the one to be resumed.
     #[error(
         "{} is a film of another picture: {difference}; leave out the flags that differ, or render without --resume",
         path.display()
@@ -57,24 +57,24 @@ pub enum OpenError {
     OtherPicture {
         /// The file.
         path: PathBuf,
-        /// The first thing in which the two differ.
+        /// The first difference between the two jobs.
         difference: String,
     },
 }
 
-/// What a picture or a film says about itself, and the film.
+/// The description in a picture or film, and the film itself.
 #[derive(Debug)]
 pub struct Saved {
     /// The file.
     pub path: PathBuf,
-    /// What it says about itself.
+    /// The description in the file.
     pub description: Description,
     /// The film, if the file has one and it was read.
     pub film: Option<Film>,
 }
 
 impl Saved {
-    /// Reads a picture or film. What the file is shows in its first bytes.
+    /// Reads a picture or film. The first bytes of the file tell which it is.
     ///
     /// # Errors
     /// [`OpenError::Film`], [`OpenError::NotFilm`] or [`OpenError::Picture`].
@@ -86,7 +86,7 @@ impl Saved {
             Err(error @ (CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. })) => {
                 let is_named_film = OutputFormat::from_path(path).is_ok_and(|of| of == OutputFormat::Exr);
                 match Self::describe(path) {
-                    // Whoever named it so takes it for a film.
+                    // The name says that it is meant as a film.
                     Err(OpenError::Picture(OutputError::NoDescription { .. })) if is_named_film => {
                         Err(OpenError::NotFilm(error))
                     }
@@ -97,7 +97,7 @@ impl Saved {
         }
     }
 
-    /// Reads what a picture or film says about itself and leaves its samples alone, which is quick.
+    /// Reads only the description of a picture or film, not its samples, which is fast.
     ///
     /// # Errors
     /// [`OpenError::Picture`].
@@ -106,7 +106,7 @@ impl Saved {
         Ok(Saved { path: path.to_owned(), description, film: None })
     }
 
-    /// The recipe. It has the name that the file says, otherwise the file's own without its ending.
+    /// The recipe. Its name comes from the file's description, otherwise from the file name without its extension.
     ///
     /// # Errors
     /// [`OpenError::Recipe`].
@@ -119,55 +119,55 @@ impl Saved {
         Ok(Recipe { name, ..recipe })
     }
 
-    /// The stage that it says it shows.
+    /// The stage that the description names.
     pub fn stage(&self) -> Option<&'static Stage> {
         self.description.get(key::STAGE).and_then(|id| Stage::find(id).ok())
     }
 
-    /// Samples per pixel, if it says so.
+    /// Samples per pixel, if the description has them.
     pub fn samples(&self) -> Option<u64> {
         self.description.get(key::SAMPLES)?.parse().ok().filter(|samples| *samples > 0)
     }
 
-    /// Seconds of tracing, if it says so.
+    /// Seconds of tracing, if the description has them.
     pub fn seconds(&self) -> Option<f64> {
         self.description.get(key::SECONDS)?.parse().ok()
     }
 
-    /// What rendered it, if it says so.
+    /// The backend that rendered it, if the description names one.
     pub fn backend(&self) -> Option<&str> {
         self.description.get(key::BACKEND)
     }
 
-    /// The film with what it says of its tracing; `None` for a picture.
+    /// The film with its tracing time and backend; `None` for a picture.
     fn into_film(self) -> Option<SavedFilm> {
         let (seconds, backend) = (self.seconds(), self.backend().map(str::to_owned));
         self.film.map(|film| SavedFilm { film, seconds, backend })
     }
 }
 
-/// A film that was read.
+/// A film that was read, with what its file says about the tracing.
 #[derive(Debug)]
 pub struct SavedFilm {
-    /// Its samples.
+    /// The film with its samples.
     pub film: Film,
-    /// Seconds that tracing them took, if the file says so.
+    /// Seconds that tracing the samples took, if the file says so.
     pub seconds: Option<f64>,
-    /// What traced them, if the file says so.
+    /// The backend that traced them, if the file says so.
     pub backend: Option<String>,
 }
 
-/// What is in a file besides its recipe.
+/// The content of a file besides its recipe.
 #[derive(Debug)]
 pub enum Content {
-    /// Nothing: a scene file.
+    /// Nothing else: the file is a scene file.
     Scene,
-    /// A picture of so many samples per pixel, if it says so.
+    /// A picture.
     Picture {
-        /// Samples per pixel.
+        /// Samples per pixel, if the file says so.
         samples: Option<u64>,
     },
-    /// A film, which has the recipe's shape.
+    /// A film whose shape matches the recipe.
     Film(SavedFilm),
 }
 
@@ -176,20 +176,20 @@ pub enum Content {
 pub struct Opened {
     /// The file.
     pub path: PathBuf,
-    /// What it shows. The name is the one that the file says, otherwise the file's own without its ending.
+    /// The recipe. Its name comes from the file's description, otherwise from the file name without its extension.
     pub recipe: Recipe,
-    /// The recipe, checked.
+    /// The validated job of the recipe.
     pub job: RenderJob,
-    /// The stage that it says it shows. The recipe may have been changed since.
+    /// The stage that the description names. The recipe may have been changed since.
     pub stage: Option<&'static Stage>,
-    /// What else it holds.
+    /// What the file contains besides the recipe.
     pub content: Content,
 }
 
 /// Opens a scene file (its name ends in .toml), a picture or a film.
 ///
 /// # Errors
-/// [`OpenError`]; a film must have the shape that its recipe says.
+/// [`OpenError`]; a film must have the shape that its recipe describes.
 pub fn open(path: &Path) -> Result<Opened, OpenError> {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
         let recipe = file::load(path)?;
@@ -209,10 +209,10 @@ pub fn open(path: &Path) -> Result<Opened, OpenError> {
     Ok(Opened { path: path.to_owned(), recipe, job, stage, content })
 }
 
-/// Opens a film: the job that it is of, and the film.
+/// Opens a film and returns its job and the film.
 ///
 /// # Errors
-/// [`OpenError`]; a picture or scene file is refused.
+/// [`OpenError`]; pictures and scene files are refused.
 pub fn open_film(path: &Path) -> Result<(RenderJob, SavedFilm), OpenError> {
     let Opened { job, content, .. } = open(path)?;
     match content {
@@ -221,7 +221,7 @@ pub fn open_film(path: &Path) -> Result<(RenderJob, SavedFilm), OpenError> {
     }
 }
 
-/// Reads the film of `job` that is to go on.
+/// Reads the film of `job` in order to resume it.
 ///
 /// # Errors
 /// [`OpenError`]; [`OpenError::OtherPicture`] for the film of another job.
@@ -231,10 +231,10 @@ pub fn resume(path: &Path, job: &RenderJob) -> Result<SavedFilm, OpenError> {
     Ok(film)
 }
 
-/// Refuses a film that [`resume`] would refuse for being of another job, without reading its samples.
+/// Refuses a film of another job, as [`resume`] would, without reading the film's samples.
 ///
 /// # Errors
-/// As [`resume`].
+/// Those of [`resume`].
 pub fn check_resume(path: &Path, job: &RenderJob) -> Result<(), OpenError> {
     let theirs = job_of(path, &Saved::describe(path)?.recipe()?)?;
     check_same(path, job, &theirs)
@@ -258,7 +258,7 @@ mod tests {
     use std::path::PathBuf;
     use tempfile::TempDir;
 
-    /// A small recipe, its film of four samples, and what the film says with `entries`.
+    /// A small recipe, its film of four samples, and the film's description with `entries`.
     fn film(entries: &[(&str, &str)]) -> (Recipe, Film, Description) {
         let mut recipe = Recipe::builtin("three-spheres").unwrap();
         (recipe.settings.width, recipe.settings.height) = (4, 3);
@@ -291,7 +291,7 @@ mod tests {
         assert_eq!(read.film, film(&[]).1);
         assert_eq!((read.seconds, read.backend.as_deref()), (Some(2.5), Some("cpu")));
         assert_eq!(opened.job, film(&[]).0.job().unwrap());
-        // Its name does not matter.
+        // The recipe's name does not matter.
         let renamed = directory.path().join("renamed.png");
         std::fs::rename(&path, &renamed).unwrap();
         assert!(matches!(open(&renamed).unwrap().content, Content::Film(_)));

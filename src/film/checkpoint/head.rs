@@ -1,9 +1,9 @@
-//! What a film file says of its sums, and the checksums.
+//! The head of a film file, which describes its sums, and the checksums.
 
 use super::{Checksum, Description, Film, FilmError, PixelSum, SampleRanges, VERSION};
 use serde::{Deserialize, Serialize};
 
-/// What a film file says of its sums.
+/// The description of a film's sums, as stored in its file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Head {
@@ -13,13 +13,13 @@ pub(super) struct Head {
     pub halves: usize,
     pub samples: Vec<[u64; 2]>,
     pub rejected: u64,
-    /// Of what stands above and of the texts.
+    /// Checksum of the fields above and of the texts.
     pub head_checksum: String,
-    /// Of the same, and of all sums.
+    /// Checksum of the same data and of all sums.
     pub checksum: String,
 }
 
-/// What stands in a file beside its head and its pixels.
+/// The texts that a file holds beside its head and pixels.
 #[derive(Clone, Copy)]
 pub(super) struct Texts<'a> {
     pub recipe: &'a [u8],
@@ -27,7 +27,7 @@ pub(super) struct Texts<'a> {
 }
 
 impl Head {
-    /// The head of a film with these texts.
+    /// Makes the head of a film with these texts.
     pub fn of(film: &Film, texts: Texts) -> Self {
         let mut head = Head {
             version: VERSION,
@@ -50,13 +50,13 @@ impl Head {
         self.checksum = with_sums(sum, halves);
     }
 
-    /// Reads a head.
+    /// Parses a head.
     ///
     /// # Errors
-    /// Its version, if it has another, or else what is wrong.
+    /// The file's version, if it is a different one; otherwise a message that says what is wrong.
     pub fn read(text: &str) -> Result<Self, HeadError> {
         let damaged = |what: &str| HeadError::Damaged(what.to_owned());
-        // The version first: another one may say other things.
+        // Check the version first: other versions may have other fields.
         let table: toml::Table = text.parse().map_err(|_| damaged("its head cannot be read"))?;
         let version = table.get("version").and_then(toml::Value::as_integer);
         match version.ok_or_else(|| damaged("its head has no version"))? {
@@ -72,17 +72,17 @@ impl Head {
         Ok(head)
     }
 
-    /// Whether head and texts are those that were written.
+    /// Whether head and texts match their checksum.
     pub fn is_whole(&self, texts: Texts) -> bool {
         self.sum(texts).finish() == self.head_checksum
     }
 
-    /// Whether the sums are those that were written.
+    /// Whether the sums match their checksum.
     pub fn has_sums(&self, texts: Texts, halves: &[Vec<PixelSum>]) -> bool {
         with_sums(self.sum(texts), halves) == self.checksum
     }
 
-    /// The samples that the film holds.
+    /// The sample ranges that the film holds.
     pub fn ranges(&self) -> Result<SampleRanges, FilmError> {
         SampleRanges::from_ranges(self.samples.iter().map(|[start, end]| *start..*end))
     }
@@ -103,12 +103,12 @@ fn with_sums(mut sum: Checksum, halves: &[Vec<PixelSum>]) -> String {
     sum.finish()
 }
 
-/// The lines of a description as they stand in a file.
+/// The lines of a description as they are stored in a file.
 pub(super) fn comments(description: &Description) -> String {
     description.lines().map(|line| line + "\n").collect()
 }
 
-/// A head that cannot be used.
+/// Why a head cannot be used.
 pub(super) enum HeadError {
     Version(i64),
     Damaged(String),

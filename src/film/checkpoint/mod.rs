@@ -1,15 +1,15 @@
-//! Film files: an OpenEXR picture that any viewer opens, and in it the exact sums, so that the same file is
-//! picture, checkpoint and part to be merged.
+//! Film files: an OpenEXR picture that any viewer opens, which also contains the exact sums. The same file serves as
+//! picture, as checkpoint, and as a part to be merged.
 //!
-//! One part, scan lines, lossless. Channels `R`, `G`, `B` (float) are the mean. Channels `sum.a.R.lo`,
-//! `sum.a.R.hi` and so on (32-bit unsigned) are the low and high words of each half's sums. Three texts go with
-//! them: `comments` has the description's lines, `weekenderRecipe` the recipe, `weekenderFilm` what [`Head`]
-//! says.
+//! The file has one part, scan lines and lossless compression. Channels `R`, `G`, `B` (float) are the mean. Channels
+//! `sum.a.R.lo`, `sum.a.R.hi` and so on (32-bit unsigned) are the low and high words of each half's sums. Three text
+//! attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
+//! `weekenderFilm` the [`Head`].
 //!
-//! Nothing that is read can change unnoticed: one checksum covers the texts and all numbers of the head, another these
-//! and the sums, and the mean is held against the sums. What a flipped bit may leave without notice says nothing of
-//! the film: the standard attributes that other programs read (the program's name, the window's place, the aspect of
-//! a pixel), and spaces.
+//! No data that is read can change unnoticed: one checksum covers the texts and all numbers of the head, another one
+//! covers these and the sums, and the mean is checked against the sums. Only flipped bits that do not affect the film
+//! can stay unnoticed: in standard attributes for other programs (the program's name, the window's position, the
+//! pixel aspect ratio), and in white space.
 
 mod head;
 mod read;
@@ -26,38 +26,38 @@ use crate::memory::MemoryError;
 use exr::prelude::SampleType;
 use std::path::PathBuf;
 
-/// The version of what is in a film file beyond the picture, and of the numbers that its samples are made from: films
-/// of other numbers are neither resumed nor merged.
+/// The version of the film data beyond the picture, and of the random numbers behind its samples. Films of other
+/// versions are neither resumed nor merged.
 pub const VERSION: u32 = 3;
 
-/// How an OpenEXR file begins.
+/// The first bytes of an OpenEXR file.
 pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 const FILM_ATTRIBUTE: &str = "weekenderFilm";
 const RECIPE_ATTRIBUTE: &str = "weekenderRecipe";
 
-/// What a film file holds.
+/// The content of a film file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FilmFile {
-    /// The sums.
+    /// The exact sums.
     pub film: Film,
-    /// The recipe of the film's job, and what else is said of it.
+    /// The recipe of the film's job, and the other entries of its description.
     pub description: Description,
 }
 
-/// A file that is no film.
+/// Why a file cannot be loaded as a film.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CheckpointError {
     /// The file cannot be read.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// Another kind of file.
+    /// The file is not an EXR file.
     #[error("{} is no EXR file; a film is kept in a file that ends in .exr", path.display())]
     NotExr {
         /// The file.
         path: PathBuf,
     },
-    /// A plain picture.
+    /// The file is an EXR picture without a film.
     #[error(
         "{} is a picture without the sums of its samples, so nothing can be added to it; only an .exr file that Weekender wrote has them",
         path.display()
@@ -66,7 +66,7 @@ pub enum CheckpointError {
         /// The file.
         path: PathBuf,
     },
-    /// Written by another version.
+    /// The film was written by another version.
     #[error(
         "{} holds a film of version {version}, but this program reads version {VERSION}; go on with the program that wrote it, or render it again",
         path.display()
@@ -74,10 +74,10 @@ pub enum CheckpointError {
     Version {
         /// The file.
         path: PathBuf,
-        /// Its version.
+        /// The version found in the file.
         version: i64,
     },
-    /// Something in it is missing or was changed.
+    /// Something in the file is missing or was changed.
     #[error("{} is damaged: {what}; use an earlier copy or render it again", path.display())]
     Damaged {
         /// The file.
@@ -85,17 +85,17 @@ pub enum CheckpointError {
         /// What is wrong.
         what: String,
     },
-    /// There is no memory for it.
+    /// There is not enough memory for the film.
     #[error("cannot read {}: {reason}", path.display())]
     Memory {
         /// The file.
         path: PathBuf,
-        /// What it needs, and what there is.
+        /// How much memory it needs and how much is available.
         reason: MemoryError,
     },
 }
 
-/// What a channel holds.
+/// What a channel contains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Plane {
     Mean { colour: usize },
@@ -103,7 +103,7 @@ enum Plane {
 }
 
 impl Plane {
-    /// All that a film of `half_count` halves has, with their names.
+    /// All planes of a film with `half_count` halves, with their channel names.
     fn all(half_count: usize) -> Vec<(String, Plane)> {
         let mut planes = Vec::new();
         for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
@@ -126,7 +126,7 @@ impl Plane {
     }
 }
 
-/// The mean of `sum` as the picture has it. `unit` is [`Film::fixed_point_of_1`].
+/// The mean of `sum` as stored in the picture. `unit` is [`Film::fixed_point_of_1`].
 fn mean(sum: u64, unit: f64) -> f32 {
     (sum as f64 / unit) as f32
 }
@@ -151,7 +151,7 @@ mod tests {
         film
     }
 
-    /// A film file of which all is whole but what `change` does.
+    /// A film file that is valid except for what `change` does to its head.
     fn file(change: impl FnOnce(&mut Head)) -> Vec<u8> {
         let film = film();
         let mut head = Head::of(&film, TEXTS);
@@ -192,7 +192,7 @@ mod tests {
         assert_eq!(opened(&bytes).unwrap().film, film());
     }
 
-    /// The file with other bytes behind an attribute's name, type and length.
+    /// The file with other bytes at `offset` after an attribute's name, type and length.
     fn with_attribute(mut bytes: Vec<u8>, name: &[u8], offset: usize, value: i32) -> Vec<u8> {
         let place = bytes.windows(name.len()).position(|window| window == name).unwrap() + name.len() + 4;
         bytes[place + offset..place + offset + 4].copy_from_slice(&value.to_le_bytes());

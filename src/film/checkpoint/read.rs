@@ -1,4 +1,4 @@
-//! Reading a film file: what it says of itself, its length and its memory are checked before its sums are read.
+//! Reading film files: the head, the file's length and the memory needed are checked before the sums are read.
 
 use super::head::{Head, HeadError, Texts};
 use super::{
@@ -15,19 +15,19 @@ use exr::prelude::{AttributeValue, Compression, MetaData};
 use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
-/// Reads a film file: the same film to the bit, and its description.
+/// Reads a film file. The film is identical to the bit to the one that was written.
 ///
 /// # Errors
-/// [`CheckpointError`], each with what to do.
+/// [`CheckpointError`]; each message says what to do.
 pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
     let (file, length) = files::open(path)?;
     read(BufReader::new(file), length, path)
 }
 
-/// The same from a reader that gives `length` bytes; `path` stands in messages.
+/// Reads a film from a reader of `length` bytes. Messages name `path`.
 ///
 /// # Errors
-/// [`CheckpointError`], each with what to do.
+/// [`CheckpointError`]; each message says what to do.
 pub fn read(mut reader: impl Read + Seek, length: u64, path: &Path) -> Result<FilmFile, CheckpointError> {
     let source = Source { path };
     source.check_magic(&mut reader)?;
@@ -61,10 +61,10 @@ pub fn read(mut reader: impl Read + Seek, length: u64, path: &Path) -> Result<Fi
     Ok(FilmFile { film: film.map_err(|error| source.no_film(error))?, description })
 }
 
-/// What an EXR file says about itself; `None` if it says nothing that Weekender wrote.
+/// Reads the description of an EXR file; `None` if Weekender did not write one.
 ///
 /// # Errors
-/// [`CheckpointError`], each with what to do.
+/// [`CheckpointError`]; each message says what to do.
 pub(crate) fn read_description(
     mut reader: impl Read + Seek,
     path: &Path,
@@ -77,7 +77,7 @@ pub(crate) fn read_description(
     source.description(header, &head).map(Some)
 }
 
-/// A file that is read, for what is said of it.
+/// A file that is being read, with the path that messages name.
 struct Source<'a> {
     path: &'a Path,
 }
@@ -114,7 +114,7 @@ impl Source<'_> {
         reader.rewind().map_err(unreadable)
     }
 
-    /// What the file says of its film; `None` if it has none.
+    /// The head of the film; `None` if the file has no film.
     fn head(&self, header: &Header) -> Result<Option<Head>, CheckpointError> {
         let Some(bytes) = attribute(header, FILM_ATTRIBUTE) else { return Ok(None) };
         let text = std::str::from_utf8(bytes).map_err(|_| self.damaged("its head is not text"))?;
@@ -124,7 +124,7 @@ impl Source<'_> {
         })
     }
 
-    /// What the file says of its picture, once it is certain that this is what was written.
+    /// The description of the picture, once it is certain that it is unchanged.
     fn description(&self, header: &Header, head: &Head) -> Result<Description, CheckpointError> {
         let texts = texts(header).ok_or_else(|| self.damaged("its recipe is missing"))?;
         if !head.is_whole(texts) {
@@ -152,7 +152,7 @@ fn texts(header: &Header) -> Option<Texts<'_>> {
     Some(Texts { recipe: attribute(header, RECIPE_ATTRIBUTE)?, comments })
 }
 
-/// What each of the file's channels is, if all is laid out as in a film.
+/// The plane that each channel of the file holds, if the layout is that of a film.
 fn find_planes(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
     let (columns, rows) = (header.layer_size.x(), header.layer_size.y());
     if (head.width as usize, head.height as usize) != (columns, rows) {
@@ -187,13 +187,13 @@ fn find_planes(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
     Ok(planes)
 }
 
-/// Bytes that each chunk takes at least: its place in the table, its row, its length.
+/// The fewest bytes that a chunk takes: its entry in the offset table, its row number and its length.
 const CHUNK_BYTES: u64 = 16;
 
-/// A chunk may be so large whatever the file's length: tiles may be larger than the picture.
+/// A chunk may always be this large, whatever the file's length: tiles may be larger than the picture.
 const SMALL_CHUNK_BYTES: u64 = 16 << 20;
 
-/// Refuses a file that is too short for what it says that it holds, and what no reader can take.
+/// Refuses a file that is too short for what it claims to hold, and files that no reader can handle.
 pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     if header.deep {
         return Err("it holds deep data".to_owned());
@@ -201,7 +201,7 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     if header.channels.list.iter().any(|channel| channel.sampling.area() != 1) {
         return Err("some of its channels have fewer samples than pixels".to_owned());
     }
-    // What a byte may become at most.
+    // The largest number of bytes that one stored byte can decompress to.
     let ratio = match header.compression {
         Compression::Uncompressed => 1,
         Compression::RLE => 64,
@@ -229,7 +229,7 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// The sums, put together row by row.
+/// The sums, assembled row by row.
 struct Rows {
     planes: Vec<Plane>,
     width: usize,
