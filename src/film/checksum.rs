@@ -1,9 +1,9 @@
-//! A number by which changed data is told from what was written.
+//! A checksum that detects changed data.
 
-/// FNV-1a over words of 64 bits. It finds damage, not intent.
+/// FNV-1a over 64-bit words. It detects damage, not tampering.
 ///
-/// Each step maps states one to one, and for one state words one to one. So of two lists of equal length that differ
-/// in a single word, the sums differ, without exception.
+/// Each step is a bijection of states for a fixed word, and of words for a fixed state. Two lists of equal length that
+/// differ in a single word therefore always have different checksums.
 #[derive(Clone, Copy, Debug)]
 pub struct Checksum(u64);
 
@@ -17,7 +17,7 @@ impl Checksum {
     /// Adds a word.
     pub fn word(&mut self, word: u64) {
         self.0 = (self.0 ^ word).wrapping_mul(0x0000_0100_0000_01b3);
-        // The product carries upwards only: without this, high bits of a word would reach few bits.
+        // The product only carries upwards: without this step, high bits of a word would affect few bits.
         self.0 ^= self.0 >> 32;
     }
 
@@ -32,7 +32,7 @@ impl Checksum {
         text.iter().for_each(|byte| self.word(u64::from(*byte)));
     }
 
-    /// What it has come to: 16 digits of base 16.
+    /// The checksum as 16 hexadecimal digits.
     pub fn finish(self) -> String {
         format!("{:016x}", self.0)
     }

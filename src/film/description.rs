@@ -1,11 +1,11 @@
-//! What a picture says about itself.
+//! The description of a picture that is stored in its file.
 
 use std::fmt::Display;
 
-/// The name under which a picture's recipe stands in a file.
+/// The key of the recipe in a picture file.
 pub const RECIPE_KEY: &str = "Weekender recipe";
 
-/// Keys that Weekender writes; others may stand beside them.
+/// Keys that Weekender writes. Other keys are allowed.
 pub mod key {
     /// Program and version.
     pub const SOFTWARE: &str = "Software";
@@ -13,7 +13,7 @@ pub mod key {
     pub const SCENE: &str = "Scene";
     /// The stage's id.
     pub const STAGE: &str = "Stage";
-    /// Where the camera stands and how it looks.
+    /// The camera's position and settings.
     pub const CAMERA: &str = "Camera";
     /// The sampler's name.
     pub const SAMPLER: &str = "Sampler";
@@ -23,14 +23,14 @@ pub mod key {
     pub const SAMPLES: &str = "Samples";
     /// Seconds of tracing.
     pub const SECONDS: &str = "Seconds";
-    /// What rendered it.
+    /// The backend that rendered it.
     pub const BACKEND: &str = "Backend";
 }
 
 /// Longest key, bytes: PNG's limit.
 const KEY_BYTES: usize = 79;
 
-/// A list of keys and values in order, and the recipe that the picture was made from, as TOML.
+/// An ordered list of keys and values, and the recipe of the picture as TOML.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Description {
     recipe: String,
@@ -38,7 +38,7 @@ pub struct Description {
 }
 
 impl Description {
-    /// A description that says nothing but the recipe. Line ends become `\n`.
+    /// A description that has only the recipe. Line ends become `\n`.
     pub fn new(recipe_toml: &str) -> Self {
         Description { recipe: recipe_toml.replace("\r\n", "\n").replace('\r', "\n"), entries: Vec::new() }
     }
@@ -48,11 +48,11 @@ impl Description {
         &self.recipe
     }
 
-    /// Says `key: value`, in place of what was said under that key, else at the end.
+    /// Sets `key` to `value`: replaces the old value, or appends an entry.
     ///
-    /// Every kind of file must be able to hold it and give it back. So in a key, whatever is not printable
-    /// ASCII and each colon becomes `_`, and 79 bytes are kept; in a value, control characters become spaces;
-    /// both lose the spaces around them. An empty key is not taken.
+    /// Every file format must be able to store the entry and return it unchanged. So in a key, each character that is not
+    /// printable ASCII and each colon becomes `_`, and the key is cut to 79 bytes. In a value, control characters become
+    /// spaces. Spaces at both ends are removed. An empty key is ignored.
     pub fn set(&mut self, key: &str, value: impl Display) {
         let key: String = key
             .trim()
@@ -71,7 +71,7 @@ impl Description {
         }
     }
 
-    /// What is said under `key`.
+    /// The value of `key`.
     pub fn get(&self, key: &str) -> Option<&str> {
         self.entries.iter().find(|(known, _)| known == key).map(|(_, value)| value.as_str())
     }
@@ -86,7 +86,7 @@ impl Description {
         self.entries.iter().map(|(key, value)| format!("{key}: {value}"))
     }
 
-    /// Reads a line of [`Description::lines`]; any other is left out.
+    /// Parses a line of [`Description::lines`]; other lines are ignored.
     pub fn set_line(&mut self, line: &str) {
         if let Some((key, value)) = line.split_once(':') {
             self.set(key, value);

@@ -1,9 +1,9 @@
-//! What one film, or one set of samples, has beyond another.
+//! Differences of films and of sample sets.
 
 use super::{Film, PixelSum, SampleRanges};
 use std::ops::Range;
 
-/// The ranges of `all` without those of `taken`: sorted and disjoint, as both are.
+/// The ranges in `all` without those in `taken`. Both inputs and the result are sorted and disjoint.
 pub(super) fn minus(all: &SampleRanges, taken: &SampleRanges) -> Vec<Range<u64>> {
     let mut left = Vec::new();
     let mut taken = taken.iter().peekable();
@@ -32,13 +32,14 @@ pub(super) fn minus(all: &SampleRanges, taken: &SampleRanges) -> Vec<Range<u64>>
 pub(super) fn ranges_of(ranges: &[Range<u64>]) -> SampleRanges {
     let mut set = SampleRanges::default();
     for range in ranges {
-        // Disjoint as they are, nothing overlaps.
+        // The ranges are disjoint, so nothing overlaps.
         let _ = set.insert(range.clone());
     }
     set
 }
 
-/// What `film` holds beyond `base`, all of whose samples it has; `None` if its sums are not those of `base` and more.
+/// The part of `film` that is not in `base`. `film` has all samples of `base`; the result is `None` if its sums are
+/// not those of `base` plus others.
 pub(super) fn difference(film: Film, base: &Film) -> Option<Film> {
     let samples = ranges_of(&minus(film.samples(), base.samples()));
     let rejected = film.rejected().checked_sub(base.rejected())?;

@@ -1,63 +1,64 @@
-//! Films from several files, added.
+//! Merges films from several files.
 
 use super::{CheckpointError, FilmError, FilmFile, SampleRanges, checkpoint, key};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Film files that cannot be added.
+/// Why film files cannot be merged.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum MergeError {
-    /// No file was named.
+    /// No file was given.
     #[error("no film was named; name the film files that are to be added")]
     NoFiles,
-    /// A file is no film.
+    /// A file cannot be loaded as a film.
     #[error(transparent)]
     File(#[from] CheckpointError),
-    /// Two films of different jobs.
+    /// Two films are of different jobs.
     #[error(
         "{} and {} are films of different jobs: {difference}; only films that differ in their samples alone can be added",
         first.display(), other.display()
     )]
     OtherJob {
-        /// A file.
+        /// The first file.
         first: PathBuf,
         /// A file whose film has another job.
         other: PathBuf,
-        /// What differs.
+        /// What differs between the jobs.
         difference: String,
     },
-    /// Two films with samples in common.
+    /// Two films have samples in common.
     #[error(
         "{} and {} both hold the samples {}..{}; each sample may be added once, so leave one of them out",
         first.display(), other.display(), range.start, range.end
     )]
     Overlap {
-        /// A file.
+        /// The first file.
         first: PathBuf,
         /// A file that holds some of the same samples.
         other: PathBuf,
         /// The first samples that both hold.
         range: Range<u64>,
     },
-    /// Films that differ in shape.
+    /// The films differ in shape.
     #[error("{} and {} cannot be added: {reason}", first.display(), other.display())]
     Film {
-        /// A file.
+        /// The first file.
         first: PathBuf,
-        /// The file that cannot be added to it.
+        /// The file that cannot be merged with it.
         other: PathBuf,
-        /// Why.
+        /// The reason.
         reason: FilmError,
     },
 }
 
-/// Adds the films of several files. At most two of them are in memory at a time.
+/// Merges the films of several files. At most two of them are in memory at a time.
 ///
-/// `same_job` is given the recipes of the first file and of another, and says what differs if their jobs do. The
-/// description is the first file's, with the samples of all and, if all files say them, their seconds added.
+/// `same_job` gets the recipes of the first file and of another one, and returns what differs if their jobs differ.
+/// The description is that of the first file, with the samples of all files and, if all files have them, the sum of
+/// their seconds.
 ///
 /// # Errors
-/// [`MergeError`], with the files that do not go together.
+/// [`MergeError`], with the files that do not match.
 pub fn merge_files<P: AsRef<Path>>(
     paths: &[P],
     same_job: impl Fn(&str, &str) -> Result<(), String>,
@@ -107,7 +108,7 @@ fn seconds_of(file: &FilmFile) -> Option<f64> {
     file.description.get(key::SECONDS)?.parse().ok()
 }
 
-/// Whether two recipes have the same text, apart from lines that set `samples_per_pixel`.
+/// Checks whether two recipes have the same text, apart from lines that set `samples_per_pixel`.
 ///
 /// # Errors
 /// The first lines that differ.

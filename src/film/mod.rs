@@ -1,9 +1,9 @@
-//! The film: what all samples add up to, exactly.
+//! The film: the exact sums of all samples.
 //!
-//! A sample's radiance `x` becomes `k = round(x 2^24)`, and a pixel is the 64-bit sum of its `k`. Integer sums
-//! do not depend on their order, so threads, lanes, backends, machines and resumed runs all arrive at the same
-//! bits. Samples go to two halves in turn, so that their difference tells the error (see [`Film::error`]); a
-//! film that is not asked for its error has one half.
+//! A sample's radiance `x` becomes the integer `k = round(x 2^24)`, and a pixel is the 64-bit sum of its `k`. Integer
+//! sums do not depend on order, so threads, lanes, backends, machines and resumed runs all produce the same bits.
+//! Samples go to two halves in turn, and the difference of the halves gives an estimate of the error (see
+//! [`Film::error`]). A film without an error estimate has one half.
 
 pub mod checkpoint;
 mod checksum;
@@ -27,15 +27,15 @@ use std::ops::Range;
 /// One unit of the film's fixed point is `2^-24` of radiance.
 pub const FIXED_POINT_SCALE: f64 = 16_777_216.0;
 
-/// A sample's radiance is below this; more is cut off there. It is the largest that fits a signed 32-bit
-/// integer, which every processor converts to in one instruction.
+/// A sample's radiance is clamped to stay below this limit. It is the largest limit whose fixed-point values fit a
+/// signed 32-bit integer, to which every processor converts in one instruction.
 pub const RADIANCE_LIMIT: f64 = 128.0;
 
 /// The largest `k`: that of the greatest `f32` below [`RADIANCE_LIMIT`].
 pub const FIXED_POINT_MAX: u32 = 2_147_483_520;
 
-/// Sample indices are below this, on every way into a film. So a pixel's sum, of all halves and of any films that may
-/// be added, is below `2^32 FIXED_POINT_MAX < 2^63` and cannot overflow.
+/// Every sample index in a film is below this limit. A pixel's sum over all halves, and over any films that can be
+/// merged, is therefore below `2^32 FIXED_POINT_MAX < 2^63` and cannot overflow.
 pub const SAMPLE_LIMIT: u64 = 1 << 32;
 
 const _: () = assert!((SAMPLE_LIMIT as u128) * (FIXED_POINT_MAX as u128) < 1 << 63);
@@ -48,7 +48,7 @@ pub const SIZE_LIMIT: u32 = 16_384;
 pub struct PixelSum(pub [u64; 3]);
 
 impl PixelSum {
-    /// Adds another sum, of other samples of the pixel: see [`SAMPLE_LIMIT`] for why there is room.
+    /// Adds another sum of other samples of the same pixel. It cannot overflow: see [`SAMPLE_LIMIT`].
     pub fn add(&mut self, other: PixelSum) {
         for (mine, theirs) in self.0.iter_mut().zip(other.0) {
             *mine += theirs;
@@ -61,8 +61,8 @@ impl PixelSum {
     }
 }
 
-/// One sample's radiance as the film keeps it, or `None` where a component is NaN, infinite or negative: such
-/// a sample is not added but counted.
+/// Converts one sample's radiance to fixed point. Returns `None` if a component is NaN, infinite or negative; such a
+/// sample is counted but not added.
 pub fn fixed_point(radiance: [f64; 3]) -> Option<PixelSum> {
     if radiance.iter().all(|x| x.is_finite() && *x >= 0.0) {
         let k = |x: f64| ((x * FIXED_POINT_SCALE).round_ties_even() as u64).min(u64::from(FIXED_POINT_MAX));
@@ -77,29 +77,29 @@ pub fn fixed_point(radiance: [f64; 3]) -> Option<PixelSum> {
 pub struct ErrorEstimate {
     /// Root of the mean squared error over pixels and channels, linear radiance.
     pub rmse: f64,
-    /// How far `rmse` may be off by chance, one deviation: from the spread of the squared errors over the pixels. What
-    /// no sample has met yet is in neither.
+    /// One standard deviation of `rmse`, from the spread of the squared errors over the pixels. Neither number includes
+    /// features that no sample has hit yet.
     pub rmse_deviation: f64,
-    /// `mean(error^2 / (mean^2 + 0.01))`: errors in the dark count for more.
+    /// `mean(error^2 / (mean^2 + 0.01))`, which gives errors in dark regions more weight.
     pub rel_mse: f64,
 }
 
-/// With fewer pixels in effect the error estimate is in doubt.
+/// The error estimate is doubtful if it effectively rests on fewer pixels than this.
 const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
 
-/// It is so only if they are less than this share of all: small pictures have few pixels.
+/// It is doubtful only if these are also less than this share of all pixels: small pictures have few pixels.
 const DOMINANT_SHARE: f64 = 0.2;
 
 impl ErrorEstimate {
-    /// As how many pixels of like errors those are from which it comes, `(sum e^2)^2 / sum e^4` with `e` the errors: few,
-    /// where a few pixels dominate it; infinite without any error.
+    /// The effective number of pixels behind the estimate, `(sum e^2)^2 / sum e^4` with `e` the errors. It is small if a
+    /// few pixels dominate, and infinite without any error.
     pub fn pixels_in_effect(&self) -> f64 {
-        // Of n pixels, the variance of the mean square is (mean e^4 - (mean e^2)^2) / n.
+        // For n pixels, the variance of the mean square is (mean e^4 - (mean e^2)^2) / n.
         let share = 2.0 * self.rmse_deviation / self.rmse;
         if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
     }
 
-    /// How far off it may be by chance, as "± 0.2 %": one deviation.
+    /// The relative uncertainty of the estimate, one standard deviation, such as "± 0.2 %".
     pub fn uncertainty(&self) -> String {
         let share = if self.rmse > 0.0 { self.rmse_deviation / self.rmse } else { 0.0 };
         format!("± {:.1} %", (100.0 * share).max(0.1))
@@ -118,7 +118,7 @@ pub struct Film {
 
 impl Film {
     /// An empty film of `width` by `height` pixels and `half_count` halves (1 or 2).
-    /// It takes 24 bytes a pixel and half.
+    /// It takes 24 bytes per pixel and half.
     pub fn new(width: u32, height: u32, half_count: usize) -> Self {
         debug_assert!(half_count == 1 || half_count == 2);
         let pixels = width as usize * height as usize;
@@ -131,10 +131,10 @@ impl Film {
         }
     }
 
-    /// As [`Film::new`], but having no memory is an error.
+    /// Like [`Film::new`], but returns an error if there is not enough memory.
     ///
     /// # Errors
-    /// [`FilmError::Memory`], before any is taken.
+    /// [`FilmError::Memory`], before any memory is allocated.
     pub fn try_new(width: u32, height: u32, half_count: usize) -> Result<Self, FilmError> {
         let what = || format!("a film of {width}x{height} pixels");
         memory::check(what, Film::bytes(width, height, half_count), SMALLER_FILM)?;
@@ -144,10 +144,10 @@ impl Film {
         Ok(Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 })
     }
 
-    /// A film from its parts, as a file has them.
+    /// Assembles a film from parts that were read from a file.
     ///
     /// # Errors
-    /// [`FilmError::Parts`] if they are not those of any film.
+    /// [`FilmError::Parts`] if the parts do not make a valid film.
     pub fn from_parts(
         width: u32,
         height: u32,
@@ -183,7 +183,7 @@ impl Film {
         Ok(())
     }
 
-    /// Bytes that the sums of such a film take.
+    /// Bytes that the sums of such a film need.
     pub fn bytes(width: u32, height: u32, half_count: usize) -> u64 {
         (u64::from(width) * u64::from(height)).saturating_mul((half_count * size_of::<PixelSum>()) as u64)
     }
@@ -203,12 +203,12 @@ impl Film {
         &self.halves
     }
 
-    /// Which samples every pixel holds.
+    /// The samples that every pixel holds.
     pub fn samples(&self) -> &SampleRanges {
         &self.samples
     }
 
-    /// Samples that were NaN, infinite or negative and so were left out, over all pixels.
+    /// The number of samples, over all pixels, that were left out because they were NaN, infinite or negative.
     pub fn rejected(&self) -> u64 {
         self.rejected
     }
@@ -223,16 +223,16 @@ impl Film {
         self.samples.count_in_half(half, self.halves.len())
     }
 
-    /// The sums, for a renderer to add to. It must afterwards say what it added: [`Film::record`].
+    /// The sums, for a renderer to add to. The renderer must then record what it added: [`Film::record`].
     pub fn halves_mut(&mut self) -> &mut [Vec<PixelSum>] {
         &mut self.halves
     }
 
-    /// Notes that every pixel now holds the samples of `range` besides, `rejected` of which were left out.
+    /// Records that every pixel now also holds the samples of `range`, of which `rejected` were left out.
     ///
     /// # Errors
-    /// [`FilmError::Overlap`] if some of them were there before, [`FilmError::Range`] if there are none so large; the
-    /// note is not taken.
+    /// [`FilmError::Overlap`] if the film already had some of them, [`FilmError::Range`] if they reach beyond the limit.
+    /// Nothing is recorded then.
     pub fn record(&mut self, range: Range<u64>, rejected: u64) -> Result<(), FilmError> {
         let rejected = self.with_rejected(rejected)?;
         self.samples.insert(range)?;
@@ -266,10 +266,10 @@ impl Film {
         pixels
     }
 
-    /// Rows `rows` of the picture, linear RGB, into `pixels` (`width` of them for each row).
+    /// Writes rows `rows` of the picture, linear RGB, to `pixels` (`width` pixels per row).
     ///
     /// # Panics
-    /// If a row is below the picture, or `pixels` is of another length.
+    /// If a row is below the picture, or `pixels` has another length.
     pub fn mean_rows(&self, rows: Range<u32>, pixels: &mut [[f32; 3]]) {
         let unit = self.fixed_point_of_1();
         self.for_each_sum(rows, pixels, |sum, pixel| *pixel = sum.0.map(|k| (k as f64 / unit) as f32));
@@ -282,16 +282,16 @@ impl Film {
         bytes
     }
 
-    /// Rows `rows` of [`Film::to_rgb8`], into `bytes` (`3 width` of them for each row). Rows do not depend on
-    /// each other, so that threads may share a picture.
+    /// Writes rows `rows` of [`Film::to_rgb8`] to `bytes` (`3 width` bytes per row). Rows do not depend on each other, so
+    /// several threads can share a picture.
     ///
     /// # Panics
-    /// If a row is below the picture, or `bytes` is of another length.
+    /// If a row is below the picture, or `bytes` has another length.
     pub fn resolve_rows(&self, rows: Range<u32>, transfer: Transfer, bytes: &mut [u8]) {
         let (unit, height) = (self.fixed_point_of_1(), self.height as usize);
         let (pixels, []) = bytes.as_chunks_mut::<3>() else { panic!("a pixel has 3 bytes") };
         assert_eq!(pixels.len(), self.width as usize * rows.len(), "3 bytes for each pixel of {rows:?}");
-        // The choice is the row's, and stays out of the loop over its pixels.
+        // Chosen once per row, outside the loop over its pixels.
         for (line, row) in pixels.chunks_exact_mut(self.width as usize).zip(rows) {
             if transfer.is_gamma(row as usize, height) {
                 self.for_each_sum(row..row + 1, line, |sum, pixel| {
@@ -305,13 +305,13 @@ impl Film {
         }
     }
 
-    /// A pixel's sum if all its samples were 1. It is a product with a power of two, so that dividing by it is
-    /// to the bit what dividing by the two factors would be.
+    /// The sum of a pixel whose samples are all 1. It is a product with a power of two, so dividing by it gives the same
+    /// bits as dividing by the two factors.
     fn fixed_point_of_1(&self) -> f64 {
         Film::fixed_point(self.sample_count())
     }
 
-    /// The same for `samples` a pixel.
+    /// The same for `samples` samples per pixel.
     fn fixed_point(samples: u64) -> f64 {
         samples.max(1) as f64 * FIXED_POINT_SCALE
     }
@@ -336,9 +336,9 @@ impl Film {
         }
     }
 
-    /// The error that the halves show. With `A` and `B` the means of `a` and `b` samples,
-    /// `MSE = mean((A - B)^2) a b / (a + b)^2`: a quarter of the squared difference when `a = b`, as after every
-    /// even number of samples. `None` with one half, or while a half has no sample.
+    /// The error estimated from the halves. With `A` and `B` the means of `a` and `b` samples,
+    /// `MSE = mean((A - B)^2) a b / (a + b)^2`. This is a quarter of the squared difference when `a = b`, as after every
+    /// even number of samples. `None` with one half, or while a half has no samples.
     pub fn error(&self) -> Option<ErrorEstimate> {
         let [half_a, half_b] = self.halves.as_slice() else { return None };
         let (count_a, count_b) = (self.half_sample_count(0) as f64, self.half_sample_count(1) as f64);
@@ -360,7 +360,7 @@ impl Film {
                 squares[channel] = square;
                 relative[channel] = square / (mean * mean + 1e-2);
             }
-            // Channels of a pixel share their noise.
+            // The channels of a pixel share their noise.
             let of_pixel = squares.iter().sum::<f64>();
             square_sum += of_pixel;
             fourth_power_sum += of_pixel * of_pixel;
@@ -377,8 +377,8 @@ impl Film {
         })
     }
 
-    /// What to say where an estimate of this film's error is in doubt: few pixels dominate it, or no path has found any
-    /// light. It is then most likely too low, and its deviation with it.
+    /// Why an estimate of this film's error is doubtful, in words: few pixels dominate it, or no path has found any light.
+    /// The estimate and its deviation are then most likely too low.
     pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
         if estimate.rmse == 0.0 && self.halves.iter().flatten().all(|sum| sum.0 == [0; 3]) {
             let count = self.sample_count();
@@ -396,11 +396,11 @@ impl Film {
         })
     }
 
-    /// Adds another film of the same size.
+    /// Merges another film of the same size into this one.
     ///
     /// # Errors
-    /// [`FilmError::Size`] or [`FilmError::Overlap`], or more rejected samples than can be counted; this film is then
-    /// as it was.
+    /// [`FilmError::Size`] or [`FilmError::Overlap`], or an error if there are more rejected samples than can be counted.
+    /// This film is then unchanged.
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
         let shape = |f: &Film| (f.width, f.height, f.halves.len());
         if shape(self) != shape(other) {
@@ -418,7 +418,7 @@ impl Film {
     }
 }
 
-/// What makes a film fit.
+/// Advice for making a film that fits into memory.
 const SMALLER_FILM: &str =
     "choose a smaller picture, or half the film with --estimate-error off, or close other programs";
 
@@ -426,7 +426,7 @@ fn mean_of(sum: PixelSum, count: u64) -> [f64; 3] {
     if count == 0 { [0.0; 3] } else { sum.radiance().map(|x| x / count as f64) }
 }
 
-/// One channel of a picture's pixel in `row` of `height`, from linear radiance.
+/// Converts one channel of a pixel in `row` of `height` from linear radiance to 8 bits.
 pub fn to_byte(linear: f64, transfer: Transfer, row: usize, height: usize) -> u8 {
     quantise(if transfer.is_gamma(row, height) { linear.max(0.0).sqrt() } else { linear })
 }
@@ -435,36 +435,36 @@ fn quantise(value: f64) -> u8 {
     (256.0 * value.clamp(0.0, 0.999)) as u8
 }
 
-/// Films that cannot be added, and what is no film.
+/// Why films cannot be merged, or why data is not a film.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum FilmError {
-    /// Different width, height or number of halves.
+    /// The films differ in width, height or number of halves.
     #[error("the films differ in shape: {}x{} with {} halves and {}x{} with {}", mine.0, mine.1, mine.2, theirs.0, theirs.1, theirs.2)]
     Size {
-        /// Width, height, halves.
+        /// Width, height and number of halves of this film.
         mine: (u32, u32, usize),
-        /// Width, height, halves.
+        /// Width, height and number of halves of the other film.
         theirs: (u32, u32, usize),
     },
-    /// Sample indices that no film can hold.
+    /// The sample indices are outside the range that a film can hold.
     #[error(
         "samples {}..{} are no range of samples, which begins before it ends, at {SAMPLE_LIMIT} at most",
         range.start, range.end
     )]
     Range {
-        /// The indices.
+        /// The rejected indices.
         range: Range<u64>,
     },
     /// A sample would be counted twice.
     #[error("samples {}..{} are already in the film; each sample may be added once", range.start, range.end)]
     Overlap {
-        /// The samples that both hold.
+        /// The samples that are in both.
         range: Range<u64>,
     },
-    /// There is no memory for the sums.
+    /// There is not enough memory for the sums.
     #[error(transparent)]
     Memory(#[from] MemoryError),
-    /// Parts that do not fit together.
+    /// The parts do not fit together.
     #[error("this is no film: {what}")]
     Parts {
         /// What is wrong.

@@ -4,7 +4,7 @@ use super::{FilmError, SAMPLE_LIMIT};
 use std::fmt;
 use std::ops::Range;
 
-/// The samples that a film holds: sorted, disjoint, not touching, below [`SAMPLE_LIMIT`].
+/// The samples that a film holds: sorted, disjoint, non-adjacent ranges below [`SAMPLE_LIMIT`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SampleRanges {
     ranges: Vec<Range<u64>>,
@@ -12,11 +12,11 @@ pub struct SampleRanges {
 }
 
 impl SampleRanges {
-    /// The set of all samples of `ranges`, which may stand in any order.
+    /// The set of all samples in `ranges`, which may be in any order.
     ///
     /// # Errors
-    /// [`FilmError::Range`] for one that is empty or reaches beyond [`SAMPLE_LIMIT`], [`FilmError::Overlap`] for two
-    /// that have samples in common.
+    /// [`FilmError::Range`] if a range is empty or reaches beyond [`SAMPLE_LIMIT`], [`FilmError::Overlap`] if two ranges
+    /// have samples in common.
     pub fn from_ranges(ranges: impl IntoIterator<Item = Range<u64>>) -> Result<Self, FilmError> {
         let mut ranges: Vec<Range<u64>> = ranges.into_iter().collect();
         for range in &ranges {
@@ -42,7 +42,7 @@ impl SampleRanges {
         Ok(set)
     }
 
-    /// Adds a range that begins where the set ends, or later.
+    /// Adds a range that begins at or after the end of the set.
     fn push(&mut self, range: Range<u64>) {
         self.count += range.end - range.start;
         match self.ranges.last_mut() {
@@ -51,12 +51,12 @@ impl SampleRanges {
         }
     }
 
-    /// How many.
+    /// The number of samples in the set.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// How many of them fall to half `half` of `half_count`: those with `index mod half_count == half`.
+    /// The number of samples in half `half` of `half_count`: those with `index mod half_count == half`.
     pub fn count_in_half(&self, half: usize, half_count: usize) -> u64 {
         let (half, half_count) = (half as u64, half_count as u64);
         let below = |end: u64| end / half_count + u64::from(end % half_count > half);
@@ -68,7 +68,7 @@ impl SampleRanges {
         self.ranges.iter().cloned()
     }
 
-    /// One past the largest sample, 0 when empty: where a run goes on.
+    /// One past the largest sample, 0 for an empty set. A resumed run continues here.
     pub fn end(&self) -> u64 {
         self.ranges.last().map_or(0, |r| r.end)
     }
@@ -78,24 +78,24 @@ impl SampleRanges {
         self.ranges.partition_point(|range| range.end <= sample)
     }
 
-    /// The first samples of `range` that are there, in one piece.
+    /// The first contiguous part of `range` that is in the set.
     pub fn overlap(&self, range: &Range<u64>) -> Option<Range<u64>> {
         let first = self.ranges.get(self.ranges_before(range.start))?;
         let both = first.start.max(range.start)..first.end.min(range.end);
         (!both.is_empty()).then_some(both)
     }
 
-    /// The first samples that both sets have, in one piece.
+    /// The first contiguous range of samples that both sets have.
     pub fn first_common(&self, other: &SampleRanges) -> Option<Range<u64>> {
         let (few, many) = if self.ranges.len() < other.ranges.len() { (self, other) } else { (other, self) };
         few.ranges.iter().find_map(|range| many.overlap(range))
     }
 
-    /// Adds a range; ranges that touch become one.
+    /// Adds a range; adjacent ranges are joined.
     ///
     /// # Errors
-    /// [`FilmError::Overlap`] if any of it is there, [`FilmError::Range`] if it reaches beyond [`SAMPLE_LIMIT`];
-    /// nothing is then added.
+    /// [`FilmError::Overlap`] if part of it is already in the set, [`FilmError::Range`] if it reaches beyond
+    /// [`SAMPLE_LIMIT`]. Nothing is added then.
     pub fn insert(&mut self, range: Range<u64>) -> Result<(), FilmError> {
         if range.is_empty() {
             return Ok(());
@@ -127,13 +127,13 @@ impl SampleRanges {
     /// [`FilmError::Overlap`] if they have some in common.
     pub fn union(&self, other: &SampleRanges) -> Result<SampleRanges, FilmError> {
         let mut ranges: Vec<Range<u64>> = self.iter().chain(other.iter()).collect();
-        // Two runs that are sorted are merged in linear time.
+        // The input consists of two sorted runs, which this sort merges in linear time.
         ranges.sort_by_key(|range| range.start);
         Self::of_sorted(ranges)
     }
 
-    /// The first samples of `within` that are missing, at most `limit` of them, in one piece; `None` when all
-    /// are there, or the limit is 0.
+    /// The first contiguous range of `within` that is missing, at most `limit` samples long. `None` if nothing is missing
+    /// or the limit is 0.
     pub fn first_gap(&self, within: Range<u64>, limit: u64) -> Option<Range<u64>> {
         let place = self.ranges_before(within.start);
         let (start, next) = match self.ranges.get(place) {

@@ -1,9 +1,9 @@
-//! A film file that several runs may write: none of them takes another's samples away.
+//! A film file that several runs may write at once, without any run losing another one's samples.
 //!
-//! A run remembers what stood at the file's place when it last looked. Before it puts a newer film there it looks
-//! again, under a lock on the directory where the system has one; between machines that share a directory without
-//! locks, only the moment between that look and the renaming is left. If another run has written meanwhile, the two
-//! films' samples are put together where they can be, and otherwise both are kept, under two names.
+//! A run remembers the file as it last saw it. Before the run replaces the file with a newer film, it looks again,
+//! under a lock on the directory if the system has one. Machines that share a directory without locks can only
+//! conflict between that look and the rename. If another run has written in the meantime, the samples of both films
+//! are merged if possible; otherwise both films are kept, under two names.
 
 use super::checkpoint::{self, FilmFile};
 use super::difference::{difference, minus, ranges_of};
@@ -15,43 +15,43 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// How long one run waits for another's look and renaming, which take a moment.
+/// How long a run waits for another run's check and rename, which take a moment.
 const LOCK_PATIENCE: Duration = Duration::from_secs(10);
 
-/// How often a film is put together with another before both are kept.
+/// How many times a run tries to merge with another run's film before both films are kept.
 const ATTEMPTS: usize = 5;
 
-/// The last number that a name of its own is looked for with.
+/// The largest number that is tried for a free file name.
 const NAME_LIMIT: u32 = 10_000;
 
-/// A place that film files are written to again and again.
+/// A file that a run writes its film to again and again.
 #[derive(Debug)]
 pub struct SharedFile {
     path: PathBuf,
     seen: Option<Stamp>,
-    /// Whether what was seen may be replaced: it is old, or all of it is in the own film.
+    /// Whether the file may be replaced: it is an older film, or this run's film contains all of it.
     may_replace: bool,
-    /// What was seen, held open so that it can be read after it has been replaced.
+    /// The file as last seen, held open so that it can still be read after it was replaced.
     base: Option<File>,
-    /// The own samples that are there.
+    /// This run's samples that the file holds.
     held: SampleRanges,
     /// Samples that other runs have added.
     others: Option<Film>,
 }
 
-/// What became of a film.
+/// The result of saving a film.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Saved {
     /// The file that holds it.
     pub path: PathBuf,
-    /// What a user should know: that another run has written the file, too.
+    /// A note for the user: another run has written the file too.
     pub note: Option<String>,
-    /// Whether the film had to go to a name of its own.
+    /// Whether the film had to be saved under a different name.
     pub is_elsewhere: bool,
 }
 
 impl SharedFile {
-    /// The place as it is now. What is there may be replaced.
+    /// The file as it is now. Its present content may be replaced.
     pub fn new(path: &Path) -> SharedFile {
         let mut place = SharedFile {
             path: path.to_owned(),
@@ -65,19 +65,19 @@ impl SharedFile {
         place
     }
 
-    /// Notes that what is there are the own film's first samples, which must not get fewer.
+    /// Notes that the file holds the first samples of this run's film. Later saves must not lose any of them.
     pub fn holds(&mut self, samples: &SampleRanges) {
         self.held = samples.clone();
     }
 
-    /// Remembers what was there.
+    /// Remembers the file that was found.
     fn note(&mut self, found: Option<(Stamp, Option<File>)>) {
         (self.seen, self.base) = found.map_or((None, None), |(stamp, file)| (Some(stamp), file));
     }
 
-    /// What is at `path`, held open where an open file can be replaced.
+    /// The file at `path`, held open on systems where an open file can be replaced.
     fn look_at(path: &Path) -> Option<(Stamp, Option<File>)> {
-        // Opened first: should it be replaced in between, the stamp is newer, and a look at the content decides.
+        // Open first: if the file is replaced in between, the stamp is newer, and its content is checked.
         let file = if cfg!(unix) { File::open(path).ok() } else { None };
         Some((Stamp::of(path).ok().flatten()?, file))
     }
@@ -86,11 +86,11 @@ impl SharedFile {
         Stamp::of(&self.path).is_ok_and(|now| now == self.seen)
     }
 
-    /// Puts `film` there, together with what others have added. `same_job` says of two recipes what differs if their
-    /// jobs do.
+    /// Saves `film`, merged with what other runs have added. `same_job` compares two recipes and returns what differs if
+    /// their jobs differ.
     ///
     /// # Errors
-    /// [`WriteError`]; the file that was there is then as it was.
+    /// [`WriteError`]; the previous file is then unchanged.
     pub fn save(
         &mut self,
         film: &Film,
@@ -99,7 +99,7 @@ impl SharedFile {
     ) -> Result<Saved, WriteError> {
         let (mut note, mut lock) = (None, None);
         for attempt in 0..ATTEMPTS {
-            // Reading and writing take long, so at first they go unlocked: there is seldom another run.
+            // Reading and writing take long and other runs are rare, so the first attempt does not lock.
             if attempt > 0 && lock.is_none() {
                 lock = lock_directory(&self.path);
             }
@@ -108,7 +108,7 @@ impl SharedFile {
                 Err(reason) => return self.save_elsewhere(film, description, &reason),
             };
             let mine = joined.as_ref().unwrap_or(film);
-            // A film that was lost on the way and began anew has less than what is there.
+            // A film that was lost during the run and restarted has fewer samples than the file.
             let has_shrunk = !minus(&self.held, mine.samples()).is_empty();
             if has_shrunk || !self.may_replace || !self.is_as_seen() {
                 match self.consider(mine, description, same_job) {
@@ -140,7 +140,7 @@ impl SharedFile {
         self.save_elsewhere(film, description, "others write it again and again")
     }
 
-    /// The film with what others have added; `None` if that is nothing.
+    /// The film merged with what others have added; `None` if they have added nothing.
     fn joined(&self, film: &Film) -> Result<Option<Film>, String> {
         let Some(others) = &self.others else { return Ok(None) };
         if minus(others.samples(), film.samples()).is_empty() {
@@ -151,7 +151,7 @@ impl SharedFile {
         Ok(Some(joined))
     }
 
-    /// What to do about a file that is not as it was seen.
+    /// Decides what to do about a file that has changed since it was last seen.
     fn consider(
         &mut self,
         mine: &Film,
@@ -160,7 +160,7 @@ impl SharedFile {
     ) -> Result<Verdict, String> {
         let seen = Stamp::of(&self.path).map_err(|error| error.to_string())?;
         if seen.is_none() {
-            // It has been taken away, or is a device.
+            // The file was deleted, or it is a device.
             self.seen = None;
             return Ok(Verdict::Replace);
         }
@@ -209,7 +209,7 @@ impl SharedFile {
         )))
     }
 
-    /// What `theirs` has beyond the film that both runs began with, if `common` is just that.
+    /// The part of `theirs` that is not in the film both runs started from, if `common` is exactly that film.
     fn without_base(&self, theirs: Film, common: &[Range<u64>]) -> Option<Film> {
         let mut file = self.base.as_ref()?;
         let length = file.metadata().ok()?.len();
@@ -218,7 +218,7 @@ impl SharedFile {
         (base.samples().iter().eq(common.iter().cloned())).then(|| difference(theirs, &base)).flatten()
     }
 
-    /// Keeps the film under a free name beside the file, and from now on only there.
+    /// Saves the film under a free name beside the file. Later saves also go there.
     fn save_elsewhere(
         &mut self,
         film: &Film,
@@ -248,26 +248,26 @@ impl SharedFile {
     }
 }
 
-/// What is to be done about a file that another run has written.
+/// What to do about a file that another run has written.
 enum Verdict {
-    /// All of it is in the own film.
+    /// Replace it: this run's film contains all of it.
     Replace,
-    /// Its samples have been added to the others'.
+    /// Replace it: this run's film now includes its samples.
     Added(String),
-    /// The own film is all in it.
+    /// Leave it: it contains all of this run's film.
     Leave(Option<String>),
 }
 
-/// `film.exr` as `film-2.exr`.
+/// Numbers a name: `film.exr` becomes `film-2.exr`.
 fn numbered(path: &Path, number: u32) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
     path.with_file_name(format!("{stem}-{number}{ending}"))
 }
 
-/// A lock, held as long as the result lives, that keeps other runs on this machine (and on others, where the file
-/// system carries locks over) from looking and renaming at the same time. `None` where there is no such lock: the look
-/// before the renaming remains.
+/// Locks the directory of `path` until the result is dropped, so that no other run on this machine checks and renames at
+/// the same time. This includes other machines if the file system shares locks. Without locks the result is `None`, and
+/// only the check before the rename protects the file.
 fn lock_directory(path: &Path) -> Option<File> {
     let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let file = File::open(directory.unwrap_or(Path::new("."))).ok()?;
@@ -326,26 +326,26 @@ mod tests {
         let description = Description::new("r");
         let holds = |samples: &[Range<u64>]| assert!(at(&path) == film(samples), "{}", at(&path).samples());
 
-        // One after the other, the second with less: its samples are all in the first's.
+        // The second run follows the first with fewer samples, all of which the first has.
         put(&path, &[0..4]);
         let (mut a, mut b) = (SharedFile::new(&path), SharedFile::new(&path));
         assert_eq!(a.save(&film(&[0..20]), &description, &same).unwrap().note, None);
         let left = b.save(&film(&[0..10]), &description, &same).unwrap();
         assert!(left.note.unwrap().contains("10..20"));
         holds(&[0..20]);
-        // It goes on, still with less, then with more.
+        // It continues, first still with fewer samples, then with more.
         b.save(&film(&[0..16]), &description, &same).unwrap();
         holds(&[0..20]);
         b.save(&film(&[0..24]), &description, &same).unwrap();
         holds(&[0..24]);
-        // The first comes back with other samples than the second has.
+        // The first run returns with samples that the second does not have.
         let put_together = a.save(&film(&[0..20, 40..44]), &description, &same).unwrap();
         assert!(put_together.note.unwrap().contains("20..24"));
         holds(&[0..24, 40..44]);
-        // What was put together stays so.
+        // The merged samples stay merged.
         a.save(&film(&[0..20, 40..48]), &description, &same).unwrap();
         holds(&[0..24, 40..48]);
-        // Samples that both have in part cannot be told apart: they are kept under another name.
+        // Partly overlapping samples cannot be separated, so the film is saved under another name.
         let saved = a.save(&film(&[0..22, 40..48]), &description, &same).unwrap();
         assert!(saved.is_elsewhere && saved.path != path);
         assert!(at(&saved.path) == film(&[0..22, 40..48]));
@@ -364,7 +364,7 @@ mod tests {
         resumed.save(&film(&[0..10]), &Description::new("r"), &same).unwrap();
         resumed.save(&film(&[0..6]), &Description::new("r"), &same).unwrap();
         assert!(at(&path) == film(&[0..10]));
-        // What was not resumed may be replaced by less.
+        // A film that was not resumed may be replaced by one with fewer samples.
         SharedFile::new(&path).save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
         assert!(at(&path) == film(&[0..2]));
     }
@@ -390,7 +390,7 @@ mod tests {
         assert!(saved.is_elsewhere && saved.note.unwrap().contains("seed is 0"));
         assert_eq!(saved.path, directory.path().join("g-2.exr"));
         assert!(at(&path) == film(&[0..4]) && at(&saved.path) == film(&[0..2]));
-        // From now on it goes there.
+        // Later saves go there too.
         let saved = run.save(&film(&[0..6]), &Description::new("r"), &other).unwrap();
         assert_eq!((saved.note, saved.path.file_name().unwrap().to_str()), (None, Some("g-2.exr")));
 

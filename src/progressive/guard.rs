@@ -1,4 +1,4 @@
-//! Calls of renderers, whose panics are errors like any other, and how a renderer is left that has failed.
+//! Guarded calls of renderers, which turn panics into errors, and disposal of failed renderers.
 
 use crate::backends::{BackendChoice, close};
 use crate::render::{RenderError, Renderer};
@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// A renderer and what it was made from.
 pub(super) type Backend = (BackendChoice, Box<dyn Renderer>);
 
-/// Runs `work`. A panic is the error of `backend`; the film is as it was, which renderers promise.
+/// Runs `work`. A panic becomes an error of `backend`. The film is unchanged then, as renderers promise.
 pub(super) fn guarded<T>(
     backend: &'static str,
     work: impl FnOnce() -> Result<T, RenderError>,

@@ -1,9 +1,9 @@
-//! A progressive render on its own thread: a film that grows pass by pass, while someone watches, pauses,
-//! switches the backend or changes the job.
+//! A progressive render on its own thread. The film grows pass by pass while the user watches, pauses, switches the
+//! backend or changes the job.
 //!
-//! Commands go through a channel and are obeyed between passes; what comes back is a small [`Status`] and, when
-//! asked for, a [`Picture`]. No call here waits for the renderer, but [`Progressive::wait`],
-//! [`Progressive::take_film`], [`Progressive::finish`] and dropping it.
+//! Commands are sent through a channel and obeyed between passes. The thread publishes a small [`Status`] and, on
+//! request, a [`Picture`]. Only [`Progressive::wait`], [`Progressive::take_film`], [`Progressive::finish`] and dropping
+//! the handle wait for the renderer; no other call blocks.
 
 mod guard;
 mod passes;
@@ -33,20 +33,20 @@ use std::thread::{self, JoinHandle};
 use std::time::Duration;
 use worker::{Command, Worker};
 
-/// Makes renderers, on the render thread or, while another renders, beside it.
+/// Makes renderers, on the render thread or, while another renderer works, on a separate thread.
 pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, BackendError> + Send>;
 
-/// Something to render.
+/// A job to render, with its backend and plan.
 pub struct Work {
     /// The picture.
     pub job: RenderJob,
-    /// Who renders it.
+    /// The backend that renders it.
     pub backend: BackendChoice,
-    /// A renderer of `backend` that is there already; else the render thread makes or reuses one.
+    /// An existing renderer of `backend`; otherwise the render thread makes or reuses one.
     pub renderer: Option<Box<dyn Renderer>>,
-    /// When it ends.
+    /// Which samples to render, and when to stop.
     pub plan: Plan,
-    /// A film of `job` that goes on; else an empty one.
+    /// A film of `job` to continue; otherwise the render starts with an empty film.
     pub film: Option<Film>,
 }
 
@@ -67,18 +67,18 @@ pub struct Progressive {
 }
 
 impl Progressive {
-    /// Starts the thread, with nothing to render yet.
+    /// Starts the thread, which then waits for work.
     ///
     /// # Errors
-    /// If the system gives no thread.
+    /// If the system cannot start a thread.
     pub fn spawn() -> io::Result<Self> {
         Self::with_factory(Box::new(backends::create))
     }
 
-    /// As [`Progressive::spawn`], with renderers from elsewhere.
+    /// Like [`Progressive::spawn`], with renderers made by `factory`.
     ///
     /// # Errors
-    /// If the system gives no thread.
+    /// If the system cannot start a thread.
     pub fn with_factory(factory: Factory) -> io::Result<Self> {
         let (commands, receiver) = mpsc::channel();
         let shared = Arc::new(Shared::default());
@@ -93,7 +93,7 @@ impl Progressive {
         })
     }
 
-    /// Begins `work`; what was being rendered is thrown away in the middle of its pass.
+    /// Starts `work`. A render in progress is abandoned in the middle of its pass.
     pub fn start(&mut self, work: Work) {
         self.cancel.store(true, Ordering::Relaxed);
         self.cancel = Arc::new(AtomicBool::new(false));
@@ -102,18 +102,18 @@ impl Progressive {
         self.send(Command::Start { run: self.run, work: Box::new(work), cancel: Arc::clone(&self.cancel) });
     }
 
-    /// Throws away what is being rendered.
+    /// Abandons the render in progress.
     pub fn abandon(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
         self.send(Command::Abandon);
     }
 
-    /// Stops at the end of the pass and keeps the backend, film and all.
+    /// Pauses at the end of the pass. The backend and the film are kept.
     pub fn pause(&self) {
         self.send(Command::Pause);
     }
 
-    /// Goes on after a pause or a stop.
+    /// Continues after a pause or a stop.
     pub fn resume(&self) {
         self.send(Command::Resume);
     }
@@ -123,22 +123,22 @@ impl Progressive {
         self.send(Command::Stop);
     }
 
-    /// Lets another backend go on with the same film. If it cannot be had, the old one goes on.
+    /// Continues the same film with another backend. If that backend is not available, the old one continues.
     pub fn switch_backend(&self, backend: BackendChoice) {
         self.send(Command::Switch(backend));
     }
 
-    /// Changes when the render ends. One that had ended goes on if there is something left to do.
+    /// Changes when the render ends. A finished render continues if the new plan has work left.
     pub fn set_plan(&self, plan: Plan) {
         self.send(Command::SetPlan(plan));
     }
 
-    /// The numbers as of the last pass.
+    /// The status after the last pass.
     pub fn status(&self) -> Status {
         self.shared.status()
     }
 
-    /// The newest picture, if there has been one since the last call. Asks for the next: see
+    /// Takes the newest picture, if there is a new one since the last call, and asks for the next: see
     /// [`Progressive::ask_for_picture`].
     pub fn take_picture(&self) -> Option<Picture> {
         let picture = self.newest_picture();
@@ -146,30 +146,30 @@ impl Progressive {
         picture
     }
 
-    /// The newest picture, if there has been one since the last call.
+    /// Takes the newest picture, if there is a new one since the last call.
     pub fn newest_picture(&self) -> Option<Picture> {
         self.shared.take_picture()
     }
 
-    /// Asks for one picture, which is resolved on the render thread as soon as there is something new to see: a
-    /// picture that nobody asks for costs nothing.
+    /// Asks for one picture. The render thread resolves it as soon as there is something new to see. Without a request, no
+    /// picture is resolved.
     pub fn ask_for_picture(&self) {
         if self.shared.want_picture() {
             self.send(Command::Look);
         }
     }
 
-    /// What pictures show from now on.
+    /// Sets what later pictures show.
     pub fn set_view(&self, view: View) {
         self.send(Command::SetView(view));
     }
 
-    /// Calls `notice` on the render thread when a picture is there or the phase has changed. It must be quick.
+    /// Sets a callback for the render thread: a picture is ready or the phase has changed. It must return quickly.
     pub fn set_notice(&self, notice: impl Fn() + Send + 'static) {
         self.shared.set_notice(Box::new(notice));
     }
 
-    /// Runs `look` on the render thread with the film as of a pass's end; without a film it is dropped.
+    /// Runs `look` with the film on the render thread, at the end of a pass. Without a film, `look` is dropped.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
         self.send(Command::Inspect(Box::new(look)));
     }
@@ -189,19 +189,19 @@ impl Progressive {
         }
     }
 
-    /// Ends the render after its pass and hands out the film; `None` if there is none.
+    /// Ends the render after the current pass and returns the film; `None` if there is no film.
     pub fn take_film(&self) -> Option<Film> {
         let (sender, receiver) = mpsc::channel();
         self.send(Command::Take(sender));
         receiver.recv().ok().flatten()
     }
 
-    /// As [`Progressive::take_film`], and ends the thread.
+    /// Like [`Progressive::take_film`], and ends the thread.
     pub fn finish(self) -> Option<Film> {
         self.take_film()
     }
 
-    /// A thread that has died has said so in the status, so that nothing is lost by not sending.
+    /// Sends a command. A dead thread has reported its end in the status, so a failed send can be ignored.
     fn send(&self, command: Command) {
         let _ = self.commands.send(command);
     }

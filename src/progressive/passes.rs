@@ -1,7 +1,7 @@
-//! How many samples a pass adds.
+//! Chooses the number of samples per pass.
 //!
-//! A pass is a range of samples whose length is a power of two and which starts at a multiple of its length,
-//! so that blocks of Sobol points stay whole. Its length follows from the time that passes take.
+//! A pass is a range of samples. Its length is a power of two and its start a multiple of its length, so that blocks of
+//! Sobol points stay whole. The length depends on how long earlier passes took.
 
 use crate::film::SampleRanges;
 use std::ops::Range;
@@ -19,30 +19,30 @@ pub struct PassSizer {
 const LENGTH_LIMIT: u64 = 1 << 16;
 
 impl PassSizer {
-    /// Starts small. With two halves a pass gives both the same number of samples.
+    /// Starts with short passes. With two halves, each pass gives both halves the same number of samples.
     pub fn new(half_count: usize) -> Self {
         let smallest = half_count as u64;
         PassSizer { smallest, length: smallest, seconds_per_sample: None }
     }
 
-    /// Forgets what passes took: another backend has other times.
+    /// Forgets the measured times, because another backend has a different speed.
     pub fn restart(&mut self) {
         self.length = self.smallest;
         self.seconds_per_sample = None;
     }
 
-    /// Notes what a pass took; the next takes about `target`, at most twice as many samples as this one.
+    /// Notes how long a pass took. The next pass should take about `target`, with at most twice as many samples as this one.
     pub fn measured(&mut self, samples: u64, took: Duration, target: Duration) {
         let per_sample = took.as_secs_f64() / samples.max(1) as f64;
         self.seconds_per_sample = Some(per_sample);
         let wanted = largest_power_of_two(target.as_secs_f64(), per_sample);
-        // After a pass that alignment kept short, the old length still stands.
+        // Alignment may have shortened the pass; the previous length then still applies.
         let most = (2 * samples).max(self.length);
         self.length = wanted.min(most).clamp(self.smallest, LENGTH_LIMIT);
     }
 
-    /// The next pass within `planned` that leaves out what `held` has; `None` when nothing is missing.
-    /// With `time_left` it is cut to what should be done by then, and `None` if not even the smallest would.
+    /// The next pass within `planned` without the samples in `held`; `None` when nothing is missing. With `time_left`, the
+    /// pass is shortened to finish in that time; `None` if even the shortest pass would take longer.
     pub fn next(
         &self,
         held: &SampleRanges,
@@ -69,7 +69,7 @@ impl PassSizer {
     }
 }
 
-/// The largest power of two of samples that fits into `seconds`, 0 if none does.
+/// The largest power-of-two number of samples that fits into `seconds`, or 0.
 fn largest_power_of_two(seconds: f64, per_sample: f64) -> u64 {
     if per_sample <= 0.0 {
         return LENGTH_LIMIT;
@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_pass_is_at_most_twice_as_long_as_the_one_before() {
-        // Where alignment does not keep it short.
+        // At a position where alignment does not shorten the pass.
         let (mut sizer, held, planned) = (PassSizer::new(2), SampleRanges::default(), 1 << 20..1 << 21);
         for length in [2, 4, 8, 16] {
             let pass = sizer.next(&held, planned.clone(), None).unwrap();

@@ -1,4 +1,4 @@
-//! A backend that gets ready on a thread of its own while the old one renders on.
+//! A pending backend, which is prepared on its own thread while the old one continues to render.
 
 use super::Factory;
 use crate::backends::BackendChoice;
@@ -8,21 +8,21 @@ use std::sync::mpsc::{self, Receiver};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A backend that is to take over.
+/// A backend that will take over when it is ready.
 pub(super) struct Pending {
     pub choice: BackendChoice,
-    /// Comes once.
+    /// Delivers exactly one result.
     pub outcome: Receiver<Result<Ready, String>>,
 }
 
-/// A renderer that has prepared the job, and what that took.
+/// A renderer that has prepared the job, and the time this took.
 pub(super) struct Ready {
     pub renderer: Box<dyn Renderer>,
     pub took: Duration,
 }
 
 impl Pending {
-    /// Starts to prepare `job`; `None` if the system gives no thread.
+    /// Starts to prepare `job`; `None` if the system cannot start a thread.
     pub fn start(
         choice: BackendChoice,
         job: &RenderJob,
@@ -39,7 +39,7 @@ impl Pending {
                 renderer.prepare(&job, &cancel).map_err(|error| error.to_string())?;
                 Ok(Ready { renderer, took: begin.elapsed() })
             });
-            // Nobody waits any more if another backend was chosen meanwhile.
+            // If another backend was chosen meanwhile, nobody receives this.
             let _ = sender.send(ready);
         };
         std::thread::Builder::new().name("prepare".to_owned()).spawn(prepare).ok()?;

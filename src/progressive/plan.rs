@@ -1,36 +1,36 @@
-//! What a progressive render is to do, and when it ends.
+//! The plan of a progressive render: what to render, and when to stop.
 
 use crate::film::ErrorEstimate;
 use crate::render::SAMPLE_LIMIT;
 use std::ops::Range;
 use std::time::Duration;
 
-/// The noise target is not looked at before each pixel has this many samples: the estimate of fewer is rough.
+/// The noise target is ignored until each pixel has this many samples, because earlier estimates are too rough.
 pub const NOISE_TARGET_FIRST_SAMPLES: u64 = 16;
 
-/// When a render ends: the first of these conditions that is met. Without any it goes on without end.
+/// Stop conditions: the first one that is met ends the render. Without any, the render is endless.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stop {
     /// The samples that every pixel should hold.
     pub samples: Option<u64>,
-    /// Most seconds, preparation included and pauses left out. At least one pass is always rendered.
+    /// Time limit in seconds, including preparation but not pauses. At least one pass is always rendered.
     pub seconds: Option<f64>,
-    /// RMSE, linear radiance, as the halves estimate it. Needs a film with two halves.
+    /// Target RMSE in linear radiance, as estimated from the halves. Needs a film with two halves.
     pub noise: Option<f64>,
 }
 
 impl Stop {
-    /// The error at which a picture on a screen no longer changes to the eye.
+    /// The error below which the eye sees no further change of a picture on a screen.
     pub const NOISE: f64 = 0.002;
 
-    /// After so many samples per pixel.
+    /// Stops after this many samples per pixel.
     pub fn at_samples(samples: u64) -> Self {
         Stop { samples: Some(samples), ..Stop::default() }
     }
 
-    /// The most wall time.
+    /// The time limit as a duration.
     pub fn time_limit(&self) -> Option<Duration> {
-        // Seconds that a duration cannot hold are as good as no limit.
+        // Seconds that a duration cannot hold count as no limit.
         self.seconds.map(|seconds| Duration::try_from_secs_f64(seconds.max(0.0)).unwrap_or(Duration::MAX))
     }
 
@@ -42,22 +42,22 @@ impl Stop {
     }
 }
 
-/// What a render is to do: which samples, until when, and how often it can be spoken to.
+/// Which samples to render, when to stop, and how long passes take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// The first sample of each pixel. Samples that are in the film already are left out.
+    /// The first sample of each pixel. Samples that are already in the film are skipped.
     pub first_sample: u64,
-    /// When it ends.
+    /// The stop conditions.
     pub stop: Stop,
-    /// What a pass should take; commands are obeyed between passes.
+    /// The duration that a pass should have. Commands are obeyed between passes.
     pub pass_target: Duration,
 }
 
 impl Plan {
-    /// Passes short enough that a person does not notice them.
+    /// A pass duration so short that users do not notice it.
     pub const INTERACTIVE_PASS: Duration = Duration::from_millis(50);
 
-    /// Passes long enough that their ends cost nothing.
+    /// A pass duration so long that the overhead between passes is negligible.
     pub const BATCH_PASS: Duration = Duration::from_millis(300);
 
     /// All samples until `stop`, in interactive passes.
@@ -65,12 +65,12 @@ impl Plan {
         Plan { first_sample: 0, stop, pass_target: Plan::INTERACTIVE_PASS }
     }
 
-    /// Samples `0..samples`, without other conditions, in interactive passes.
+    /// Samples `0..samples`, without other stop conditions, in interactive passes.
     pub fn samples(samples: u64) -> Self {
         Plan::until(Stop::at_samples(samples))
     }
 
-    /// Until told to stop.
+    /// Renders until it is stopped by a command.
     pub fn endless() -> Self {
         Plan::until(Stop::default())
     }
@@ -81,21 +81,21 @@ impl Plan {
     }
 }
 
-/// What ended a render.
+/// Why a render ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndReason {
     /// The film holds all samples of the plan.
     Samples,
-    /// The time limit; no further pass would have fitted in.
+    /// The time limit was reached, or no further pass would have fitted in.
     TimeLimit,
     /// The estimated error is at or below the target.
     NoiseTarget,
-    /// It was told to stop.
+    /// The user or another part of the program stopped it.
     Stopped,
 }
 
 impl EndReason {
-    /// As reports name it.
+    /// The name used in reports.
     pub fn name(self) -> &'static str {
         match self {
             EndReason::Samples => "samples",
@@ -105,7 +105,7 @@ impl EndReason {
         }
     }
 
-    /// In words, after "ended by".
+    /// The reason in words, as in "ended by ...".
     pub fn words(self) -> &'static str {
         match self {
             EndReason::Samples => "the number of samples",

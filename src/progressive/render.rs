@@ -1,4 +1,4 @@
-//! The render at hand: a film, who adds to it, and what it says of itself.
+//! The current render: its film, its backends and its status.
 
 use super::guard::{Backend, dismiss, guarded};
 use super::pending::Pending;
@@ -12,19 +12,19 @@ use std::sync::mpsc::TryRecvError;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Estimating the error may take at most one part in this of the time.
+/// Estimating the error may take at most one part in this many of the time.
 const ERROR_ESTIMATE_SHARE: u32 = 20;
 
-/// The render at hand.
+/// The current render.
 pub(super) struct Render {
     job: RenderJob,
     plan: Plan,
     film: Film,
-    /// The samples of the film, and those that the renderer has not added to it yet.
+    /// The samples of the film, and those that the renderer has traced but not added yet.
     dealt: SampleRanges,
     cancel: Arc<AtomicBool>,
     choice: BackendChoice,
-    /// Who has failed.
+    /// The backends that have failed.
     failed: Vec<BackendChoice>,
     is_prepared: bool,
     pending: Option<Pending>,
@@ -81,12 +81,12 @@ impl Render {
         (self.film, self.status)
     }
 
-    /// Has the next picture made even if the film has not changed.
+    /// Makes the next request resolve a picture even if the film has not changed.
     pub fn forget_picture(&mut self) {
         self.pictured_samples = None;
     }
 
-    /// Changes when it ends; one that had ended goes on if there is something left to do.
+    /// Changes when the render ends. A finished render continues if the new plan has work left.
     pub fn set_plan(&mut self, plan: Plan) {
         self.plan = plan;
         self.status.planned_samples_per_pixel = self.planned_count();
@@ -95,11 +95,11 @@ impl Render {
         }
     }
 
-    /// Samples per pixel that the film will hold.
+    /// Samples per pixel that the film will hold at the end.
     fn planned_count(&self) -> u64 {
         let mut samples = self.film.samples().clone();
         while let Some(gap) = samples.first_gap(self.plan.range(), u64::MAX) {
-            // A gap does not overlap what is there.
+            // A gap never overlaps existing samples.
             if samples.insert(gap).is_err() {
                 break;
             }
@@ -117,13 +117,13 @@ impl Render {
         self.status.phase = Phase::Done(reason);
     }
 
-    /// Ends because no pass is left: all samples are there, or the time is over.
+    /// Ends the render because no pass is left: all samples are done, or the time is up.
     fn end_of_plan(&mut self) {
         let is_whole = self.dealt.first_gap(self.plan.range(), 1).is_none();
         self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
     }
 
-    /// Lets another backend take over once it is ready; until then the present one goes on.
+    /// Switches to another backend once it is ready. Until then the current one continues.
     pub fn switch(&mut self, choice: BackendChoice, factory: &Arc<Mutex<Factory>>) {
         if self.pending.as_ref().is_some_and(|pending| pending.choice == choice) {
             return;
@@ -140,7 +140,7 @@ impl Render {
         }
     }
 
-    /// Prepares if need be, else renders a pass.
+    /// Prepares the job if necessary; otherwise renders a pass.
     pub fn step(
         &mut self,
         backend: &mut Option<Backend>,
@@ -158,7 +158,7 @@ impl Render {
         outcome
     }
 
-    /// Hands over to a backend that has become ready.
+    /// Switches to the pending backend if it is ready.
     fn welcome_upcoming(&mut self, backend: &mut Option<Backend>) {
         let Some(pending) = self.pending.take() else { return };
         let outcome = match pending.outcome.try_recv() {
@@ -204,13 +204,13 @@ impl Render {
         }
     }
 
-    /// Lets the next backend go on with the film, or gives up if none is left that has not failed.
+    /// Continues the film with the next backend that has not failed, or ends the render if there is none.
     pub fn fail(&mut self, error: &RenderError) {
         if matches!(error, RenderError::FilmLost { .. }) {
             self.film = self.job.new_film();
             self.note_film();
         }
-        // What was not in the film is lost, and is rendered again.
+        // Samples that had not reached the film are lost and rendered again.
         self.dealt = self.film.samples().clone();
         self.failed.push(self.choice.clone());
         match BackendChoice::fallback(&self.failed) {
@@ -223,7 +223,7 @@ impl Render {
         }
     }
 
-    /// Notes something that went wrong and has no bearing on the film.
+    /// Reports a problem that does not affect the film.
     pub fn complain(&mut self, error: &RenderError) {
         self.status.say(vec![error.to_string()]);
     }
@@ -234,7 +234,7 @@ impl Render {
         factory: &Mutex<Factory>,
         begin: Instant,
     ) -> Result<(), RenderError> {
-        // A film with everything in it needs no renderer.
+        // A complete film needs no renderer.
         if self.next_pass().is_none() {
             self.end_of_plan();
             return Ok(());
@@ -267,10 +267,10 @@ impl Render {
         Ok(())
     }
 
-    /// The samples that are next; `None` when none are missing or there is no time left for them.
+    /// The next samples; `None` if none are missing or no time is left for them.
     fn next_pass(&self) -> Option<std::ops::Range<u64>> {
         let time_left = match self.plan.stop.time_limit() {
-            // A picture without a sample is of no use to anyone.
+            // Time limits apply only after the first pass: a picture without samples is useless.
             Some(limit) if self.dealt.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
             _ => None,
         };
@@ -298,18 +298,18 @@ impl Render {
         let outcome = guarded(self.choice.name(), || {
             renderer.advance(&self.job, range.clone(), &mut self.film, &self.cancel)
         });
-        // Before the samples are noted, whose history has the seconds in which they were traced.
+        // Measured before the samples are noted, because the history includes the seconds of their tracing.
         let took = begin.elapsed();
         self.status.trace += took;
         self.note_added(renderer, held, &outcome);
         outcome?;
         self.dealt.insert(range)?;
         self.sizer.measured(added, took, self.plan.pass_target);
-        // A renderer that changes with use (an adapter lost, threads given up) says so.
+        // A renderer can change during use (it lost an adapter or gave up threads) and then reports it here.
         self.status.backend = Some(renderer.info());
         self.status.say(renderer.take_messages());
         if is_picture_wanted && self.film.sample_count() == 0 {
-            // The first picture is what someone waits for most.
+            // Users wait most eagerly for the first picture.
             self.collect(renderer)?;
         } else if is_picture_wanted {
             guarded(self.choice.name(), || renderer.fetch())?;
@@ -317,7 +317,7 @@ impl Render {
         Ok(())
     }
 
-    /// Adds to the film what the renderer still has.
+    /// Adds the renderer's outstanding samples to the film.
     pub fn collect(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
         if self.dealt != *self.film.samples() {
             let begin = Instant::now();
@@ -338,7 +338,7 @@ impl Render {
         Ok(())
     }
 
-    /// Notes who added to a film that held `held` samples, and what. Some can have come before a failure.
+    /// Notes which backends added samples to a film that held `held` samples. Some can have arrived before a failure.
     fn note_added(&mut self, renderer: &dyn Renderer, held: u64, outcome: &Result<Stats, RenderError>) {
         let added = self.film.sample_count().saturating_sub(held);
         if added > 0 {
@@ -352,7 +352,7 @@ impl Render {
         }
     }
 
-    /// Brings the status up to date with the film.
+    /// Updates the status from the film.
     fn note_film(&mut self) {
         let samples = self.film.sample_count();
         self.status.samples_per_pixel = samples;
@@ -388,7 +388,7 @@ impl Render {
         }
     }
 
-    /// Resolves a picture if someone waits for one that he has not seen.
+    /// Resolves a picture if one was requested and there is something new to show.
     pub fn show(&mut self, shared: &Shared, view: &View, renderer: Option<&dyn Renderer>) {
         let samples = self.film.sample_count();
         let is_new = self.pictured_samples != Some(samples);

@@ -11,10 +11,10 @@ use exr::prelude::{AttributeValue, ChannelDescription, Compression, LineOrder, M
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
-/// Writes a film file in place of `path`. Beside the film it takes the memory of one row.
+/// Writes a film file in place of `path`. Besides the film, this needs memory for one row.
 ///
 /// # Errors
-/// [`WriteError`]; the file that was there is then as it was.
+/// [`WriteError`]; the previous file is then unchanged.
 pub fn save(path: &Path, film: &Film, description: &Description) -> Result<(), WriteError> {
     replace_file(path, |writer| write(film, description, writer))
 }
@@ -33,7 +33,7 @@ pub(crate) fn write(
     write_with(film, texts, &Head::of(film, texts), writer)
 }
 
-/// Writes a film file with what `head` says.
+/// Writes a film file with the given head.
 pub(super) fn write_with(
     film: &Film,
     texts: Texts,
@@ -41,7 +41,7 @@ pub(super) fn write_with(
     writer: &mut (impl Write + Seek),
 ) -> io::Result<()> {
     let head = toml::to_string(head).map_err(invalid)?;
-    // The format wants channels in the order of their names.
+    // The format requires channels sorted by name.
     let mut planes = Plane::all(film.halves().len());
     planes.sort_by(|a, b| a.0.cmp(&b.0));
     let channels: SmallVec<[ChannelDescription; 5]> = planes
@@ -49,8 +49,8 @@ pub(super) fn write_with(
         .map(|(name, plane)| ChannelDescription::new(text(name.as_bytes()), plane.sample_type(), false))
         .collect();
     let size = (film.width() as usize, film.height() as usize);
-    // RLE drops the empty high words and leaves the low ones, which are noise: ZIP takes many times as long for
-    // little.
+    // RLE compresses the empty high words and keeps the low ones, which are noise. ZIP takes many times as long and
+    // saves little more.
     let mut header = Header::new(text(b"Weekender"), size, channels).with_encoding(
         Compression::RLE,
         BlockDescription::ScanLines,
@@ -59,7 +59,7 @@ pub(super) fn write_with(
     header.own_attributes.software_name =
         Some(text(concat!("Weekender ", env!("CARGO_PKG_VERSION")).as_bytes()));
     header.own_attributes.comments = Some(text(texts.comments));
-    // One in each of the two maps, so that a film always becomes the same bytes.
+    // One attribute in each of the two maps, so that the same film always gives the same bytes.
     let attribute = |bytes: &[u8]| AttributeValue::Text(text(bytes));
     header.own_attributes.other.insert(text(FILM_ATTRIBUTE.as_bytes()), attribute(head.as_bytes()));
     header.shared_attributes.other.insert(text(RECIPE_ATTRIBUTE.as_bytes()), attribute(texts.recipe));
@@ -104,7 +104,7 @@ fn row_block(
 }
 
 fn text(text: &[u8]) -> Text {
-    // UTF-8 as it is, which is what current readers expect.
+    // UTF-8 without conversion, which current readers expect.
     Text::from_slice_unchecked(text)
 }
 
