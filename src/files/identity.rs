@@ -70,8 +70,8 @@ impl FileIdentity {
         }
     }
 
-    /// Whether both refer to the same file. For two files that do not exist yet and differ only in letter case, this asks
-    /// the file system.
+    /// Whether both refer to the same file. For two files that do not exist yet and differ only in letter case, this
+    /// asks the file system.
     pub fn is_same_as(&self, other: &FileIdentity) -> bool {
         if self.base != other.base || self.rest.len() != other.rest.len() {
             return false;

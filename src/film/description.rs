@@ -50,9 +50,9 @@ impl Description {
 
     /// Sets `key` to `value`: replaces the old value, or appends an entry.
     ///
-    /// Every file format must be able to store the entry and return it unchanged. So in a key, each character that is not
-    /// printable ASCII and each colon becomes `_`, and the key is cut to 79 bytes. In a value, control characters become
-    /// spaces. Spaces at both ends are removed. An empty key is ignored.
+    /// Every file format must be able to store the entry and return it unchanged. So in a key, each character that is
+    /// not printable ASCII and each colon becomes `_`, and the key is cut to 79 bytes. In a value, control characters
+    /// become spaces. Spaces at both ends are removed. An empty key is ignored.
     pub fn set(&mut self, key: &str, value: impl Display) {
         let key: String = key
             .trim()

@@ -91,8 +91,8 @@ const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
 const DOMINANT_SHARE: f64 = 0.2;
 
 impl ErrorEstimate {
-    /// The effective number of pixels behind the estimate, `(sum e^2)^2 / sum e^4` with `e` the errors. It is small if a
-    /// few pixels dominate, and infinite without any error.
+    /// The effective number of pixels behind the estimate, `(sum e^2)^2 / sum e^4` with `e` the errors. It is small if
+    /// a few pixels dominate, and infinite without any error.
     pub fn pixels_in_effect(&self) -> f64 {
         // For n pixels, the variance of the mean square is (mean e^4 - (mean e^2)^2) / n.
         let share = 2.0 * self.rmse_deviation / self.rmse;
@@ -231,8 +231,8 @@ impl Film {
     /// Records that every pixel now also holds the samples of `range`, of which `rejected` were left out.
     ///
     /// # Errors
-    /// [`FilmError::Overlap`] if the film already had some of them, [`FilmError::Range`] if they reach beyond the limit.
-    /// Nothing is recorded then.
+    /// [`FilmError::Overlap`] if the film already had some of them, [`FilmError::Range`] if they reach beyond the
+    /// limit. Nothing is recorded then.
     pub fn record(&mut self, range: Range<u64>, rejected: u64) -> Result<(), FilmError> {
         let rejected = self.with_rejected(rejected)?;
         self.samples.insert(range)?;
@@ -282,8 +282,8 @@ impl Film {
         bytes
     }
 
-    /// Writes rows `rows` of [`Film::to_rgb8`] to `bytes` (`3 width` bytes per row). Rows do not depend on each other, so
-    /// several threads can share a picture.
+    /// Writes rows `rows` of [`Film::to_rgb8`] to `bytes` (`3 width` bytes per row). Rows do not depend on each other,
+    /// so several threads can share a picture.
     ///
     /// # Panics
     /// If a row is below the picture, or `bytes` has another length.
@@ -305,8 +305,8 @@ impl Film {
         }
     }
 
-    /// The sum of a pixel whose samples are all 1. It is a product with a power of two, so dividing by it gives the same
-    /// bits as dividing by the two factors.
+    /// The sum of a pixel whose samples are all 1. It is a product with a power of two, so dividing by it gives the
+    /// same bits as dividing by the two factors.
     fn fixed_point_of_1(&self) -> f64 {
         Film::fixed_point(self.sample_count())
     }
@@ -337,8 +337,8 @@ impl Film {
     }
 
     /// The error estimated from the halves. With `A` and `B` the means of `a` and `b` samples,
-    /// `MSE = mean((A - B)^2) a b / (a + b)^2`. This is a quarter of the squared difference when `a = b`, as after every
-    /// even number of samples. `None` with one half, or while a half has no samples.
+    /// `MSE = mean((A - B)^2) a b / (a + b)^2`. This is a quarter of the squared difference when `a = b`, as after
+    /// every even number of samples. `None` with one half, or while a half has no samples.
     pub fn error(&self) -> Option<ErrorEstimate> {
         let [half_a, half_b] = self.halves.as_slice() else { return None };
         let (count_a, count_b) = (self.half_sample_count(0) as f64, self.half_sample_count(1) as f64);
@@ -377,8 +377,8 @@ impl Film {
         })
     }
 
-    /// Why an estimate of this film's error is doubtful, in words: few pixels dominate it, or no path has found any light.
-    /// The estimate and its deviation are then most likely too low.
+    /// Why an estimate of this film's error is doubtful, in words: few pixels dominate it, or no path has found any
+    /// light. The estimate and its deviation are then most likely too low.
     pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
         if estimate.rmse == 0.0 && self.halves.iter().flatten().all(|sum| sum.0 == [0; 3]) {
             let count = self.sample_count();
@@ -399,8 +399,8 @@ impl Film {
     /// Merges another film of the same size into this one.
     ///
     /// # Errors
-    /// [`FilmError::Size`] or [`FilmError::Overlap`], or an error if there are more rejected samples than can be counted.
-    /// This film is then unchanged.
+    /// [`FilmError::Size`] or [`FilmError::Overlap`], or an error if there are more rejected samples than can be
+    /// counted. This film is then unchanged.
     pub fn merge(&mut self, other: &Film) -> Result<(), FilmError> {
         let shape = |f: &Film| (f.width, f.height, f.halves.len());
         if shape(self) != shape(other) {

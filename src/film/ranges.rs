@@ -15,8 +15,8 @@ impl SampleRanges {
     /// The set of all samples in `ranges`, which may be in any order.
     ///
     /// # Errors
-    /// [`FilmError::Range`] if a range is empty or reaches beyond [`SAMPLE_LIMIT`], [`FilmError::Overlap`] if two ranges
-    /// have samples in common.
+    /// [`FilmError::Range`] if a range is empty or reaches beyond [`SAMPLE_LIMIT`], [`FilmError::Overlap`] if two
+    /// ranges have samples in common.
     pub fn from_ranges(ranges: impl IntoIterator<Item = Range<u64>>) -> Result<Self, FilmError> {
         let mut ranges: Vec<Range<u64>> = ranges.into_iter().collect();
         for range in &ranges {
@@ -132,8 +132,8 @@ impl SampleRanges {
         Self::of_sorted(ranges)
     }
 
-    /// The first contiguous range of `within` that is missing, at most `limit` samples long. `None` if nothing is missing
-    /// or the limit is 0.
+    /// The first contiguous range of `within` that is missing, at most `limit` samples long. `None` if nothing is
+    /// missing or the limit is 0.
     pub fn first_gap(&self, within: Range<u64>, limit: u64) -> Option<Range<u64>> {
         let place = self.ranges_before(within.start);
         let (start, next) = match self.ranges.get(place) {

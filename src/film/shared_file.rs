@@ -86,8 +86,8 @@ impl SharedFile {
         Stamp::of(&self.path).is_ok_and(|now| now == self.seen)
     }
 
-    /// Saves `film`, merged with what other runs have added. `same_job` compares two recipes and returns what differs if
-    /// their jobs differ.
+    /// Saves `film`, merged with what other runs have added. `same_job` compares two recipes and returns what differs
+    /// if their jobs differ.
     ///
     /// # Errors
     /// [`WriteError`]; the previous file is then unchanged.
@@ -265,9 +265,9 @@ fn numbered(path: &Path, number: u32) -> PathBuf {
     path.with_file_name(format!("{stem}-{number}{ending}"))
 }
 
-/// Locks the directory of `path` until the result is dropped, so that no other run on this machine checks and renames at
-/// the same time. This includes other machines if the file system shares locks. Without locks the result is `None`, and
-/// only the check before the rename protects the file.
+/// Locks the directory of `path` until the result is dropped, so that no other run on this machine checks and renames
+/// at the same time. This includes other machines if the file system shares locks. Without locks the result is `None`,
+/// and only the check before the rename protects the file.
 fn lock_directory(path: &Path) -> Option<File> {
     let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
     let file = File::open(directory.unwrap_or(Path::new("."))).ok()?;

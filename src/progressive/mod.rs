@@ -151,8 +151,8 @@ impl Progressive {
         self.shared.take_picture()
     }
 
-    /// Asks for one picture. The render thread resolves it as soon as there is something new to see. Without a request, no
-    /// picture is resolved.
+    /// Asks for one picture. The render thread resolves it as soon as there is something new to see. Without a request,
+    /// no picture is resolved.
     pub fn ask_for_picture(&self) {
         if self.shared.want_picture() {
             self.send(Command::Look);

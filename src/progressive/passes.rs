@@ -31,7 +31,8 @@ impl PassSizer {
         self.seconds_per_sample = None;
     }
 
-    /// Notes how long a pass took. The next pass should take about `target`, with at most twice as many samples as this one.
+    /// Notes how long a pass took. The next pass should take about `target`, with at most twice as many samples as this
+    /// one.
     pub fn measured(&mut self, samples: u64, took: Duration, target: Duration) {
         let per_sample = took.as_secs_f64() / samples.max(1) as f64;
         self.seconds_per_sample = Some(per_sample);
@@ -41,8 +42,8 @@ impl PassSizer {
         self.length = wanted.min(most).clamp(self.smallest, LENGTH_LIMIT);
     }
 
-    /// The next pass within `planned` without the samples in `held`; `None` when nothing is missing. With `time_left`, the
-    /// pass is shortened to finish in that time; `None` if even the shortest pass would take longer.
+    /// The next pass within `planned` without the samples in `held`; `None` when nothing is missing. With `time_left`,
+    /// the pass is shortened to finish in that time; `None` if even the shortest pass would take longer.
     pub fn next(
         &self,
         held: &SampleRanges,
