@@ -1,10 +1,10 @@
-//! Answers of other threads: whoever asks keeps the place where its answers arrive.
+//! Answers of background threads. Each asker owns the slot in which its answers arrive.
 
 use eframe::egui::Context;
 use std::io;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-/// Where answers of one kind arrive.
+/// The slot in which answers of one kind arrive.
 pub struct Answers<T> {
     sender: Sender<T>,
     receiver: Receiver<T>,
@@ -18,15 +18,15 @@ impl<T> Default for Answers<T> {
 }
 
 impl<T: Send + 'static> Answers<T> {
-    /// Gives one answer, from any thread.
+    /// Makes a handle that gives one answer, from any thread.
     pub fn answer(&self, context: &Context) -> Answer<T> {
         Answer { sender: self.sender.clone(), context: context.clone() }
     }
 
-    /// Has `work` done on a thread of that name; what it returns arrives here.
+    /// Runs `work` on a thread of the given name. Its result arrives here.
     ///
     /// # Errors
-    /// If the system gives no thread.
+    /// If the system cannot start a thread.
     pub fn ask(
         &self,
         thread: &str,
@@ -51,14 +51,14 @@ pub struct Answer<T> {
 }
 
 impl<T> Answer<T> {
-    /// Gives it.
+    /// Gives the answer.
     pub fn give(self, value: T) {
-        // A window that has been closed wants no answer.
+        // If the window was closed, nobody receives it.
         let _ = self.sender.send(value);
         self.wake();
     }
 
-    /// Gives none, and wakes the window.
+    /// Wakes the window without giving an answer.
     pub fn wake(self) {
         self.context.request_repaint();
     }

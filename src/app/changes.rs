@@ -1,4 +1,4 @@
-//! What the user has changed since the frame before: moves, gestures, and what undo comes back to.
+//! Tracks what the user has changed since the previous frame: moves, gestures and undo steps.
 
 use super::model::document::Document;
 use eframe::egui::{Context, util::undoer::Undoer};
@@ -12,14 +12,14 @@ pub struct Changes {
     undo: Undoer<Document>,
     last: Document,
     moved: Option<Instant>,
-    /// The changes of this frame belong to a move that has begun before.
+    /// The changes of this frame belong to a move that began earlier.
     is_in_gesture: bool,
-    /// A document that was taken back or made again is no change of its own.
+    /// The document was changed by undo or redo, which is not a new undo step.
     is_undoing: bool,
 }
 
 impl Changes {
-    /// No change of `document` yet.
+    /// A history that starts with `document`.
     pub fn new(document: Document) -> Self {
         Changes {
             undo: Undoer::default(),
@@ -30,17 +30,17 @@ impl Changes {
         }
     }
 
-    /// Whether there is a change to take back.
+    /// Whether there is a change to undo.
     pub fn can_undo(&self, document: &Document) -> bool {
         self.undo.has_undo(document)
     }
 
-    /// Whether there is a change to make again.
+    /// Whether there is a change to redo.
     pub fn can_redo(&self, document: &Document) -> bool {
         self.undo.has_redo(document)
     }
 
-    /// Takes the last change back.
+    /// Undoes the last change.
     pub fn undo(&mut self, document: &mut Document) {
         if let Some(earlier) = self.undo.undo(document) {
             document.clone_from(earlier);
@@ -48,7 +48,7 @@ impl Changes {
         }
     }
 
-    /// Makes the change again that was taken back last.
+    /// Redoes the change that was undone last.
     pub fn redo(&mut self, document: &mut Document) {
         if let Some(later) = self.undo.redo(document) {
             document.clone_from(later);
@@ -56,12 +56,12 @@ impl Changes {
         }
     }
 
-    /// A change by hand: a preview comes first.
+    /// Notes a change by hand, which is previewed first.
     pub fn note_move(&mut self) {
         self.moved = Some(Instant::now());
     }
 
-    /// A command: what it changes is no part of a move.
+    /// Ends the move. The changes of a command are not part of it.
     pub fn end_move(&mut self) {
         self.moved = None;
         self.is_in_gesture = false;
@@ -72,17 +72,17 @@ impl Changes {
         self.moved.is_some_and(|at| at.elapsed() < SETTLE)
     }
 
-    /// The document has been replaced, which is no change of its film.
+    /// Accepts a replaced document without treating it as a change of the film.
     pub fn adopt(&mut self, document: &Document) {
         self.last = document.clone();
     }
 
-    /// Notes what has changed in this frame. Returns whether the film is another.
+    /// Notes what has changed in this frame. Returns whether the document now needs a different film.
     pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
         let is_by_hand = context.input(|input| input.pointer.any_down());
         let mut is_other_film = false;
         if *document != self.last {
-            // What was before a change, or before a whole gesture, is what undo comes back to.
+            // Undo returns to the state before a change, or before a whole gesture.
             if !self.is_in_gesture && !self.is_undoing {
                 self.undo.add_undo(&self.last);
             }

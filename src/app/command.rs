@@ -1,4 +1,4 @@
-//! Everything that the user can ask for. Menus, buttons, shortcuts, palette and help read it from here.
+//! All commands that the user can give. Menus, buttons, shortcuts, the palette and the help are generated from this.
 
 use super::model::device::Device;
 use super::model::remembered::Theme;
@@ -8,22 +8,22 @@ use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
-/// Where a command stands in the menus.
+/// The menu that lists a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
-    /// Files.
+    /// Opening, saving and copying.
     File,
-    /// Changes.
+    /// Undo, reset and bookmarks.
     Edit,
-    /// What is seen.
+    /// What the window shows.
     View,
-    /// Who renders.
+    /// Pause, restart and devices.
     Render,
-    /// Where in the book.
+    /// The stages of the book.
     Stage,
-    /// Scenes that are hard to get right.
+    /// Scenes that are numerically difficult.
     Extreme,
-    /// Help.
+    /// The book, the palette and the list of keys.
     Help,
 }
 
@@ -32,7 +32,7 @@ impl Group {
     pub const ALL: [Group; 7] =
         [Group::File, Group::Edit, Group::View, Group::Render, Group::Stage, Group::Extreme, Group::Help];
 
-    /// The menu's name.
+    /// The title of the menu.
     pub fn name(self) -> &'static str {
         match self {
             Group::File => "File",
@@ -46,84 +46,84 @@ impl Group {
     }
 }
 
-/// Something that the user can ask for.
+/// A command that the user can give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Open a picture, film or scene.
     Open,
-    /// Save what is shown.
+    /// Save the picture, in this format.
     Save(OutputFormat),
     /// Save the scene file.
     SaveScene,
-    /// Put the command line on the clipboard.
+    /// Copy the command line to the clipboard.
     CopyCommand,
     /// Load a film to compare with.
     LoadReference,
-    /// Put the plot's points on the clipboard.
+    /// Copy the plot's points to the clipboard.
     CopyPlot,
     /// Save the plot's points.
     SavePlot,
     /// Close the window.
     Quit,
-    /// Take back a change.
+    /// Undo a change.
     Undo,
-    /// Make it again.
+    /// Redo the change that was undone last.
     Redo,
-    /// The stage's camera.
+    /// Reset the camera to that of the stage.
     Home,
-    /// Everything as the stage has it.
+    /// Reset everything to the values of the stage.
     ResetAll,
-    /// Remember the camera.
+    /// Add a bookmark of the camera.
     AddBookmark,
-    /// What the picture shows.
+    /// Show a view of the picture.
     Show(Show),
-    /// Divider between this stage and another.
+    /// Compare this stage with another one on both sides of a divider.
     Wipe,
-    /// Heat map of the difference from the other stage.
+    /// Show a heat map of the difference from the other stage.
     WipeDifference,
-    /// Divider between this picture and the same by the book's own arithmetic.
+    /// Compare the picture with the same picture by the book's own arithmetic.
     BookArithmetic,
-    /// Whole picture in the window.
+    /// Zoom so that the whole picture fits.
     Fit,
-    /// One pixel to one pixel.
+    /// Zoom so that one pixel of the picture is one pixel of the screen.
     ActualSize,
-    /// Larger.
+    /// Zoom in around the middle.
     ZoomIn,
-    /// Smaller.
+    /// Zoom out around the middle.
     ZoomOut,
-    /// All panels.
+    /// Show or hide all panels.
     Panels,
-    /// The panel at the left.
+    /// Show or hide the left panel.
     Controls,
-    /// The panel at the right.
+    /// Show or hide the right panel.
     Info,
-    /// The plot.
+    /// Show or hide the plot.
     Plot,
     /// Full screen.
     FullScreen,
-    /// Colours.
+    /// Use this colour theme.
     Theme(Theme),
-    /// Stop and go on.
+    /// Pause or continue.
     Pause,
-    /// From the beginning.
+    /// Render again from the beginning.
     Restart,
-    /// CPU to GPU and back.
+    /// Switch between CPU and GPU.
     SwitchDevice,
-    /// A certain device.
+    /// Render with this device.
     Device(Device),
-    /// The stage before.
+    /// Go to the previous stage.
     PreviousStage,
-    /// The stage after.
+    /// Go to the next stage.
     NextStage,
-    /// A certain stage.
+    /// Go to this stage.
     Stage(&'static Stage),
-    /// A certain extreme scene.
+    /// Open this extreme scene.
     Extreme(&'static Case),
-    /// The book on the web.
+    /// Open the book's web page.
     Book,
-    /// All commands by name.
+    /// Open the palette, which lists all commands.
     Palette,
-    /// Keyboard help.
+    /// Show the keys and mouse actions.
     Help,
 }
 
@@ -139,12 +139,12 @@ const fn ctrl_shift(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
 }
 
-/// With Ctrl, these stand for the views in their order.
+/// With Ctrl, these keys select the views in order.
 const VIEW_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 impl Command {
-    /// All of them, in the menus' order.
+    /// All commands, in the order of the menus.
     pub fn all() -> Vec<Command> {
         use Command::*;
         let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
@@ -164,7 +164,7 @@ impl Command {
         all
     }
 
-    /// What menus and palette call it.
+    /// The name in menus and in the palette.
     pub fn name(self) -> String {
         match self {
             Command::Open => "Open…".into(),
@@ -210,7 +210,7 @@ impl Command {
         }
     }
 
-    /// What it does, in a sentence.
+    /// What the command does, in one sentence.
     pub fn help(self) -> &'static str {
         match self {
             Command::Open => {
@@ -263,13 +263,13 @@ impl Command {
         }
     }
 
-    /// Whether it asks for something before it does anything.
+    /// Whether the command opens a dialog first.
     pub fn opens_dialog(self) -> bool {
         use Command::{Help, LoadReference, Open, Palette, Save, SavePlot, SaveScene};
         matches!(self, Open | Save(_) | SaveScene | SavePlot | LoadReference | Palette | Help)
     }
 
-    /// The menu in which it stands.
+    /// The menu that contains the command.
     pub fn group(self) -> Group {
         match self {
             Command::Open
@@ -291,7 +291,7 @@ impl Command {
         }
     }
 
-    /// The keys that stand for it, as they are written on a keyboard.
+    /// The shortcut as it is printed on a keyboard.
     pub fn keys(self, context: &Context) -> Option<String> {
         let named = context.format_shortcut(&self.shortcut()?);
         Some(
@@ -303,7 +303,7 @@ impl Command {
         )
     }
 
-    /// The keys that stand for it.
+    /// The command's shortcut.
     pub fn shortcut(self) -> Option<KeyboardShortcut> {
         match self {
             Command::Open => ctrl(Key::O),
@@ -388,7 +388,7 @@ mod tests {
             let new = words(help).difference(&words(&name)).count();
             assert!(new >= 2, "{name:?} is explained by {help:?}");
             assert!(help.starts_with(char::is_uppercase) || help.starts_with(char::is_numeric), "{help:?}");
-            // Commands of one kind, such as themes, may share a text.
+            // Commands of the same kind, such as themes, may share a help text.
             let is_other = |other: &Command| {
                 std::mem::discriminant(other) != std::mem::discriminant(&command) && other.help() == help
             };

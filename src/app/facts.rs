@@ -1,4 +1,4 @@
-//! What panels show and do not change: the window as it was when the frame began.
+//! What panels show but do not change: a snapshot of the window at the start of the frame.
 
 use super::command::Command;
 use super::model::Model;
@@ -10,22 +10,22 @@ use crate::progressive::{Phase, Status};
 use crate::stages::{Shading, Stage};
 use std::sync::Arc;
 
-/// The window as it was when the frame began.
+/// A snapshot of the window at the start of the frame.
 pub struct Facts {
     /// What the user has chosen.
     pub model: Model,
-    /// The numbers of the render.
+    /// The status of the render.
     pub status: Arc<Status>,
-    /// There is a change to take back.
+    /// Whether there is a change to undo.
     pub can_undo: bool,
-    /// There is a change to make again.
+    /// Whether there is a change to redo.
     pub can_redo: bool,
-    /// Why the document cannot be rendered.
+    /// Why the document cannot be rendered, if so.
     pub invalid: Option<String>,
 }
 
 impl Facts {
-    /// The picture.
+    /// The document that is shown.
     pub fn document(&self) -> &Document {
         &self.model.document
     }
@@ -35,13 +35,13 @@ impl Facts {
         matches!(self.status.phase, Phase::Preparing | Phase::Tracing)
     }
 
-    /// Why the document's camera does not matter.
+    /// Why the document's camera has no effect, if so.
     pub fn no_rays(&self) -> Option<&'static str> {
         (self.document().rules().shading == Shading::ImageGradient)
             .then_some("This stage sends no rays: its picture is computed from the pixel's place alone")
     }
 
-    /// Whether a command stands for how things are now.
+    /// Whether the command's setting is active now.
     pub fn is_on(&self, command: Command) -> bool {
         let Model { view, remembered, document, .. } = &self.model;
         match command {
@@ -61,7 +61,7 @@ impl Facts {
         }
     }
 
-    /// Why a command can do nothing now, in words; `None` if it can.
+    /// Why a command is disabled, in words; `None` if it is enabled.
     pub fn disabled_reason(&self, command: Command) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
         let document = self.document();
@@ -91,7 +91,7 @@ impl Facts {
         }
     }
 
-    /// Why a view shows nothing now.
+    /// Why a view has nothing to show now, if so.
     pub fn useless_show(&self, show: Show) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
         let (settings, shading) = (self.document().settings, self.document().rules().shading);
@@ -123,7 +123,7 @@ impl Facts {
     }
 }
 
-/// The stage after the document's or before it; after what is no stage comes the first.
+/// The stage after or before the document's. If the document is not a stage, this is the first stage.
 pub fn neighbour(document: &Document, is_next: bool) -> Option<&'static Stage> {
     match document.stage() {
         Some(stage) if is_next => stage.next(),

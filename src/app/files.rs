@@ -1,5 +1,5 @@
-//! Saving and opening, away from the window's thread: writing happens on the render thread, which has the film,
-//! and reading on a thread of its own.
+//! Saves and opens files without blocking the window's thread: the render thread, which has the film, writes; a
+//! separate thread reads.
 
 use super::answers::Answers;
 use super::model::document::Document;
@@ -14,32 +14,32 @@ use eframe::egui::Context;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// The film with which the window begins.
+/// The film that the window resumes at startup.
 pub struct Resumed {
     /// The file.
     pub path: PathBuf,
-    /// What was shown when it was asked for.
+    /// The document shown when the film was requested.
     pub begun: Document,
-    /// Its samples.
+    /// The film that was read.
     pub film: SavedFilm,
 }
 
-/// Files that are read and written, and what became of them: the file, or why not.
+/// Files being read and written. The answers are the path, or why it failed.
 #[derive(Default)]
 pub struct Files {
     /// Files that were written.
     pub saved: Answers<Result<PathBuf, String>>,
     /// Files that were opened.
     pub opened: Answers<Result<Opened, String>>,
-    /// Films to go on with.
+    /// Films to resume.
     pub resumed: Answers<Result<Resumed, String>>,
     /// Films to compare with.
     pub references: Answers<Result<(PathBuf, Reference), String>>,
 }
 
 impl Files {
-    /// Writes the film of `document`, as it is between two passes. `seconds_before` is what its samples took before
-    /// this render, if that is known.
+    /// Writes the film of `document` at the next end of a pass. `seconds_before` is the tracing time of the samples
+    /// from before this render, if known.
     pub fn save(
         &self,
         context: &Context,
@@ -77,7 +77,7 @@ impl Files {
         read(&self.opened, context, move || saved::open(&path));
     }
 
-    /// Reads the film of `job`, which `document` makes.
+    /// Reads the film of `job`, which is the job of `document`.
     pub fn resume(&self, context: &Context, path: PathBuf, job: RenderJob, document: &Document) {
         let begun = document.clone();
         read(&self.resumed, context, move || {
@@ -94,7 +94,7 @@ impl Files {
     }
 }
 
-/// Reads on a thread of its own.
+/// Runs a read on its own thread.
 fn read<T: Send + 'static>(
     answers: &Answers<Result<T, String>>,
     context: &Context,

@@ -1,4 +1,4 @@
-//! A frame: what has arrived, what was asked for, what is seen, what is to be rendered.
+//! A frame: it takes answers, carries out commands, draws the window, and starts renders.
 
 use super::frame_log::FrameTimes;
 use super::input::{self, Keyboard};
@@ -10,7 +10,7 @@ use super::{info, menu, panels, plot, status_bar, theme};
 use eframe::egui;
 use std::time::{Duration, Instant};
 
-/// Below this width, points, there is no room for two panels beside the picture.
+/// Windows narrower than this many points have no room for two panels beside the picture.
 const NARROW: f32 = 900.0;
 
 impl Window {
@@ -44,7 +44,7 @@ impl Window {
         }
     }
 
-    /// Makes a new window smaller that reaches beyond its screen with its frame: the figures at the bottom are seen.
+    /// Shrinks a new window that is larger than its screen, frame included, so that the status bar stays visible.
     fn fit_on_screen(&mut self, context: &egui::Context) {
         if self.frames_to_fit == 0 {
             return;
@@ -93,7 +93,7 @@ impl Window {
         }
     }
 
-    /// Draws everything. Each panel gets what it may change, the facts, and the list of commands that it adds to.
+    /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     fn layout(&mut self, ui: &mut egui::Ui) {
         let facts = self.facts();
         let Window { model, main, second, layers, viewport, inspector, paths, commands, .. } = self;
@@ -162,7 +162,7 @@ impl Window {
         }
     }
 
-    /// Notes what has changed, and has it rendered.
+    /// Notes what has changed and starts the render that this requires.
     fn follow(&mut self, context: &egui::Context) {
         if self.changes.follow(context, &self.model.document) {
             self.seconds_before = Some(0.0);
@@ -204,7 +204,7 @@ impl Window {
     }
 }
 
-/// A panel that scrolls.
+/// A panel that can scroll.
 fn scrolling(ui: &mut egui::Ui, panel: egui::Panel, content: impl FnOnce(&mut egui::Ui)) {
     panel.frame(theme::panel(egui::Margin::ZERO)).show(ui, |ui| {
         egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -213,7 +213,7 @@ fn scrolling(ui: &mut egui::Ui, panel: egui::Panel, content: impl FnOnce(&mut eg
     });
 }
 
-/// The size of the inside of a window that is too large for its screen, in place of `inner`.
+/// The inner size for a window that is too large for its screen, to replace `inner`.
 fn fitting(inner: egui::Vec2, outer: egui::Vec2, screen: egui::Vec2) -> Option<egui::Vec2> {
     let excess = (outer - screen).max(egui::Vec2::ZERO);
     (excess != egui::Vec2::ZERO && screen.min_elem() > 0.0).then(|| inner - excess)

@@ -1,18 +1,18 @@
-//! `--frame-log`: how long the window's frames take, for measuring.
+//! `--frame-log`: measures how long the window's frames take.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// What is said of a frame once it is over.
+/// The times of a frame.
 #[derive(Clone, Copy, Default)]
 pub struct FrameTimes {
-    /// All that the frame's thread did, drawing and waiting for the display included.
+    /// Everything that the frame's thread did, including drawing and waiting for the display.
     pub cpu: Duration,
-    /// Of that, controls, layout and state.
+    /// Controls, layout and state; part of `cpu`.
     pub ui: Duration,
-    /// Of that, taking a new picture in.
+    /// Uploading a new picture; part of `ui`.
     pub picture: Duration,
 }
 
@@ -51,14 +51,14 @@ impl FrameLog {
         self.last = Some(now);
     }
 
-    /// A command is carried out.
+    /// Logs a command.
     pub fn command(&mut self, name: &str) {
         let since_start = milliseconds(self.start.elapsed());
         self.line(format_args!("command,{since_start:.3},{name}"));
         let _ = self.file.flush();
     }
 
-    /// A backend has added samples to a render; said once for each.
+    /// Logs that a backend has added samples to a render, once for each backend.
     pub fn tracing(&mut self, run: u64, backend: &str) {
         let is_news = self.tracing.as_ref().is_none_or(|(old, name)| (*old, name.as_str()) != (run, backend));
         if is_news {
@@ -69,12 +69,12 @@ impl FrameLog {
         }
     }
 
-    /// The user has changed the picture.
+    /// Notes that the user has changed the picture.
     pub fn changed(&mut self) {
         self.changes.push(Instant::now());
     }
 
-    /// There is a picture of what was begun then.
+    /// Logs the latency: the first picture of a render that began at `begun` has arrived.
     pub fn pictured(&mut self, begun: Instant) {
         let shown = self.changes.partition_point(|change| *change <= begun);
         for change in self.changes.drain(..shown).collect::<Vec<_>>() {
@@ -83,7 +83,7 @@ impl FrameLog {
         }
     }
 
-    /// A log that cannot be written is no reason to disturb anyone.
+    /// Writes a line. Errors are ignored, because a failed log should not disturb the user.
     fn line(&mut self, line: std::fmt::Arguments<'_>) {
         let _ = writeln!(self.file, "{line}");
     }

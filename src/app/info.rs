@@ -1,4 +1,4 @@
-//! The panel at the right: what the stage adds, what to look for, and the pixel under the pointer.
+//! The right panel: what the stage adds, what to look for, and the pixel under the pointer.
 
 use super::command::Command;
 use super::facts::Facts;
@@ -11,7 +11,7 @@ use crate::stages::Stage;
 use crate::stress::Case;
 use eframe::egui::{self, RichText, Ui};
 
-/// Draws it, but for the pixel. `is_with_next` says whether the next stage is what this one is compared with.
+/// Draws the panel except for the pixel. `is_with_next` says whether this stage is compared with the next one.
 pub fn ui(ui: &mut Ui, is_with_next: &mut bool, facts: &Facts, commands: &mut Vec<Command>) {
     let document = facts.document();
     match (document.stage(), document.case()) {
@@ -46,7 +46,7 @@ fn stage_ui(ui: &mut Ui, stage: &Stage) {
     ui.add_space(10.0);
 }
 
-/// A scene that is no stage.
+/// Text about a scene that is not a stage.
 fn recipe_ui(ui: &mut Ui, document: &Document) {
     let recipe = &document.origin.recipe;
     ui.add(egui::Label::new(RichText::new(&recipe.name).heading()).wrap());
@@ -55,7 +55,7 @@ fn recipe_ui(ui: &mut Ui, document: &Document) {
     ui.label(format!("{spheres} spheres, {materials} materials"));
 }
 
-/// An extreme scene: what is stiff about it and what to watch.
+/// Text about an extreme scene: what makes it difficult and what to watch.
 fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>) {
     let weak = ui.visuals().weak_text_color();
     ui.add(egui::Label::new(RichText::new(case.family.title).small().color(weak)).wrap());
@@ -77,7 +77,7 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
     }
 }
 
-/// What the picture's place shows.
+/// Text about the current view.
 fn view_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let show = facts.model.view.show();
     control(ui, About::new("View", "What is shown in the picture's place (Ctrl+1 to Ctrl+7)"), |ui| {

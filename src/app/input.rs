@@ -1,4 +1,4 @@
-//! Keys, dropped files, and flying.
+//! Keyboard input, dropped files, and flying.
 
 use super::command::Command;
 use super::navigation;
@@ -10,18 +10,18 @@ use std::path::PathBuf;
 /// Scene units a second, as a share of the distance to `look_at`.
 const FLY_SHARE_PER_SECOND: f64 = 0.7;
 
-/// How much faster it goes with Shift.
+/// Speed factor while Shift is held.
 const FAST: f64 = 4.0;
 
-/// What the keyboard was for in the frame before.
+/// The state of the keyboard in the previous frame.
 pub struct Keyboard {
-    /// A control, a menu or a dialog had it.
+    /// A control, a menu or a dialog had the keyboard focus.
     pub had_focus: bool,
-    /// The window takes the whole screen.
+    /// The window was in full-screen mode.
     pub is_full_screen: bool,
 }
 
-/// Turns keys into commands. Returns whether the keys that are held may move the camera.
+/// Turns keys into commands. Returns whether held keys may move the camera.
 pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Vec<Command>) -> bool {
     if context.text_edit_focused() {
         return false;
@@ -29,12 +29,12 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     let is_focused = context.memory(|memory| memory.focused().is_some());
     for command in by_modifiers() {
         let Some(shortcut) = command.shortcut() else { continue };
-        // A control that has the focus is moved from with Tab and pressed with Space.
+        // In a focused control, Tab moves on and Space presses it.
         let is_plain = shortcut.modifiers == Modifiers::NONE;
         if is_focused && is_plain && matches!(shortcut.logical_key, Key::Tab | Key::Space) {
             continue;
         }
-        // In a long frame a key can have been pressed more than once.
+        // In a long frame a key can have been pressed several times.
         let presses =
             context.input_mut(|input| input.count_and_consume_key(shortcut.modifiers, shortcut.logical_key));
         if presses > 0 {
@@ -43,7 +43,7 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
             }
             (0..presses).for_each(|_| commands.push(command));
             if command.opens_dialog() {
-                // What is typed after it, be it within this frame, is for the dialog.
+                // Keys that follow, even within this frame, belong to the dialog.
                 return false;
             }
         }
@@ -58,21 +58,21 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Y)) {
         commands.push(Command::Redo);
     }
-    // Escape leaves a control first, then the full screen.
+    // Escape first leaves a control, then full-screen mode.
     if !keyboard.had_focus && also(Key::Escape) && keyboard.is_full_screen {
         commands.push(Command::FullScreen);
     }
     true
 }
 
-/// Flies while keys are held. Returns whether it did.
+/// Moves the camera while keys are held. Returns whether it moved.
 pub fn fly(context: &egui::Context, camera: &mut Camera) -> bool {
     let (by, seconds, is_fast) = context.input(|input| {
         let is_plain = !input.modifiers.command && !input.modifiers.alt;
         let held = |key| f64::from(u8::from(is_plain && input.key_down(key)));
         let by =
             DVec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));
-        // After a pause without frames the first step would be a jump.
+        // Limited, because after a pause without frames the first step would be a jump.
         (by, f64::from(input.stable_dt.min(0.05)), input.modifiers.shift)
     });
     if by == DVec3::ZERO {
@@ -90,7 +90,7 @@ pub fn dropped(context: &egui::Context) -> Vec<PathBuf> {
     context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect())
 }
 
-/// Those with more modifiers first: Ctrl+S is also pressed when Ctrl+Shift+S is.
+/// Commands with more modifiers come first, because Ctrl+Shift+S also matches Ctrl+S.
 fn by_modifiers() -> Vec<Command> {
     let mut commands: Vec<Command> = Command::all().into_iter().filter(|c| c.shortcut().is_some()).collect();
     commands.sort_by_key(|command| {

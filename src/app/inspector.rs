@@ -1,4 +1,4 @@
-//! The pixel under the pointer: its value, its error, and what is seen there.
+//! The pixel inspector: value, error, and the surface under the pointer.
 
 use super::answers::Answers;
 use super::model::document::Document;
@@ -11,56 +11,56 @@ use crate::scene::Scene;
 use eframe::egui::{self, RichText, Ui};
 use std::sync::{Arc, Weak};
 
-/// With more spheres, looking for the one under the pointer would hold the window up.
+/// With more spheres than this, searching for the one under the pointer would stall the window.
 const PICK_LIMIT: usize = 50_000;
 
-/// A pixel as the film has it.
+/// A pixel of the film.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pixel {
     /// Column and row, from the upper left.
     pub at: [u32; 2],
     /// Linear radiance.
     pub mean: [f64; 3],
-    /// Its standard error.
+    /// Standard error of `mean`.
     pub error: Option<[f64; 3]>,
-    /// As the picture has it.
+    /// The 8-bit values in the picture.
     pub bytes: [u8; 3],
-    /// Samples.
+    /// Samples in the pixel.
     pub samples: u64,
 }
 
-/// What is known of the pixel under the pointer.
+/// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
     hovered: Option<[u32; 2]>,
     pixel: Option<Pixel>,
-    /// What the last answer was for: pixel and samples.
+    /// The pixel and sample count of the last query.
     asked: Option<([u32; 2], u64)>,
-    /// Lives as long as the film has not been asked.
+    /// Can be upgraded as long as the query waits for the film.
     waiting: Weak<()>,
     answers: Answers<Pixel>,
 }
 
 impl Inspector {
-    /// The pointer is over this pixel.
+    /// Notes the pixel under the pointer.
     pub fn hover(&mut self, pixel: Option<[u32; 2]>) {
         if pixel.is_some() {
             self.hovered = pixel;
         }
     }
 
-    /// Another picture: nothing is known of it.
+    /// Forgets the pixel, because the picture has changed.
     pub fn forget(&mut self) {
         *self = Inspector { hovered: self.hovered, ..Inspector::default() };
     }
 
-    /// The pixel as the film had it last.
+    /// The pixel as of the last answer.
     pub fn pixel(&self) -> Option<&Pixel> {
         self.pixel.as_ref()
     }
 
-    /// Takes what the film has answered, and asks it if there is more to learn. A film that is gone or has no samples
-    /// leaves what was known before it.
+    /// Takes the film's answer and queries the film again if there may be news. If the film is gone or has no samples,
+    /// the last known pixel stays.
     pub fn follow(&mut self, document: &Document, main: &Tracer, context: &egui::Context) {
         while let Some(pixel) = self.answers.take() {
             self.pixel = Some(pixel);
@@ -82,14 +82,14 @@ impl Inspector {
                 let mean = film.mean(index);
                 let bytes = mean.map(|v| to_byte(v, transfer, y as usize, film.height() as usize));
                 let (error, samples) = (standard_error(film, index), film.sample_count());
-                // The frame that this wakes may ask the next question.
+                // Dropped first: it wakes a frame, which may ask the next question.
                 drop(question);
                 answer.give(Pixel { at, mean, error, bytes, samples });
             }
         });
     }
 
-    /// Draws it; `layer` is the layer that is shown, and its value there.
+    /// Draws the panel. `layer` is the displayed layer and its value at the pixel.
     pub fn ui(&self, ui: &mut Ui, document: &Document, layer: Option<(Layer, [f64; 3])>) {
         ui.label(RichText::new("Pixel").strong());
         match &self.pixel {
@@ -102,7 +102,7 @@ impl Inspector {
     }
 }
 
-/// What a sphere and its material are called.
+/// The display names of a sphere and its material.
 pub fn names(scene: &Scene, sphere: usize) -> (String, String) {
     let named = &scene.materials[scene.spheres[sphere].material];
     (format!("sphere {sphere}"), format!("{} ({})", named.name, named.material.kind()))

@@ -1,4 +1,4 @@
-//! Layers of the picture, traced on a thread of their own: a coarse one at once, then finer ones.
+//! Layers of the picture, traced on their own thread: a coarse one at once, then finer ones.
 
 use super::model::document::Document;
 use super::texture::Texture;
@@ -16,10 +16,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Samples per pixel of a finished layer.
 const SAMPLES: u64 = 16;
 
-/// Most pixels of the coarse layer, which has one sample each.
+/// Largest number of pixels in the coarse layer, which has one sample each.
 const COARSE_PIXELS: u32 = 20_000;
 
-/// What the thread is to trace.
+/// A layer for the thread to trace.
 struct Order {
     number: u64,
     layer: Layer,
@@ -28,7 +28,7 @@ struct Order {
     cancel: Arc<AtomicBool>,
 }
 
-/// What the thread has traced.
+/// A layer that the thread has traced.
 struct Traced {
     number: u64,
     image: LayerImage,
@@ -47,15 +47,15 @@ struct Ordered {
 
 /// A layer on the screen.
 pub struct ShownLayer {
-    /// Its picture.
+    /// The texture of the layer's picture.
     pub texture: Texture,
-    /// 1, or by how much it is smaller than the picture.
+    /// 1, or the factor by which the layer is smaller than the picture.
     pub divisor: u32,
     layer: Layer,
     image: LayerImage,
 }
 
-/// The layer that is looked at.
+/// The layer that is displayed.
 #[derive(Default)]
 pub struct Layers {
     orders: Option<Sender<Order>>,
@@ -67,12 +67,12 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// What there is of a layer.
+    /// The newest version of a layer.
     pub fn shown_mut(&mut self, layer: Layer) -> Option<&mut ShownLayer> {
         self.shown.as_mut().filter(|shown| shown.layer == layer)
     }
 
-    /// The layer and its mean at a pixel of the whole picture.
+    /// The layer and its mean at a pixel of the full-size picture.
     pub fn value_at(&self, [x, y]: [u32; 2]) -> Option<(Layer, [f64; 3])> {
         let shown = self.shown.as_ref()?;
         let (image, at) = (&shown.image, [x / shown.divisor, y / shown.divisor]);
@@ -80,13 +80,13 @@ impl Layers {
         is_inside.then(|| (shown.layer, image.mean(at)))
     }
 
-    /// Samples per pixel of a layer at the picture's own size; 0 while there is none.
+    /// Samples per pixel of a full-size layer; 0 while there is none.
     pub fn samples(&self, layer: Layer) -> u64 {
         let shown = self.shown.as_ref().filter(|shown| shown.layer == layer && shown.divisor == 1);
         shown.map_or(0, |shown| shown.image.samples)
     }
 
-    /// Has `layer` of the document traced, and fetches what is new of it.
+    /// Starts to trace `layer` of the document and takes new results.
     pub fn follow(&mut self, context: &Context, layer: Option<Layer>, document: &Document, is_moving: bool) {
         let Some(layer) = layer else {
             if self.ordered.take().is_some() {
@@ -101,12 +101,12 @@ impl Layers {
                 && ordered.document.has_same_film(document)
                 && (is_moving || !ordered.is_coarse)
         });
-        // Before a coarse one has been seen, another would only keep it from being so.
+        // Until a coarse layer has been displayed, starting another one would only delay it.
         let is_unseen =
             self.ordered.as_ref().is_some_and(|ordered| ordered.layer == layer && !ordered.is_pictured);
         let has_to_wait = is_moving && is_unseen;
         if !is_at_it && !has_to_wait {
-            // A document that cannot be rendered says so elsewhere.
+            // An invalid document is reported elsewhere.
             let _ = self.order(context, layer, document, is_moving);
         }
     }
@@ -141,7 +141,7 @@ impl Layers {
         let order = Order { number: self.number, layer, job, is_coarse, cancel };
         let slot = &self.slot;
         let orders = self.orders.get_or_insert_with(|| start_thread(Arc::clone(slot), context.clone()));
-        // Without a thread there are no layers, and nothing else is lost.
+        // Without a thread there are no layers, but everything else works.
         let _ = orders.send(order);
         Ok(())
     }
@@ -161,7 +161,7 @@ fn start_thread(slot: Slot, context: Context) -> Sender<Order> {
             while let Ok(newer) = orders.try_recv() {
                 order = newer;
             }
-            // The jobs differ from one that has been checked in size and depth alone.
+            // This job differs from a validated one only in size and depth.
             let _ = order.trace(&mut recorder, &slot, &context);
         }
     };
@@ -193,7 +193,7 @@ impl Order {
         Ok(())
     }
 
-    /// Adds samples, and shows them when there are twice as many as before. Returns false if it was cancelled.
+    /// Adds samples and publishes the layer each time the sample count has doubled. Returns false if it was cancelled.
     fn refine(
         &self,
         recorder: &mut Option<PathRecorder>,
@@ -222,7 +222,7 @@ impl Order {
     }
 }
 
-/// Three bytes a pixel.
+/// Converts a layer to three bytes per pixel.
 fn coloured(layer: Layer, image: &LayerImage, transfer: Transfer) -> Vec<u8> {
     let mut rgb8 = Vec::with_capacity(image.width as usize * image.height as usize * 3);
     for y in 0..image.height {
@@ -246,7 +246,7 @@ mod tests {
 
     #[test]
     fn a_coarse_layer_is_the_picture_made_smaller() {
-        // The divisor is the least with which the coarse layer has at most 20,000 pixels.
+        // The divisor is the smallest one for which the coarse layer has at most 20,000 pixels.
         for ([width, height], divisor, size) in
             [([640, 360], 4, [160, 90]), ([203, 101], 2, [102, 51]), ([160, 90], 1, [160, 90])]
         {
@@ -266,7 +266,7 @@ mod tests {
             let texture = Texture::new(size, &rgb8, None);
             let [column, row] = size.map(|length| length / 2);
             let middle = image.mean([column, row]);
-            // The ball in the middle faces the eye; the sky above it does not look like it.
+            // The ball in the middle faces the camera; the sky above has a different colour.
             assert!(middle[2] > 0.9 && image.mean([column, 0])[2] > 0.99, "{middle:?}");
             let shown = ShownLayer { texture, divisor: found, layer: Layer::Normals, image };
             let mut layers = Layers::default();

@@ -1,4 +1,4 @@
-//! The bar at the top: menus, stage, device, pause and save.
+//! The top bar: menus, stage, device, pause and save.
 
 use super::command::{Command, Group};
 use super::facts::Facts;
@@ -9,7 +9,7 @@ use crate::output::OutputFormat;
 use crate::stages::Stage;
 use eframe::egui::{self, Align, Button, Layout, RichText, TextStyle, Ui};
 
-/// How wide a menu is, points: a name and its keys are not far apart.
+/// Width of a menu in points, narrow enough that names and keys are close together.
 pub const MENU_WIDTH: f32 = 300.0;
 
 pub fn ui(ui: &mut Ui, is_narrow: bool, facts: &Facts, commands: &mut Vec<Command>) {
@@ -64,7 +64,7 @@ fn menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     }
 }
 
-/// Commands with the same number stand together.
+/// The section of a command. Commands with the same number are grouped together.
 fn section(command: Command) -> u8 {
     match command {
         Command::Save(_) | Command::SaveScene => 1,
@@ -103,7 +103,7 @@ fn stage_list(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
                 ui.label(RichText::new(heading).small().color(ui.visuals().weak_text_color()));
             }
             let response = item(ui, facts, commands, Command::Stage(stage));
-            // One sees where one is.
+            // Scroll to the current stage.
             if is_new && facts.document().stage() == Some(stage) {
                 response.scroll_to_me(Some(Align::Center));
             }
@@ -111,7 +111,7 @@ fn stage_list(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     });
 }
 
-/// Whether what stands here was not shown a moment ago. The first passes only find out how large it is.
+/// Whether this area was hidden a moment ago. Its first passes only measure its size.
 fn has_just_opened(ui: &Ui) -> bool {
     const PASSES: u64 = 3;
     let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
@@ -125,7 +125,7 @@ fn has_just_opened(ui: &Ui) -> bool {
     })
 }
 
-/// A command as a line of a menu.
+/// A menu item for a command.
 pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command) -> egui::Response {
     let disabled_reason = facts.disabled_reason(command);
     let button = line(ui, command, facts.is_on(command));
@@ -184,7 +184,7 @@ fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Comman
     }
 }
 
-/// What a command does, with its keys.
+/// A command's help text with its keys.
 fn with_keys(ui: &Ui, command: Command) -> String {
     match command.keys(ui.ctx()) {
         Some(keys) => format!("{} ({keys})", command.help()),
@@ -192,7 +192,7 @@ fn with_keys(ui: &Ui, command: Command) -> String {
     }
 }
 
-/// From right to left.
+/// The buttons on the right side, laid out from right to left.
 fn buttons(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     save(ui, commands);
     pause(ui, facts, commands);
@@ -214,7 +214,7 @@ fn save(ui: &mut Ui, commands: &mut Vec<Command>) {
 }
 
 fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
-    // Both words in one width, so that nothing beside it moves.
+    // Both labels have the same width, so that nothing beside the button moves.
     let is_paused = facts.model.is_paused;
     let label = if is_paused { "Go on" } else { "Pause" };
     let button = Button::new(label).min_size(egui::vec2(58.0, 0.0)).selected(is_paused);
@@ -228,8 +228,8 @@ fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     }
 }
 
-/// When the target will be reached, where there is room. It comes last, so that what changes with every estimate
-/// moves nothing.
+/// When the target will be reached, if there is room. It comes last, so that a change of its text moves nothing
+/// else.
 fn prediction(ui: &mut Ui, facts: &Facts) {
     let Some(words) = prediction_label(&facts.status, facts.document().stop.noise) else { return };
     let text = RichText::new(words).small();

@@ -1,10 +1,10 @@
-//! The window: a picture that gets better while one watches, and everything that one can do to it.
+//! The window. The image refines while the user watches, and can be explored and edited meanwhile.
 //!
-//! `model` is what the user has chosen, free of controls and drawing. A panel is a function of the part of it that it may
-//! change, of `Facts` to show, and of a list of [`Command`]s that it adds to; menus, keys and the palette add to the same
-//! list. Whoever asks another thread keeps the place where the answers arrive. Only [`Window`] knows everything: it
-//! carries out the commands and says what is to be rendered. The tracer has a thread of its own, which this one never
-//! waits for.
+//! `model` holds what the user has chosen, without widgets or drawing. Each panel is a function of the part of the
+//! model that it may change, of `Facts` to show, and of a list of [`Command`]s to which it adds; menus, keys and the
+//! palette add to the same list. Each asker of a background thread owns the slot in which its answers arrive. Only
+//! [`Window`] knows everything: it carries out the commands and decides what to render. The tracer runs on its own
+//! thread, and the window's thread never waits for it.
 
 mod answers;
 mod changes;
@@ -50,14 +50,14 @@ use anyhow::{Result, anyhow, bail};
 use eframe::egui;
 use std::process::ExitCode;
 
-/// What to do where there is no window to be had.
+/// What the user can do when no window can be opened.
 const REMEDY: &str = "add --batch to render to a file without a window, for example: \
                       weekender --batch --stage glass-schlick --out glass.png";
 
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// If there is no display, or nothing that can draw on it; the message says how to do without.
+/// If there is no display, or no way to draw on it. The message says how to render without a window.
 pub fn run(options: WindowOptions) -> Result<ExitCode> {
     if !has_display() {
         bail!(
@@ -72,7 +72,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         });
         match eframe::run_native("weekender", native, create) {
             Ok(()) => return Ok(ExitCode::SUCCESS),
-            // The window system's own words name places in its source; another renderer would not help.
+            // The window system's own message names places in its source code, and another renderer would not help.
             Err(eframe::Error::WinitEventLoop(_)) => {
                 bail!("the display {} does not answer; {REMEDY}", display())
             }
@@ -82,8 +82,8 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
     Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
 }
 
-/// What may draw the window, to be tried in turn. A processor takes several times as long for a frame by way of wgpu
-/// as by way of OpenGL, since egui's shader for wgpu computes all that it might need.
+/// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu
+/// as with OpenGL, because egui's wgpu shader computes everything that it might need.
 fn renderers(wish: DrawWith) -> &'static [eframe::Renderer] {
     use eframe::Renderer::{Glow, Wgpu};
     match wish {
@@ -109,12 +109,12 @@ fn native_options(renderer: eframe::Renderer) -> eframe::NativeOptions {
     }
 }
 
-/// Whether the system has somewhere to put a window.
+/// Whether the system has a display.
 fn has_display() -> bool {
     !cfg!(all(unix, not(target_vendor = "apple"))) || !display().is_empty()
 }
 
-/// The displays that the environment names.
+/// The displays named by the environment.
 fn display() -> String {
     let values = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].map(std::env::var_os);
     let named: Vec<_> = values.iter().flatten().map(|value| value.to_string_lossy()).collect();

@@ -1,19 +1,19 @@
-//! How the camera moves. Each function takes a camera and returns one; a move that would leave no valid camera
-//! is not made.
+//! Camera movement. Each function takes a camera and returns a new one. A move that would give an invalid camera is
+//! not made.
 
 use crate::scene::Camera;
 use glam::{DQuat, DVec3};
 
-/// The view never comes closer to straight up or down than this, so that left stays left.
+/// The view direction stays at least this far from the poles, so that left stays left.
 const POLE_DEGREES: f64 = 1.0;
 
-/// Turns around `look_at`: `right` and `up` in radians, as a hand would turn the scene.
+/// Orbits around `look_at`: `right` and `up` in radians, in the direction in which the scene appears to turn.
 pub fn orbit(camera: &Camera, right: f64, up: f64) -> Camera {
     let away = turned(camera, camera.look_from - camera.look_at, -right, up);
     kept(camera, Camera { look_from: camera.look_at + away, ..*camera })
 }
 
-/// Turns the eye where it stands: `right` and `up` in radians.
+/// Turns the camera in place: `right` and `up` in radians.
 pub fn look(camera: &Camera, right: f64, up: f64) -> Camera {
     let ahead = turned(camera, camera.look_at - camera.look_from, -right, up);
     kept(camera, Camera { look_at: camera.look_from + ahead, ..*camera })
@@ -25,24 +25,24 @@ pub fn dolly(camera: &Camera, factor: f64) -> Camera {
     kept(camera, Camera { look_from, ..*camera })
 }
 
-/// Moves eye and target: `by` is right, up and ahead, in scene units.
+/// Moves the camera and `look_at`: `by` is right, up and forward, in scene units.
 pub fn fly(camera: &Camera, by: DVec3) -> Camera {
     let basis = camera.basis();
     let offset = by.x * basis.u + by.y * basis.v - by.z * basis.w;
     kept(camera, Camera { look_from: camera.look_from + offset, look_at: camera.look_at + offset, ..*camera })
 }
 
-/// Looks at `point` from where the eye is.
+/// Looks at `point` from the current position.
 pub fn recentre(camera: &Camera, point: DVec3) -> Camera {
     kept(camera, Camera { look_at: point, ..*camera })
 }
 
-/// Makes the plane through `point` sharp.
+/// Focuses on the plane through `point`.
 pub fn focus(camera: &Camera, point: DVec3) -> Camera {
     kept(camera, Camera { focus_distance: Some(camera.depth_of(point)), ..*camera })
 }
 
-/// `v` turned about `vup`, then towards it.
+/// Rotates `v` around `vup`, then towards it.
 fn turned(camera: &Camera, v: DVec3, about_up: f64, towards_up: f64) -> DVec3 {
     let Some(up) = camera.vup.try_normalize() else { return v };
     let v = DQuat::from_axis_angle(up, about_up) * v;

@@ -12,35 +12,35 @@ use eframe::egui::{
 };
 use glam::DVec3;
 
-/// How many paths can be listed at once.
+/// The largest number of paths in the list.
 const COUNT_LIMIT: u64 = 64;
 
-/// How far a ray to the sky is drawn, scene units.
+/// The length at which a ray to the sky is drawn, in scene units.
 const SKY_LENGTH: f64 = 2.0;
 
-/// What is in front of the eye by less than this share of the view's length is not drawn.
+/// Parts closer to the camera than this share of the view distance are not drawn.
 const NEAR_SHARE: f64 = 1e-4;
 
-/// Paths of a pixel that another thread has recorded.
+/// Paths of a pixel, recorded by a background thread.
 pub struct Listed {
     number: u64,
     pixel: [u32; 2],
-    /// What was shown then.
+    /// The document when they were recorded.
     document: Document,
-    /// Of samples 0, 1, 2 and so on.
+    /// The paths of samples 0, 1, 2 and so on.
     records: Vec<PathRecord>,
 }
 
 /// The list of paths.
 pub struct Paths {
     count: u64,
-    /// Of the newest question.
+    /// The number of the newest query.
     number: u64,
     is_waiting: bool,
     listed: Option<Listed>,
-    /// The sample whose path stands out.
+    /// The sample whose path is highlighted.
     selected: Option<usize>,
-    /// It has just been listed and is to be scrolled to.
+    /// The list is new and the panel should scroll to it.
     is_new: bool,
     answers: Answers<Listed>,
 }
@@ -60,9 +60,9 @@ impl Default for Paths {
 }
 
 impl Paths {
-    /// Lists the paths of a pixel; another thread records them.
+    /// Lists the paths of a pixel. A background thread records them.
     pub fn list(&mut self, document: &Document, pixel: [u32; 2], context: &egui::Context) {
-        // A document that cannot be rendered says so elsewhere.
+        // An invalid document is reported elsewhere.
         let Ok(job) = document.job(1) else { return };
         self.number += 1;
         let (number, count, document) = (self.number, self.count, document.clone());
@@ -75,7 +75,7 @@ impl Paths {
         self.is_waiting = self.answers.ask("paths", context, record).is_ok();
     }
 
-    /// They have been recorded.
+    /// Takes recorded paths.
     fn learn(&mut self, listed: Listed) {
         if listed.number == self.number {
             self.is_waiting = false;
@@ -86,14 +86,14 @@ impl Paths {
         }
     }
 
-    /// Takes them off the picture.
+    /// Removes the paths from the picture.
     pub fn forget(&mut self) {
         self.number += 1;
         (self.listed, self.is_waiting) = (None, false);
     }
 
-    /// Takes what was recorded. Lists them anew if other numbers make other paths; a camera that moves looks at those
-    /// there are.
+    /// Takes recorded paths. Lists them again if a change affects the random numbers; if only the camera moves, the
+    /// existing paths stay.
     pub fn follow(&mut self, document: &Document, context: &egui::Context) {
         while let Some(listed) = self.answers.take() {
             self.learn(listed);
@@ -111,12 +111,12 @@ impl Paths {
         }
     }
 
-    /// How many there are.
+    /// The number of listed paths.
     pub fn len(&self) -> usize {
         self.listed.as_ref().map_or(0, |listed| listed.records.len())
     }
 
-    /// Lists them.
+    /// Draws the list.
     pub fn ui(&mut self, ui: &mut Ui, document: &Document) {
         let weak = ui.visuals().weak_text_color();
         let Some(listed) = &self.listed else {
@@ -186,7 +186,7 @@ impl Paths {
         }
     }
 
-    /// Draws all paths, the selected one last and strongest.
+    /// Draws all paths; the selected one is drawn last and most clearly.
     pub fn paint(&self, document: &Document, ui: &Ui, painter: &Painter, rect: Rect) {
         let Some(listed) = &self.listed else { return };
         let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
@@ -211,18 +211,18 @@ impl Paths {
     }
 }
 
-/// Where a ray ends, or how far it is drawn.
+/// The end of a ray, or the point up to which it is drawn.
 fn end_of(ray: &RecordedRay) -> DVec3 {
     let length = ray.hit.map_or(SKY_LENGTH, |hit| hit.distance);
     DVec3::from(ray.origin) + DVec3::from(ray.direction) * length
 }
 
-/// How paths are seen on the picture.
+/// The projection of paths onto the picture.
 struct View<'a> {
     camera: &'a Camera,
     aspect: f64,
     rect: Rect,
-    /// The paths begin where the camera stands, so that their first rays are points.
+    /// The paths start at this camera, so their first rays project to points.
     is_from_eye: bool,
 }
 
@@ -232,7 +232,7 @@ impl View<'_> {
         Some(self.rect.min + vec2(x as f32, y as f32) * self.rect.size())
     }
 
-    /// The part of a line that lies before the eye.
+    /// The part of a line in front of the camera.
     fn line(&self, mut a: DVec3, mut b: DVec3) -> Option<[Pos2; 2]> {
         let near = NEAR_SHARE * self.camera.look_from.distance(self.camera.look_at);
         let [depth_a, depth_b] = [a, b].map(|point| self.camera.depth_of(point));
@@ -290,7 +290,7 @@ fn list_rays(ui: &mut Ui, record: &PathRecord, scene: &Scene) {
             lines.push(("normal", triple(normal.to_array())));
             lines.push(("distance", compact(hit.distance)));
         }
-        // What the surface took is the next ray's share of this one's.
+        // The ratio of the next ray's throughput to this one's is the surface's attenuation.
         if let Some(next) = record.rays.get(index + 1) {
             let share = |i: usize| {
                 if ray.throughput[i] == 0.0 { 0.0 } else { next.throughput[i] / ray.throughput[i] }

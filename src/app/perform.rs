@@ -1,4 +1,4 @@
-//! What each command does.
+//! Carries out commands.
 
 use super::command::Command;
 use super::dialogs::{Dialog, Palette, PathBox, Purpose};
@@ -16,11 +16,11 @@ use eframe::egui::{self, ViewportCommand};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// More than the time between two pictures.
+/// Longer than the time between two pictures.
 const PICTURES_APART: Duration = Duration::from_millis(300);
 
 impl Window {
-    /// Carries a command out; one that can do nothing says why.
+    /// Carries out a command. A disabled command shows why it is disabled.
     pub fn perform(&mut self, context: &egui::Context, command: Command) {
         self.performed = Some(command);
         if let Some(log) = &mut self.frame_log {
@@ -117,10 +117,10 @@ impl Window {
         }
     }
 
-    /// Goes back to the picture if what is shown cannot be shown any more, and says why.
+    /// Returns to the picture if the current view is no longer available, and says why.
     pub(super) fn leave_useless_show(&mut self) {
         let show = self.show();
-        // The picture itself can always be shown, and is in most frames.
+        // The picture itself is always available, and it is the usual view.
         if show == Show::Picture {
             return;
         }
@@ -137,7 +137,7 @@ impl Window {
             Command::Info => &mut remembered.has_info,
             _ => &mut remembered.has_plot,
         };
-        // While all are hidden, the one that is asked for comes back.
+        // While all panels are hidden, show the requested one.
         *panel = !*panel || !remembered.has_panels;
         remembered.has_panels = true;
     }
@@ -151,7 +151,7 @@ impl Window {
             self.model.is_paused = true;
             self.main.pause();
             self.second.pause();
-            // What was traced since the last picture is shown, too.
+            // Also shows what was traced since the last picture.
             context.request_repaint_after(PICTURES_APART);
         }
     }
@@ -162,7 +162,7 @@ impl Window {
         self.dialogs.open(Dialog::Path(PathBox::new(purpose, name, directory)));
     }
 
-    /// Does with a file what it was named for.
+    /// Uses a file for the purpose for which it was chosen.
     pub(super) fn use_path(&mut self, context: &egui::Context, purpose: Purpose, path: PathBuf) {
         if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
             self.model.remembered.directory = Some(directory.to_owned());
@@ -181,13 +181,13 @@ impl Window {
     }
 
     fn copy_command(&mut self, context: &egui::Context) {
-        // As many as a picture that is saved now has.
+        // As many as a picture saved now would have.
         let samples = match self.main.status().samples_per_pixel {
             samples @ 1.. if self.main.is_full(self.document()) => samples,
             _ => self.document().stop.samples.unwrap_or(self.document().origin.recipe.samples_per_pixel),
         };
         let device = self.model.remembered.device;
-        // Software adapters are used only when they are named.
+        // Software adapters are used only if they are named.
         let is_gpu = matches!(device, Device::Gpu | Device::Both);
         let adapter = device::adapter().ok().filter(|adapter| is_gpu && adapter.is_software);
         let adapter = adapter.map(|adapter| adapter.name.as_str());

@@ -1,5 +1,5 @@
-//! The error against the seconds that were traced, both on scales of powers of ten: a curve for each backend since
-//! the last restart, how it should go on, and the target, which can be typed or dragged.
+//! The plot of error against tracing seconds, on logarithmic axes: a curve for each backend since the last restart, the
+//! expected continuation, and the target, which the user can type or drag.
 
 use super::command::Command;
 use super::facts::Facts;
@@ -17,19 +17,19 @@ use egui_plot::{
 };
 use std::fmt::Write;
 
-/// Targets that can be chosen, RMSE.
+/// The range of targets, RMSE.
 const TARGETS: std::ops::RangeInclusive<f64> = 1e-6..=1.0;
 
-/// Powers of ten that a scale has lines for.
+/// The largest number of decades for which an axis has grid lines.
 const MOST_DECADES: f64 = 40.0;
 
-/// Points between lines of the scale at the left: from the least that has labels, to that which has them in full.
+/// Spacing of grid lines on the left axis, in points: from the smallest that gets labels to the one with full labels.
 const LABEL_SPACING: Rangef = Rangef { min: 8.0, max: 14.0 };
 
-/// How near the pointer must be to the target to take hold of it, points.
+/// How close the pointer must be to the target line to grab it, in points.
 const GRIP: f32 = 8.0;
 
-/// Draws it. `target` is the error at which the render ends.
+/// Draws the plot. `target` is the error at which the render ends.
 pub fn ui(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut Vec<Command>) {
     let status = &facts.status;
     let frame = theme::panel(egui::Margin::symmetric(12, 6));
@@ -49,7 +49,7 @@ pub fn ui(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut V
         });
 }
 
-/// What the plot shows, the target as a number, and the plot's data.
+/// The header: a title, the target as a number, and buttons for the plot's data.
 fn header(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut Vec<Command>) {
     let weak = ui.visuals().weak_text_color();
     ui.horizontal_wrapped(|ui| {
@@ -121,7 +121,7 @@ fn plot(ui: &mut Ui, stop_at: &mut Option<f64>, status: &Status) {
     let line = ui.scope_id().with("target line");
     let is_held = ui.ctx().is_being_dragged(line);
     let response = plot.show(ui, |plot| {
-        // While the target is moved, the scale that it is moved on stays.
+        // The axes stay fixed while the target is dragged.
         plot.set_auto_bounds(!is_held);
         guide(plot, &all, weak);
         if let Some(target) = target.filter(|target| *target > 0.0) {
@@ -134,7 +134,7 @@ fn plot(ui: &mut Ui, stop_at: &mut Option<f64>, status: &Status) {
         for (backend, points) in &curves {
             curve(plot, backend, points, color_of(backend));
         }
-        // One curve needs no name: the bar below says who traces.
+        // A single curve needs no name: the status bar shows the backend.
         for (backend, points) in curves.iter().filter(|_| curves.len() > 1) {
             name_curve(plot, backend, points, color_of(backend));
         }
@@ -150,10 +150,10 @@ fn plot(ui: &mut Ui, stop_at: &mut Option<f64>, status: &Status) {
     }
 }
 
-/// How much of the colour of weak text the grid has.
+/// Opacity of the grid relative to weak text.
 const GRID_SHARE: f32 = 0.4;
 
-/// Lines at powers of ten, and paler ones at 2 and 5 times them; none on a scale so wide that they would be one grey.
+/// Grid lines at powers of ten, and fainter ones at 2 and 5 times these; none if they would merge into solid grey.
 fn decades(grid: GridInput) -> Vec<GridMark> {
     let (low, high) = grid.bounds;
     if !(0.0..=MOST_DECADES).contains(&(high - low)) {
@@ -167,7 +167,7 @@ fn decades(grid: GridInput) -> Vec<GridMark> {
     marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
 }
 
-/// Moves the target with the pointer that took hold of its line.
+/// Moves the target with the pointer that grabbed its line.
 fn drag_target(ui: &Ui, line: egui::Id, target: &mut f64, plot: &PlotTransform) {
     let level = plot.position_from_point_y(target.log10());
     let grip = Rect::from_x_y_ranges(plot.frame().x_range(), level - GRIP..=level + GRIP);
@@ -190,12 +190,12 @@ fn drag_target(ui: &Ui, line: egui::Id, target: &mut f64, plot: &PlotTransform) 
     ui.ctx().set_cursor_icon(CursorIcon::ResizeVertical);
 }
 
-/// The nearest number of two significant digits.
+/// Rounds to two significant digits.
 fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// What the pointer is at: a dot, which tells its samples, or any place.
+/// The text for the pointer's position: a point with its samples, or just the coordinates.
 fn hover_words(history: &[HistoryPoint], [x, y]: [f64; 2]) -> String {
     let place = format!("{:.3} s\nerror {:.5}", 10_f64.powf(x), 10_f64.powf(y));
     match history.iter().find(|point| logarithms(point) == [x, y]) {
@@ -204,7 +204,7 @@ fn hover_words(history: &[HistoryPoint], [x, y]: [f64; 2]) -> String {
     }
 }
 
-/// How independent samples go on from the first estimate: half the error for four times the time.
+/// The guide for independent samples from the first estimate on: four times the time halves the error.
 fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return };
     let [x, y] = logarithm(first);
@@ -214,7 +214,7 @@ fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
     plot.line(line.color(color).style(LineStyle::dotted_dense()).width(1.0).allow_hover(false));
 }
 
-/// From the newest estimate to where the target should be met, and between which times.
+/// From the newest estimate to the predicted time at the target, with its uncertainty.
 fn ahead(plot: &mut PlotUi, now: &Point, target: f64, prediction: &Prediction, color: Color32) {
     let y = target.log10();
     let at = |seconds_from_now: f64| [(now.time + seconds_from_now.min(FARTHEST)).log10(), y];
@@ -229,7 +229,7 @@ fn curve(plot: &mut PlotUi, name: &str, points: &[[f64; 2]], color: Color32) {
     plot.points(Points::new(name, PlotPoints::from(points.to_vec())).color(color).radius(2.5));
 }
 
-/// Writes the backend's name above the middle of its curve, where nothing else is: errors fall.
+/// Writes the backend's name above the middle of its curve. That area is free, because errors fall.
 fn name_curve(plot: &mut PlotUi, name: &str, points: &[[f64; 2]], color: Color32) {
     let (Some([x0, y0]), Some([x1, y1])) = (points.first(), points.last()) else { return };
     let middle = PlotPoint::new(0.5 * (x0 + x1), 0.5 * (y0 + y1));
@@ -237,7 +237,7 @@ fn name_curve(plot: &mut PlotUi, name: &str, points: &[[f64; 2]], color: Color32
     plot.text(Text::new(name, middle, words).anchor(Align2::LEFT_BOTTOM).allow_hover(false));
 }
 
-/// The history in pieces, each of what one backend did; a piece begins where the one before it ends.
+/// Splits the history into one curve for each backend; a curve begins where the previous one ends.
 fn curves(history: &[HistoryPoint]) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let mut curves: Vec<(&'static str, Vec<[f64; 2]>)> = Vec::new();
     for point in history.iter().filter(|point| point.rmse_estimate > 0.0 && point.trace_seconds > 0.0) {
@@ -262,7 +262,7 @@ fn logarithm(point: &Point) -> [f64; 2] {
     [point.time.log10(), point.error.log10()]
 }
 
-/// The points with a head.
+/// The points as CSV with a header line.
 pub fn csv(history: &[HistoryPoint]) -> String {
     let mut text = String::from("backend,samples_per_pixel,trace_seconds,rmse_estimate,rel_mse_estimate\n");
     for point in history {
@@ -280,7 +280,7 @@ pub fn csv(history: &[HistoryPoint]) -> String {
     text
 }
 
-/// A mark of a scale in powers of ten.
+/// A label of a logarithmic axis.
 fn power(exponent: f64, unit: &str) -> String {
     let decade = 10_f64.powf((exponent + 1e-6).floor());
     format!("{}{unit}", compact((10_f64.powf(exponent) / decade).round() * decade))

@@ -1,25 +1,25 @@
-//! When a render will have met its target, from the errors up to now.
+//! Predicts when a render will reach its target, from its error so far.
 
 use crate::progressive::{NOISE_TARGET_FIRST_SAMPLES, Status};
 use crate::statistics::fit::{Point, Prediction, predict};
 
-/// Seconds from now beyond which nothing is told.
+/// Predictions more than this many seconds ahead are not shown.
 pub const FARTHEST: f64 = 1e6;
 
-/// All estimates, the newest last.
+/// All error estimates, the newest last.
 pub fn points(status: &Status) -> Vec<Point> {
     let history = status.history.iter().map(|p| Point { time: p.trace_seconds, error: p.rmse_estimate });
     let now = status.error.map(|error| Point { time: status.trace.as_secs_f64(), error: error.rmse });
     history.chain(now).filter(|point| point.time > 0.0 && point.error > 0.0).collect()
 }
 
-/// In how many seconds from now the error will be at the target; `None` where it is, or where too little is known.
+/// Predicts in how many seconds the error will reach the target. `None` if it already has, or with too little data.
 pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
     if status.samples_per_pixel < NOISE_TARGET_FIRST_SAMPLES || status.phase.is_over() {
         return None;
     }
     let error = status.error?;
-    // A switch of backends bends the curve: only what the present one did tells how it goes on.
+    // Switching the backend bends the curve, so only the current backend's points are used.
     let backend = status.history.last().map(|point| point.backend);
     let mut history: Vec<Point> = status
         .history
@@ -38,13 +38,13 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
         .filter(|found| found.time < FARTHEST)
 }
 
-/// As "RMSE .005 in about 38 s (33 to 44)", while there is a target ahead.
+/// Text such as "RMSE .005 in about 38 s (33 to 44)"; `None` if no target is ahead.
 pub fn prediction_label(status: &Status, target: Option<f64>) -> Option<String> {
     let prediction = prediction(status, target)?;
     Some(format!("RMSE {} {}", target?, prediction_words(&prediction)))
 }
 
-/// As "in about 38 s (33 to 44)".
+/// Text such as "in about 38 s (33 to 44)".
 pub fn prediction_words(prediction: &Prediction) -> String {
     let [low, high] = prediction.range;
     let about = whole(prediction.time);

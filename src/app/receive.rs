@@ -1,4 +1,4 @@
-//! What is done with the answers of other threads.
+//! Handles the answers of background threads.
 
 use super::command::Command;
 use super::files::Resumed;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 impl Window {
-    /// Takes what other threads have to say.
+    /// Takes all answers that have arrived.
     pub(super) fn receive(&mut self, context: &egui::Context) {
         while let Some(outcome) = self.files.saved.take() {
             match outcome {
@@ -59,7 +59,7 @@ impl Window {
         document.camera = recipe.camera;
         document.settings = recipe.settings;
         if let Content::Picture { samples: Some(samples) } = content {
-            // A picture is restored as it was; a film goes on.
+            // A picture is restored with its stop condition; a film continues.
             document.stop = Stop::at_samples(samples);
         }
         self.show_document(document);
@@ -99,7 +99,7 @@ impl Window {
         }
     }
 
-    /// Passes on what the render thread had to say.
+    /// Shows the render thread's messages.
     fn tell_messages(&mut self) {
         let status = self.main.status().clone();
         let (run, told) = self.told_messages;
@@ -107,7 +107,7 @@ impl Window {
         self.told_messages = (status.run, status.messages.len());
         let news: Vec<String> = status.messages.iter().skip(told).cloned().collect();
         if !news.is_empty() {
-            // Whatever failed, the device that goes on is the chosen one now.
+            // After a failure, the device that continues becomes the chosen one.
             if let Some(info) = &status.backend
                 && let Some(device) = Device::ALL.into_iter().find(|device| device.name() == info.name)
             {

@@ -1,5 +1,5 @@
-//! The picture beside the main one, for the wipe and the difference: another stage, or the same picture by the book's
-//! own arithmetic.
+//! The second picture for the wipe and the difference: another stage, or the same picture by the book's own
+//! arithmetic.
 
 use super::answers::Answers;
 use super::model::document::Document;
@@ -14,28 +14,28 @@ use std::sync::{Arc, Weak};
 /// The second picture.
 #[derive(Default)]
 pub struct Second {
-    /// Once there has been a second picture.
+    /// `None` until a second picture is needed.
     tracer: Option<Tracer>,
     of: Option<(Other, Arc<Origin>)>,
-    /// Its film, as far as it was traced when it was asked for last.
+    /// Its film when it was last read.
     film: Option<Arc<Reference>>,
     films: Answers<(Arc<Origin>, Reference)>,
-    /// Lives as long as its film has not been read.
+    /// Can be upgraded as long as a request for the film is open.
     waiting: Weak<()>,
 }
 
 impl Second {
-    /// The picture.
+    /// The newest second picture.
     pub fn shown_mut(&mut self) -> Option<&mut Shown> {
         self.tracer.as_mut().and_then(Tracer::shown_mut)
     }
 
-    /// The film, while the difference from it is looked at.
+    /// Its film, while the difference is shown.
     pub fn film(&self) -> Option<&Arc<Reference>> {
         self.film.as_ref()
     }
 
-    /// Whether what `document` is compared with has been pictured.
+    /// Whether a picture of the current comparison is available.
     pub fn has_picture(&self, document: &Document, view: &ViewState) -> bool {
         let shown = self.tracer.as_ref().and_then(Tracer::shown);
         match (view.compared(document), &self.of, shown) {
@@ -58,7 +58,7 @@ impl Second {
         }
     }
 
-    /// Takes the film, where it has been read.
+    /// Takes the film if it has been read.
     pub fn receive(&mut self) {
         while let Some((origin, film)) = self.films.take() {
             if self.of.as_ref().is_some_and(|(_, of)| Arc::ptr_eq(of, &origin)) {
@@ -67,8 +67,8 @@ impl Second {
         }
     }
 
-    /// Has the second picture rendered, if there is to be one; `want` is that of the main picture. Returns whether
-    /// there is one.
+    /// Renders the second picture, if one is needed; `want` is what the main picture renders. Returns whether one is
+    /// needed.
     pub fn follow(&mut self, context: &Context, view: &ViewState, want: &Want<'_>) -> bool {
         let Some(other) = view.compared(want.document) else {
             if let Some(tracer) = &mut self.tracer {
@@ -79,7 +79,7 @@ impl Second {
         };
         let document = self.document_of(other, want.document);
         if self.tracer.is_none() {
-            // Without a second thread there is no second picture, and nothing else is lost.
+            // Without a thread there is no second picture, but everything else works.
             self.tracer = Tracer::new().ok();
             if let Some(tracer) = &self.tracer {
                 tracer.wake(context);
@@ -87,7 +87,7 @@ impl Second {
         }
         let Some(tracer) = &mut self.tracer else { return false };
         let is_new = tracer.poll(context).is_some();
-        // Both pictures end alike, so that what differs is not the noise.
+        // Both pictures have the same stop condition, so that they do not differ in their noise.
         let stop = document.stop;
         let is_possible =
             tracer.want(&Want { document: &document, stop, view: View::Picture, ..*want }).is_ok();
@@ -133,7 +133,7 @@ impl Second {
     }
 }
 
-/// My camera, but for that in which the stages' cameras differ.
+/// The main camera, except for the settings in which the stages' cameras differ.
 fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
     fn choose<T: PartialEq>(mine: T, base: T, theirs: T) -> T {
         if base == theirs { mine } else { theirs }

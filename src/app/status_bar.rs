@@ -1,5 +1,5 @@
-//! The bar at the bottom: how far, how fast, how good, and by whom. Each figure has a place of its own, so that
-//! nothing jumps.
+//! The bottom bar: progress, speed, error and backend. Each figure has a fixed place, so that nothing moves when
+//! numbers change.
 
 use super::facts::Facts;
 use super::prediction::{prediction, prediction_words};
@@ -58,7 +58,7 @@ fn text_width(ui: &Ui, text: &str) -> f32 {
     ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE).size().x
 }
 
-/// A figure in the room that its widest text takes.
+/// A figure, in a place wide enough for its widest text.
 fn figure(ui: &mut Ui, text: &str, widest: &str, help: &str) {
     let width = text_width(ui, widest).max(text_width(ui, text));
     let height = ui.text_style_height(&egui::TextStyle::Body);
@@ -69,7 +69,7 @@ fn figure(ui: &mut Ui, text: &str, widest: &str, help: &str) {
     });
 }
 
-/// Text, the widest text in its place, and help.
+/// For each figure its text, its widest text, and its help.
 fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'static str, Cow<'static, str>)> {
     let samples = status.samples_per_pixel;
     let mut figures = vec![
@@ -98,7 +98,7 @@ fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'stati
             "Rays per path, the camera's included: how long paths are".into(),
         ),
     ];
-    // Packets are the processor's; a film may have samples of others, too.
+    // Only the CPU has packets; the film may contain samples of other backends.
     let packets = status.contributions.iter().rev().find(|part| part.backend.name.starts_with("cpu"));
     if let Some((share, part)) = status.lane_occupancy().zip(packets) {
         let lanes = part.backend.lanes;
@@ -164,12 +164,12 @@ fn rejected(ui: &mut Ui, status: &Status) {
     if status.rejected_samples > 0 {
         label = label.color(ui.visuals().error_fg_color).strong();
     }
-    // As a whole in one row.
+    // On a single row.
     ui.add(egui::Label::new(label).extend())
         .on_hover_text("Samples that were NaN, infinite or negative and so were left out");
 }
 
-/// Who traced how much: in full, then ever shorter.
+/// Which backends traced how many samples: first the full text, then ever shorter versions.
 fn who(status: &Status) -> Vec<String> {
     let total: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
     match status.contributions.as_slice() {
@@ -191,13 +191,13 @@ fn who(status: &Status) -> Vec<String> {
     }
 }
 
-/// A backend with its device, without what an adapter says of its driver.
+/// A backend with its device, without the adapter's driver details.
 fn short_name(backend: &BackendInfo) -> String {
     let device = backend.device.split(" (").next().unwrap_or_default();
     format!("{} {device}", backend.name)
 }
 
-/// A number with gaps between thousands.
+/// A number with spaces between groups of thousands.
 fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::new();
@@ -242,7 +242,7 @@ mod tests {
         Contribution { backend, samples_per_pixel }
     }
 
-    /// The status of a film that several backends have worked on.
+    /// The status of a film with these contributions.
     fn status_of(contributions: Vec<Contribution>) -> Status {
         Status {
             run: 3,

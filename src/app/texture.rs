@@ -1,16 +1,16 @@
-//! A picture on the window's graphics device.
+//! A picture as a texture of the window.
 
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureId, TextureOptions};
 use std::sync::Arc;
 
-/// A picture, and its texture once it has been drawn.
+/// A picture, and its texture once it was drawn.
 pub struct Texture {
     image: Arc<ColorImage>,
     handle: Option<(TextureHandle, TextureOptions)>,
 }
 
 impl Texture {
-    /// From three bytes a pixel, top row first. An `earlier` texture is used again.
+    /// Makes it from three bytes per pixel, top row first. The texture of `earlier` is reused.
     pub fn new([width, height]: [u32; 2], rgb8: &[u8], earlier: Option<Texture>) -> Self {
         let image = Arc::new(ColorImage::from_rgb([width as usize, height as usize], rgb8));
         let handle = earlier.and_then(|earlier| earlier.handle).map(|(mut handle, options)| {
@@ -20,7 +20,7 @@ impl Texture {
         Texture { image, handle }
     }
 
-    /// To be drawn, with pixels as squares or smoothed.
+    /// The texture for drawing, with square or smoothed pixels.
     pub fn id(&mut self, context: &Context, options: TextureOptions) -> TextureId {
         match &mut self.handle {
             Some((handle, old)) => {

@@ -1,4 +1,4 @@
-//! Colours and spacing: quiet greys, and one accent, the blue of the book's sky.
+//! Colours and spacing: subdued greys, and one accent colour, the blue of the book's sky.
 
 use super::model::remembered::Theme;
 use eframe::egui::{
@@ -59,12 +59,12 @@ fn palette(is_dark: bool) -> &'static Palette {
     if is_dark { &DARK } else { &LIGHT }
 }
 
-/// What lies around the picture.
+/// The colour around the picture.
 pub fn surround(ui: &Ui) -> Color32 {
     palette(ui.visuals().dark_mode).surround
 }
 
-/// The one colour that stands out.
+/// The accent colour.
 pub fn accent(ui: &Ui) -> Color32 {
     palette(ui.visuals().dark_mode).accent
 }
@@ -150,7 +150,7 @@ fn visuals(is_dark: bool) -> Visuals {
     visuals
 }
 
-/// A frame for what floats over the picture.
+/// A frame for widgets that float over the picture.
 pub fn float_frame(ui: &Ui) -> Frame {
     let fill = ui.visuals().panel_fill.gamma_multiply(0.94);
     Frame::new()
@@ -182,8 +182,8 @@ pub fn icon() -> Arc<egui::IconData> {
     Arc::new(egui::IconData { rgba, width: SIDE, height: SIDE })
 }
 
-/// A panel's frame. It has no ground of its own: the window is cleared to that colour, which costs next to nothing
-/// where a processor draws, and a ground as much as all that stands on it.
+/// A panel's frame. It has no fill: the window is cleared to the panel's colour, which costs almost nothing in software
+/// rendering, while a fill costs as much as the whole content.
 pub fn panel(inner_margin: egui::Margin) -> egui::Frame {
     egui::Frame::new().inner_margin(inner_margin)
 }

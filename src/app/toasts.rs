@@ -5,12 +5,12 @@ use crate::console;
 use eframe::egui::{self, Align2, Color32, RichText};
 use std::time::{Duration, Instant};
 
-/// How bad it is.
+/// The kind of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
-    /// Something was done.
+    /// Success.
     Good,
-    /// Something went wrong.
+    /// Failure.
     Bad,
 }
 
@@ -20,11 +20,11 @@ struct Toast {
     since: Instant,
 }
 
-/// The messages that are shown.
+/// The visible messages.
 #[derive(Default)]
 pub struct Toasts(Vec<Toast>);
 
-/// How long a message is shown; a failure stays longer, since it has to be read.
+/// How long a message is shown. Failures stay longer, because users have to read them.
 fn lifetime(tone: Tone) -> Duration {
     match tone {
         Tone::Good => Duration::from_secs(4),
@@ -33,12 +33,12 @@ fn lifetime(tone: Tone) -> Duration {
 }
 
 impl Toasts {
-    /// Says that something was done.
+    /// Reports a success.
     pub fn good(&mut self, text: impl Into<String>) {
         self.add(text.into(), Tone::Good);
     }
 
-    /// Says that something went wrong: here and, for whoever started the program from a terminal, there.
+    /// Reports a failure, both in the window and on the terminal.
     pub fn bad(&mut self, text: impl Into<String>) {
         let text = text.into();
         console::note(&format!("weekender: {text}"));
@@ -50,7 +50,7 @@ impl Toasts {
         self.0.push(Toast { text, tone, since: Instant::now() });
     }
 
-    /// What is said now, the oldest first.
+    /// The visible messages, oldest first.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.0.iter().map(|toast| toast.text.as_str())
     }

@@ -1,4 +1,4 @@
-//! The window's side of a progressive render: what is wanted, what runs, and the newest picture as a texture.
+//! The window's side of a progressive render: what is wanted, what is running, and the newest picture as a texture.
 
 use super::model::document::Document;
 use super::texture::Texture;
@@ -10,37 +10,37 @@ use std::io;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What a pass should take while someone moves something.
+/// Target duration of a pass while the user moves something.
 const MOVING_PASS: Duration = Duration::from_millis(10);
 
-/// What a pass should take else.
+/// Target duration of a pass otherwise.
 const STILL_PASS: Duration = Duration::from_millis(40);
 
-/// What a preview should take until it is drawn, seconds: the time from the hand to the eye.
+/// Target latency of a preview in seconds, from input to display.
 const PREVIEW_SECONDS: f64 = 0.05;
 
-/// Beyond this, seconds, the next preview is coarser.
+/// If a preview took longer than this many seconds, the next one is coarser.
 const PREVIEW_SECONDS_LIMIT: f64 = 0.07;
 
-/// A preview is no coarser than this.
+/// The coarsest divisor of previews.
 const DIVISOR_LIMIT: u32 = 8;
 
-/// How far a picture is traced that is asked for during a pause, samples per pixel.
+/// Samples per pixel that a render started during a pause traces before it stops.
 const PAUSED_SAMPLES: u64 = 8;
 
 /// The longest time between two pictures.
 const PICTURE_INTERVAL_LIMIT: Duration = Duration::from_millis(250);
 
-/// What should be rendered.
+/// What should be rendered now.
 pub struct Want<'a> {
     pub document: &'a Document,
     pub backend: &'a BackendChoice,
     pub stop: Stop,
-    /// How the film is shown.
+    /// The view of the film.
     pub view: View,
-    /// Something moves: a coarse picture now is better than a fine one later.
+    /// The user is moving something: a coarse picture now is better than a fine one later.
     pub is_moving: bool,
-    /// What is new is traced so far that it can be seen, and then waits.
+    /// The render is paused: a new picture is traced just far enough to be visible.
     pub is_paused: bool,
 }
 
@@ -61,33 +61,33 @@ struct Started {
     run: u64,
     at: Instant,
     is_pictured: bool,
-    /// It began during a pause that has not ended since.
+    /// The render began during a pause that still lasts.
     is_held: bool,
 }
 
 /// A picture on the screen.
 pub struct Shown {
-    /// Its texture.
+    /// The texture of the picture.
     pub texture: Texture,
     /// Samples per pixel.
     pub samples: u64,
-    /// 1, or the preview's share of the size.
+    /// 1, or the factor by which a preview is smaller.
     pub divisor: u32,
-    /// What it shows.
+    /// The document that it shows.
     pub document: Document,
 }
 
-/// A render thread and what is known of it.
+/// A render thread and its latest results.
 pub struct Tracer {
     progressive: Progressive,
     started: Option<Started>,
     shown: Option<Shown>,
     status: Arc<Status>,
     asked: Instant,
-    /// What the render thread was told last.
+    /// The backend and plan last sent to the render thread.
     told: Option<(BackendChoice, Plan)>,
     view: View,
-    /// Pixels a second of the last preview, from its wish to its picture: drawing the window takes its part, too.
+    /// Pixels per second of the last preview, from request to picture. It includes the cost of drawing the window.
     preview_speed: Option<f64>,
     moving_divisor: Option<u32>,
 }
@@ -107,13 +107,13 @@ impl Tracer {
         })
     }
 
-    /// Wakes the window when there is something to see.
+    /// Sets a callback that wakes the window when there is something new to show.
     pub fn wake(&self, context: &egui::Context) {
         let context = context.clone();
         self.progressive.set_notice(move || context.request_repaint());
     }
 
-    /// The numbers as of this frame.
+    /// The status as of this frame.
     pub fn status(&self) -> &Arc<Status> {
         &self.status
     }
@@ -128,12 +128,12 @@ impl Tracer {
         self.shown.as_ref()
     }
 
-    /// Whether the film that grows is that of the document at its full size.
+    /// Whether the current film is the full-size film of the document.
     pub fn is_full(&self, document: &Document) -> bool {
         self.started.as_ref().is_some_and(|run| run.divisor == 1 && run.document.has_same_film(document))
     }
 
-    /// Sets what pictures show.
+    /// Sets the view for pictures.
     fn look(&mut self, view: &View) {
         let is_same = match (&self.view, view) {
             (View::Difference(old), View::Difference(new)) => Arc::ptr_eq(old, new),
@@ -146,12 +146,12 @@ impl Tracer {
         }
     }
 
-    /// Whether that film has samples.
+    /// Whether the document's film has samples.
     pub fn has_samples(&self, document: &Document) -> bool {
         self.is_full(document) && self.status.samples_per_pixel > 0
     }
 
-    /// Reads the film on the render thread.
+    /// Runs `look` with the film on the render thread.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
         self.progressive.inspect(look);
     }
@@ -164,12 +164,12 @@ impl Tracer {
         self.progressive.resume();
     }
 
-    /// Throws the film away; the next wish begins anew.
+    /// Discards the film; the next request starts a new one.
     pub fn restart(&mut self) {
         self.started = None;
     }
 
-    /// Nothing is rendered until the next wish.
+    /// Stops rendering until the next request.
     pub fn abandon(&mut self) {
         if self.started.take().is_some() {
             self.progressive.abandon();
@@ -177,13 +177,13 @@ impl Tracer {
         }
     }
 
-    /// Goes on with a film of `document`.
+    /// Continues a film of `document`.
     pub fn go_on_with(&mut self, film: Film, want: &Want<'_>) -> Result<(), String> {
         self.look(&want.view);
         self.start(want, 1, Some(film))
     }
 
-    /// Fetches what is new. Returns when the render of a new picture has begun.
+    /// Takes new results. Returns when the render of a new picture began.
     pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
         self.status = Arc::new(self.progressive.status());
         let started = self.started.as_mut()?;
@@ -203,7 +203,7 @@ impl Tracer {
             {
                 let took = started.at.elapsed().as_secs_f64().max(1e-3);
                 self.preview_speed = Some(f64::from(picture.width) * f64::from(picture.height) / took);
-                // A move that is under way gets coarser if it must; to get finer it would have to flicker.
+                // During a move, previews only get coarser: getting finer again would make them flicker.
                 if took > PREVIEW_SECONDS_LIMIT {
                     let coarser = f64::from(started.divisor) * (took / PREVIEW_SECONDS).sqrt();
                     *divisor = (coarser.ceil() as u32).clamp(*divisor, DIVISOR_LIMIT.max(*divisor));
@@ -212,7 +212,7 @@ impl Tracer {
             started.is_pictured = true;
             pictured = Some(started.at);
         }
-        // A picture that has been refined for long changes slowly.
+        // After many samples, the picture changes slowly.
         let interval = match self.moving_divisor {
             Some(_) => Duration::ZERO,
             None => (started.at.elapsed() / 20).min(PICTURE_INTERVAL_LIMIT),
@@ -227,10 +227,10 @@ impl Tracer {
         pictured
     }
 
-    /// Brings what runs in line with what is wanted, at once or as soon as there was a picture.
+    /// Renders what is wanted, at once or after the next picture.
     ///
     /// # Errors
-    /// Why the document cannot be rendered; what ran goes on.
+    /// Why the document cannot be rendered; the current render continues.
     pub fn want(&mut self, want: &Want<'_>) -> Result<(), String> {
         self.look(&want.view);
         if !want.is_moving {
@@ -248,7 +248,7 @@ impl Tracer {
             self.adjust(want);
             return Ok(());
         }
-        // Before a preview has been seen, another would only keep it from being so.
+        // Until a preview has been displayed, starting another one would only delay it.
         let is_unseen = self.started.as_ref().is_some_and(|run| !run.is_pictured);
         if want.is_moving && is_unseen && matches!(self.status.phase, Phase::Preparing | Phase::Tracing) {
             return Ok(());
@@ -275,7 +275,7 @@ impl Tracer {
         Ok(())
     }
 
-    /// The film stays, whoever traces and whenever it ends.
+    /// Changes backend or plan and keeps the film.
     fn adjust(&mut self, want: &Want<'_>) {
         let is_held = self.started.as_mut().is_some_and(|run| {
             run.is_held &= want.is_paused;
@@ -293,11 +293,11 @@ impl Tracer {
         }
     }
 
-    /// By how much a preview is smaller, so that its first pass is short.
+    /// The divisor of previews, chosen so that the first pass is short.
     fn divisor(&self, document: &Document) -> u32 {
         self.moving_divisor.unwrap_or_else(|| {
             let pixels = f64::from(document.settings.width) * f64::from(document.settings.height);
-            // Before the first preview: what runs must be stopped, and drawing takes its part.
+            // An estimate for the first preview: the current render must stop first, and drawing takes time too.
             let speed = self.preview_speed.unwrap_or_else(|| (0.1 * self.status.paths_per_second()).max(1e6));
             let affordable = (speed * PREVIEW_SECONDS).max(1.0);
             ((pixels / affordable).sqrt().ceil() as u32).clamp(1, DIVISOR_LIMIT)

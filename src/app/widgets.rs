@@ -1,10 +1,10 @@
-//! The controls that panels are made of: a name, a tooltip, and a reason where there is no use in it.
+//! Controls for panels. Each has a name and a tooltip; a disabled control also shows the reason.
 
 use eframe::egui::{self, DragValue, Response, RichText, Slider, Ui};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
-/// What a control is called, what it means with its unit, and why it is of no use, if so.
+/// A control's name, its tooltip with the unit, and the reason if it is disabled.
 #[derive(Clone, Copy)]
 pub struct About<'a> {
     pub name: &'a str,
@@ -22,12 +22,12 @@ impl<'a> About<'a> {
     }
 }
 
-/// Gives a widget the name that assistive technology reads.
+/// Gives a widget a name for assistive technology.
 pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
-/// A name above, a control of that name below.
+/// A name with a control below it, which gets the same accessible name.
 pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
     under_name(ui, about, |ui| {
         let response = add(ui);
@@ -36,7 +36,7 @@ pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Respo
     })
 }
 
-/// A name above, below it controls with names and tooltips of their own.
+/// A name with controls below it that have names and tooltips of their own.
 pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
     ui.spacing_mut().item_spacing.y = 3.0;
     let is_useful = about.disabled_reason.is_none();
@@ -50,7 +50,7 @@ pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Re
     response
 }
 
-/// Adds the tooltip, and the reason of a disabled control.
+/// Adds the tooltip, and the reason if the control is disabled.
 pub fn explained(response: Response, about: About<'_>) -> Response {
     let response = response.on_hover_text(about.help);
     match about.disabled_reason {
@@ -59,7 +59,7 @@ pub fn explained(response: Response, about: About<'_>) -> Response {
     }
 }
 
-/// Lets a control change a number; one that is none, which can be typed, is not taken.
+/// Lets a control change a number, but rejects NaN and infinities, which users can type.
 fn keep_finite(value: &mut f64, change: impl FnOnce(&mut f64) -> Response) -> Response {
     let before = *value;
     let response = change(value);
@@ -86,7 +86,7 @@ pub fn slider(
     })
 }
 
-/// Three numbers.
+/// Controls for the three components of a vector.
 pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, speed: f64) -> Response {
     under_name(ui, about, |ui| {
         ui.horizontal(|ui| {
@@ -113,7 +113,7 @@ pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, speed: f64) -> R
     })
 }
 
-/// A number to type or drag, which changes when it is done.
+/// A number to type or drag. It changes only when the edit is complete.
 pub fn limit(ui: &mut Ui, value: &mut f64, change: impl FnOnce(DragValue<'_>) -> DragValue<'_>) -> Response {
     keep_finite(value, |value| ui.add(change(DragValue::new(value).update_while_editing(false))))
 }
@@ -132,13 +132,13 @@ pub fn whole(
     })
 }
 
-/// A check box; with it off, what it opens is not shown.
+/// A check box. What it enables is shown only while it is checked.
 pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
     let response = ui.add_enabled(about.disabled_reason.is_none(), egui::Checkbox::new(value, about.name));
     explained(response, about)
 }
 
-/// A number in few characters.
+/// Formats a number in few characters.
 pub fn compact(n: f64) -> String {
     let magnitude = n.abs();
     if n == 0.0 {

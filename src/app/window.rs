@@ -1,4 +1,4 @@
-//! The window's state. Only this file and those that carry it on (`frame`, `perform`, `receive`) know all of it.
+//! The window's state. Only this file and its extensions (`frame`, `perform`, `receive`) know all of it.
 
 use super::changes::Changes;
 use super::command::Command;
@@ -31,13 +31,13 @@ use anyhow::{Context as _, Result};
 use eframe::egui;
 use std::path::PathBuf;
 
-/// Not "window": eframe keeps place and size under that name.
+/// Not "window", because eframe uses that key for position and size.
 const STORAGE_KEY: &str = "weekender";
 
-/// How many frames a new window is looked at for whether it fits on its screen: the system is not quick to tell.
+/// For how many frames a new window's size is compared with the screen, because the system reports it late.
 const FRAMES_TO_FIT: u8 = 120;
 
-/// All state of the window. [`Window::ui_in`] draws a frame of it, [`Window::perform`] carries out a command.
+/// All state of the window. [`Window::ui_in`] draws a frame; [`Window::perform`] carries out a command.
 pub struct Window {
     pub(super) model: Model,
     pub(super) changes: Changes,
@@ -50,23 +50,23 @@ pub struct Window {
     pub(super) files: Files,
     pub(super) dialogs: Dialogs,
     pub(super) toasts: Toasts,
-    /// What was asked for and is not carried out yet.
+    /// Commands to be carried out.
     pub(super) commands: Vec<Command>,
-    /// A film that is read as soon as there is a frame to wake, and its job.
+    /// A film to be read once a frame can be woken, and its job.
     pub(super) pending_resume: Option<(PathBuf, RenderJob)>,
-    /// A save that waits for samples at the full size.
+    /// A save that waits until the full-size film has samples.
     pub(super) pending_save: Option<(OutputFormat, PathBuf)>,
-    /// A film that goes on, until the tracer has it.
+    /// A film to continue, until the tracer takes it.
     pub(super) pending_film: Option<Film>,
-    /// What the film's samples took before this run, if that is known.
+    /// Tracing time of the film's samples before this run, if known.
     pub(super) seconds_before: Option<f64>,
-    /// Why the document cannot be rendered.
+    /// Why the document cannot be rendered, if so.
     pub(super) invalid: Option<String>,
     pub(super) frame_log: Option<FrameLog>,
     pub(super) frame_times: FrameTimes,
-    /// What was carried out last.
+    /// The last command that was carried out.
     pub(super) performed: Option<Command>,
-    /// A control, a menu or a dialog had the keyboard in the frame before.
+    /// Whether a control, a menu or a dialog had the keyboard focus in the previous frame.
     pub(super) had_focus: bool,
     pub(super) told_messages: (u64, usize),
     pub(super) is_dressed: bool,
@@ -74,10 +74,10 @@ pub struct Window {
 }
 
 impl Window {
-    /// A window that has not been drawn yet.
+    /// Makes a window that has not been drawn yet.
     ///
     /// # Errors
-    /// If the system gives no thread, or the frame log cannot be written.
+    /// If the system cannot start a thread, or the frame log cannot be written.
     pub fn new(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
         let earlier: Option<Remembered> = storage.and_then(|storage| eframe::get_value(storage, STORAGE_KEY));
         let is_first = earlier.is_none();
@@ -130,42 +130,42 @@ impl Window {
         })
     }
 
-    /// What is shown.
+    /// The document that is shown.
     pub fn document(&self) -> &Document {
         &self.model.document
     }
 
-    /// What is shown, to be changed as by a panel.
+    /// The document that is shown, to be edited like a panel does.
     pub fn document_mut(&mut self) -> &mut Document {
         &mut self.model.document
     }
 
-    /// The numbers of the render.
+    /// The status of the render.
     pub fn status(&self) -> &Status {
         self.main.status()
     }
 
-    /// What the window remembers.
+    /// The settings that are kept for the next run.
     pub fn remembered_mut(&mut self) -> &mut Remembered {
         &mut self.model.remembered
     }
 
-    /// What is being told to the user.
+    /// The messages that are visible.
     pub fn messages(&self) -> Vec<String> {
         self.toasts.texts().map(str::to_owned).collect()
     }
 
-    /// Samples per pixel of the picture on the screen, and by how much it is smaller than asked for.
+    /// Samples per pixel of the displayed picture, and the factor by which it is smaller than requested.
     pub fn shown(&self) -> Option<(u64, u32)> {
         self.main.shown().map(|shown| (shown.samples, shown.divisor))
     }
 
-    /// Whether the picture on the screen is that of the document as it is now.
+    /// Whether the displayed picture is of the current document.
     pub fn is_up_to_date(&self) -> bool {
         self.main.shown().is_some_and(|shown| shown.document.has_same_film(self.document()))
     }
 
-    /// What was carried out last.
+    /// The last command that was carried out.
     pub fn performed(&self) -> Option<Command> {
         self.performed
     }
@@ -175,62 +175,62 @@ impl Window {
         self.dialogs.is_open()
     }
 
-    /// Whether two pictures are compared.
+    /// Whether two pictures are being compared.
     pub fn is_comparing(&self) -> bool {
         self.model.view.mode().is_some()
     }
 
-    /// Whether there is a second picture, of what is compared now.
+    /// Whether a second picture of the current comparison is available.
     pub fn has_other_picture(&self) -> bool {
         self.second.has_picture(self.document(), &self.model.view)
     }
 
-    /// What the picture's place shows.
+    /// The current view.
     pub fn show(&self) -> Show {
         self.model.view.show()
     }
 
-    /// Samples per pixel of the layer that is shown, at the picture's own size.
+    /// Samples per pixel of the displayed layer at full size.
     pub fn layer_samples(&self) -> u64 {
         self.show().layer().map_or(0, |layer| self.layers.samples(layer))
     }
 
-    /// Where the picture is drawn, points.
+    /// Where the picture is drawn, in points.
     pub fn picture_rect(&self) -> egui::Rect {
         self.viewport.placement.rect()
     }
 
-    /// The pixel that the pointer was over last and its linear radiance, as far as the film has answered.
+    /// The last pixel under the pointer and its linear radiance, as of the film's last answer.
     pub fn inspected(&self) -> Option<([u32; 2], [f64; 3])> {
         self.inspector.pixel().map(|pixel| (pixel.at, pixel.mean))
     }
 
-    /// Whether the window takes the whole screen.
+    /// Whether the window is in full-screen mode.
     pub fn is_full_screen(&self) -> bool {
         self.model.is_full_screen
     }
 
-    /// How many paths of a pixel are listed.
+    /// The number of listed paths.
     pub fn listed_paths(&self) -> usize {
         self.paths.len()
     }
 
-    /// Whether tracing waits.
+    /// Whether tracing is paused.
     pub fn is_paused(&self) -> bool {
         self.model.is_paused
     }
 
-    /// Why a command can do nothing now, in words; `None` if it can.
+    /// Why a command is disabled, in words; `None` if it is enabled.
     pub fn disabled_reason(&self, command: Command) -> Option<String> {
         self.facts().disabled_reason(command)
     }
 
-    /// Asks for a command, to be carried out in the next frame.
+    /// Queues a command for the next frame.
     pub fn send(&mut self, command: Command) {
         self.commands.push(command);
     }
 
-    /// The window as it is now.
+    /// A snapshot of the window.
     pub(super) fn facts(&self) -> Facts {
         Facts {
             status: self.main.status().clone(),
@@ -241,12 +241,12 @@ impl Window {
         }
     }
 
-    /// Shows another picture.
+    /// Shows a picture of another origin.
     pub(super) fn show_origin(&mut self, origin: Origin) {
         let before = self.document();
         let (stop, usual) = (before.stop, before.origin.usual_stop());
         let mut document = Document::new(origin);
-        // Stop conditions that the user has chosen are his for all stages, where they make sense.
+        // A stop condition chosen by the user stays in effect for all stages where it makes sense.
         if stop != usual && document.stop.samples.is_none() {
             document.stop = stop;
         }
@@ -261,14 +261,14 @@ impl Window {
         self.paths.forget();
     }
 
-    /// Goes on with a film of the document that is shown now.
+    /// Continues a film of the current document.
     pub(super) fn adopt(&mut self, film: SavedFilm) {
         self.pending_film = Some(film.film);
         self.seconds_before = film.seconds;
         self.changes.adopt(&self.model.document);
     }
 
-    /// What is kept for the next run.
+    /// Saves the settings for the next run.
     pub(super) fn remember(&self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, STORAGE_KEY, &self.model.remembered);
     }
@@ -276,14 +276,14 @@ impl Window {
 
 fn document_of(options: &WindowOptions) -> Document {
     let WindowOptions { recipe, unchanged, stage, file, stop, .. } = options;
-    // Without what flags have changed, so that these are changes that can be reset.
+    // Without the changes made by flags, so that these can be reset.
     let origin = match (stage, file, Recipe::builtin(&recipe.name)) {
-        // A film's scene may have been changed since it was that of its stage or name.
+        // The scene of a film may have been changed since it was made from its stage or name.
         (_, None, _) if options.resume.is_some() => Origin::guess(unchanged, *stage),
         (Some(stage), _, _) => Origin::of_stage(stage),
         (None, Some(path), _) => Origin::new(unchanged.clone(), Source::File(path.clone())),
         (None, None, Some(builtin)) => {
-            // A built-in scene that a stage shows is opened as that stage.
+            // A built-in scene that is also a stage is opened as that stage.
             match crate::stages::Stage::find(&builtin.name) {
                 Ok(stage) if stage.recipe().scene == builtin.scene => Origin::of_stage(stage),
                 _ => Origin::new(builtin, Source::Builtin),

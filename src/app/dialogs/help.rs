@@ -1,4 +1,4 @@
-//! Keys and mouse.
+//! The dialog that lists keys and mouse actions.
 
 use super::outcome::Outcome;
 use crate::app::command::{Command, Group};
@@ -19,10 +19,10 @@ const MOUSE: [(&str, &str); 12] = [
     ("F6", "go to the controls"),
 ];
 
-/// Below this width, points, there is room for one column.
+/// Windows narrower than this many points get only one column.
 const TWO_COLUMNS: f32 = 640.0;
 
-/// The groups of a column; `None` is what the mouse does.
+/// The groups of each column; `None` stands for the mouse actions.
 const COLUMNS: [&[Option<Group>]; 2] = [
     &[None, Some(Group::File), Some(Group::Edit)],
     &[Some(Group::View), Some(Group::Render), Some(Group::Stage), Some(Group::Help)],

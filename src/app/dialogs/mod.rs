@@ -1,4 +1,4 @@
-//! What stands before the window until it is answered or closed.
+//! Dialogs, which block the window until they are answered or closed.
 
 mod help;
 mod outcome;
@@ -24,11 +24,11 @@ pub enum Dialog {
     Palette(Palette),
     /// Keys and mouse.
     Help,
-    /// A file's name.
+    /// The entry of a file's name.
     Path(PathBox),
 }
 
-/// The dialog that is open, if one is, and the system's file dialog.
+/// The open dialog, if any, and the system's file dialog.
 #[derive(Default)]
 pub struct Dialogs {
     open: Option<Dialog>,
@@ -36,17 +36,17 @@ pub struct Dialogs {
 }
 
 impl Dialogs {
-    /// Whether one is open.
+    /// Whether a dialog is open.
     pub fn is_open(&self) -> bool {
         self.open.is_some()
     }
 
-    /// Opens one, in place of another.
+    /// Opens a dialog. It replaces an open one.
     pub fn open(&mut self, dialog: Dialog) {
         self.open = Some(dialog);
     }
 
-    /// Draws it. Returns a file that was named, and what for.
+    /// Draws the dialog. Returns the chosen file and its purpose, if one was chosen.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
@@ -73,7 +73,7 @@ impl Dialogs {
         }
     }
 
-    /// What the system's file dialog has said: a file and what for, or, in words, that there was no dialog.
+    /// The result of the system's file dialog: a file and its purpose, or a message that no dialog is available.
     pub fn browsed(&mut self) -> Option<Result<(Purpose, PathBuf), &'static str>> {
         match self.browsed.take()? {
             (_, Chosen::NoDialog) => {

@@ -1,14 +1,14 @@
-//! What a dialog comes to.
+//! The result of a dialog.
 
 use super::purpose::Purpose;
 use std::path::PathBuf;
 
-/// What a dialog wants after a frame.
+/// What happens to a dialog after a frame.
 pub enum Outcome {
     /// It stays open.
     Stay,
-    /// It is done.
+    /// It closes.
     Close,
-    /// It is done: a file was named.
+    /// It closes: the user chose a file.
     Named(Purpose, PathBuf),
 }

@@ -1,4 +1,4 @@
-//! The command palette: type a part of a name, Enter.
+//! The command palette: type part of a name, then press Enter.
 
 use super::outcome::Outcome;
 use crate::app::command::Command;
@@ -6,15 +6,15 @@ use crate::app::facts::Facts;
 use crate::app::menu::line;
 use eframe::egui::{self, Key, Modifiers, RichText, Ui};
 
-/// What was typed, and which line is chosen.
+/// The search text and the selected line.
 #[derive(Default)]
 pub struct Palette {
     text: String,
     chosen: usize,
 }
 
-/// Commands whose names or help have every word of `text`: the one of this name, then those where the name has
-/// them, then the others.
+/// Commands whose name or help contains every word of `text`. First comes the command with exactly this name, then
+/// those with all words in their name, then the others.
 fn matching(text: &str) -> Vec<Command> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
     let has = |place: &str| words.iter().all(|word| place.to_lowercase().contains(word.as_str()));
@@ -27,7 +27,7 @@ fn matching(text: &str) -> Vec<Command> {
 }
 
 impl Palette {
-    /// With what was typed in the frame in which it opens.
+    /// Opens with the text that was typed in the opening frame.
     pub fn typed(context: &egui::Context) -> Self {
         let typed = |event: &egui::Event| match event {
             egui::Event::Text(text) => Some(text.clone()),

@@ -1,4 +1,4 @@
-//! A file's name, to be typed here or chosen in the system's dialog, where there is one.
+//! Entry of a file's name, by typing it or with the system's file dialog, if there is one.
 
 use super::outcome::Outcome;
 use super::purpose::Purpose;
@@ -9,24 +9,24 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
-/// The box, with what was typed.
+/// The state of the box, with the text.
 pub struct PathBox {
     purpose: Purpose,
     text: String,
     is_new: bool,
-    /// Lives as long as the system's dialog is open.
+    /// Can be upgraded as long as the system's dialog is open.
     browsing: Weak<()>,
 }
 
-/// What the system's dialog said.
+/// The result of the system's dialog.
 pub enum Chosen {
-    /// A name.
+    /// The user chose this path.
     Path(PathBuf),
-    /// There was none to be seen.
+    /// The system has no dialog to show.
     NoDialog,
 }
 
-/// A dialog that is gone sooner was never seen by anyone.
+/// A dialog that closes sooner than this was never visible.
 const SEEN: Duration = Duration::from_millis(300);
 
 impl PathBox {
@@ -43,8 +43,8 @@ impl PathBox {
         PathBox { purpose, text: path.display().to_string(), is_new: true, browsing: Weak::new() }
     }
 
-    /// What is to be done with a name from the system's dialog. That has asked before it gave the name of a file
-    /// that is there; but if the ending is added here, the name is another, and the box asks.
+    /// Handles a name from the system's dialog, which has already asked before it returned the name of an existing
+    /// file. If the ending is added here, the name is a different one and the box asks.
     pub fn chosen(purpose: Purpose, path: PathBuf) -> Result<PathBuf, Self> {
         let named = purpose.with_ending(path.clone());
         if named != path && named.exists() { Err(PathBox::of(purpose, &named)) } else { Ok(named) }
@@ -96,7 +96,7 @@ impl PathBox {
         outcome
     }
 
-    /// What was typed, with the ending that belongs to it.
+    /// The path from the text, with the ending that belongs to the purpose.
     fn path(&self) -> Option<PathBuf> {
         let text = self.text.trim();
         (!text.is_empty()).then(|| self.purpose.with_ending(text.into()))
@@ -114,7 +114,7 @@ impl PathBox {
         }
     }
 
-    /// Selects the name without its ending, so that typing replaces that.
+    /// Selects the name without its ending, so that typing replaces it.
     fn select_stem(&self, ui: &Ui, id: egui::Id, mut state: egui::text_edit::TextEditState) {
         let stem = self.text.rfind('.').unwrap_or(self.text.len());
         let start = self.text.rfind(['/', '\\']).map_or(0, |slash| slash + 1);
@@ -125,7 +125,7 @@ impl PathBox {
         state.store(ui.ctx(), id);
     }
 
-    /// Opens the system's dialog on a thread of its own: it may take as long as it likes.
+    /// Opens the system's dialog on its own thread, because it can block for any time.
     fn browse(&mut self, browsed: &Answers<(Purpose, Chosen)>, context: &egui::Context) {
         let (purpose, text) = (self.purpose, self.text.clone());
         let answer = browsed.answer(context);
@@ -148,12 +148,12 @@ impl PathBox {
                 None => answer.wake(),
             }
         };
-        // Without a thread there is no dialog, and the box is still there.
+        // Without a thread there is no system dialog, but the box still works.
         let _ = std::thread::Builder::new().name("file dialog".into()).spawn(choose);
     }
 }
 
-/// Where the system's dialog begins: the directory, if it is there, and the file's name in it.
+/// Where the system's dialog starts: the directory, if it exists, and the file's name in it.
 fn place_of(path: &Path) -> (Option<PathBuf>, String) {
     let whole = std::env::current_dir().unwrap_or_default().join(path);
     if whole.is_dir() {

@@ -1,25 +1,25 @@
-//! What files are named for.
+//! The purposes for which the user chooses files.
 
 use crate::output::OutputFormat;
 use std::path::PathBuf;
 
-/// What the file is for.
+/// What the chosen file is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// To be opened.
+    /// To open it.
     Open,
-    /// To be written.
+    /// To save the picture in this format.
     Save(OutputFormat),
-    /// To be written with the scene.
+    /// To save the scene.
     SaveScene,
-    /// To be written with the plot's points.
+    /// To save the plot's points.
     SavePlot,
-    /// To be compared with.
+    /// To load it as a film to compare with.
     Reference,
 }
 
 impl Purpose {
-    /// The heading of the dialog.
+    /// The title of the dialog.
     pub fn title(self) -> &'static str {
         match self {
             Purpose::Open => "Open",
@@ -32,7 +32,7 @@ impl Purpose {
         }
     }
 
-    /// What its button says.
+    /// The label of the dialog's button.
     pub fn button(self) -> &'static str {
         match self {
             Purpose::Open | Purpose::Reference => "Open",
@@ -40,12 +40,12 @@ impl Purpose {
         }
     }
 
-    /// Whether a file is written.
+    /// Whether the file will be written.
     pub fn is_saving(self) -> bool {
         matches!(self, Purpose::Save(_) | Purpose::SaveScene | Purpose::SavePlot)
     }
 
-    /// What names end in, without the dot.
+    /// The possible file endings, without the dot.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
             Purpose::Open => &["png", "ppm", "exr", "toml"],
@@ -59,7 +59,7 @@ impl Purpose {
 }
 
 impl Purpose {
-    /// A name with the ending that belongs to it.
+    /// Adds the ending to `path` if it is missing.
     pub fn with_ending(self, path: PathBuf) -> PathBuf {
         let is_known = path
             .extension()

@@ -6,7 +6,8 @@ use std::borrow::Cow;
 use std::fmt::Write;
 
 impl Document {
-    /// The command line that gives the same picture with `samples` samples per pixel, to the bit on the CPU.
+    /// The command line that renders the same picture with `samples` samples per pixel; on the CPU it is identical to
+    /// the bit.
     pub fn command_line(&self, samples: u64, device: &str, adapter: Option<&str>) -> String {
         let origin = &self.origin.recipe;
         let mut line = String::from("weekender --batch");
@@ -54,7 +55,7 @@ impl Document {
         if camera.defocus_angle_degrees != base.defocus_angle_degrees {
             add("--defocus-angle", &camera.defocus_angle_degrees);
         }
-        // There is no flag that takes a focus distance away, but one that says the same.
+        // No flag removes a focus distance, but a flag can set the equivalent distance.
         if camera.focus_distance != base.focus_distance {
             add("--focus-distance", &camera.effective_focus_distance());
         }
@@ -70,7 +71,7 @@ impl Document {
     }
 }
 
-/// A word as a shell takes it. A NUL, which no argument can have, stays as it is.
+/// Quotes a word for a shell. A NUL, which no argument can contain, stays unchanged.
 fn quoted(word: &str) -> Cow<'_, str> {
     shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
 }
@@ -85,7 +86,7 @@ mod tests {
     use crate::stages::Stage;
     use glam::DVec3;
 
-    /// What a command line renders.
+    /// The job that a command line renders.
     fn job_of(line: &str) -> RenderJob {
         match parse(line.split_whitespace().map(Into::into)).unwrap() {
             Request::Batch(options) => options.renders[0].job.clone(),

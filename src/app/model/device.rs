@@ -1,4 +1,4 @@
-//! Who traces, as the window offers it.
+//! The devices that the window offers for tracing.
 
 use crate::backends::BackendChoice;
 use crate::render_cpu::{CpuOptions, Isa};
@@ -6,7 +6,7 @@ use crate::render_gpu::{AdapterInfo, GpuOptions, INTERACTIVE_TARGET, adapters};
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
-/// What the devices are to use, as the command line has it.
+/// Options of the devices, from the command line.
 #[derive(Clone, Debug, Default)]
 pub struct DeviceOptions {
     cpu: CpuOptions,
@@ -14,7 +14,7 @@ pub struct DeviceOptions {
 }
 
 impl DeviceOptions {
-    /// Those of a backend; for what it does not use, the usual ones.
+    /// The options of a backend. Those that it does not use get their defaults.
     pub fn of(choice: &BackendChoice) -> Self {
         match choice {
             BackendChoice::Cpu(cpu) => DeviceOptions { cpu: *cpu, ..Self::default() },
@@ -28,8 +28,8 @@ impl DeviceOptions {
     }
 }
 
-/// The adapter that the GPU stands for; hardware first. Looking for it takes a while, and adapters seldom come
-/// and go.
+/// The adapter that the GPU device uses; hardware adapters come first. The result is cached, because the search takes a
+/// while and adapters rarely change.
 pub fn adapter() -> Result<&'static AdapterInfo, String> {
     static ADAPTERS: OnceLock<Vec<AdapterInfo>> = OnceLock::new();
     let all = ADAPTERS.get_or_init(adapters);
@@ -50,17 +50,17 @@ pub enum Device {
     Cpu,
     /// The graphics adapter.
     Gpu,
-    /// Both on one picture.
+    /// CPU and GPU together on one picture.
     Both,
     /// Scalar `f64` on the CPU.
     Reference,
 }
 
 impl Device {
-    /// All of them, in the order of the toggle.
+    /// All devices, in the order of the toggle.
     pub const ALL: [Device; 4] = [Device::Cpu, Device::Gpu, Device::Both, Device::Reference];
 
-    /// As `--device` names it.
+    /// The name used by `--device`.
     pub fn name(self) -> &'static str {
         match self {
             Device::Cpu => "cpu",
@@ -70,7 +70,7 @@ impl Device {
         }
     }
 
-    /// As the window names it.
+    /// The label in the window.
     pub fn label(self) -> &'static str {
         match self {
             Device::Cpu => "CPU",
@@ -80,7 +80,7 @@ impl Device {
         }
     }
 
-    /// What it is.
+    /// A short description.
     pub fn help(self) -> &'static str {
         match self {
             Device::Cpu => "Trace on the processor, in packets of as many rays as it has lanes",
@@ -92,7 +92,7 @@ impl Device {
         }
     }
 
-    /// What it is, with the adapter's name.
+    /// A description with the adapter's name.
     pub fn long_help(self) -> String {
         match (self, adapter()) {
             (Device::Gpu | Device::Both, Ok(adapter)) => {
@@ -114,7 +114,7 @@ impl Device {
         }
     }
 
-    /// The backend that stands for it, with lanes and threads in place of those of the options.
+    /// The backend for the device, with these lanes and threads instead of those in the options.
     pub fn backend(
         self,
         options: &DeviceOptions,
@@ -124,7 +124,7 @@ impl Device {
         let threads = threads.or(options.cpu.threads).or_else(threads_of_window);
         let lanes = lanes.or(options.cpu.lanes);
         let cpu = CpuOptions { lanes, threads, low_priority: true, ..options.cpu };
-        // Whoever presses the button means it: software will do.
+        // A user who presses the button wants it, so a software adapter is accepted.
         let dispatch_target = options.gpu.dispatch_target.min(INTERACTIVE_TARGET);
         let gpu = || GpuOptions { allow_software: true, dispatch_target, ..options.gpu.clone() };
         match self {
@@ -135,7 +135,7 @@ impl Device {
         }
     }
 
-    /// Why it cannot be had, in words.
+    /// Why the device is not available, in words; `None` if it is.
     pub fn unavailable(self) -> Option<String> {
         match self {
             Device::Cpu | Device::Reference => None,
@@ -144,19 +144,19 @@ impl Device {
     }
 }
 
-/// Cores of this machine.
+/// Number of cores of this machine.
 pub fn core_count() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-/// With more than two cores one is left to the window. With fewer that would cost half of the speed and more,
-/// and short passes keep the window going as well.
+/// The default number of threads. With more than two cores, one is left to the window. With fewer, that would cost half
+/// of the speed or more, and short passes keep the window responsive too.
 fn threads_of_window() -> Option<usize> {
     let cores = core_count();
     (cores > 2).then(|| cores - 1)
 }
 
-/// The numbers of lanes that this processor has kernels for.
+/// The lane counts for which this processor has kernels.
 pub fn lane_counts() -> Vec<usize> {
     Isa::available().last().map_or_else(Vec::new, |isa| isa.lane_counts().to_vec())
 }

@@ -1,4 +1,4 @@
-//! What the user edits and undo brings back: where a picture comes from and what was changed in it.
+//! The document, which the user edits and undo restores: the origin of a picture and the changes to it.
 
 use super::origin::{Origin, Source};
 use crate::progressive::Stop;
@@ -9,55 +9,55 @@ use crate::stages::{Rules, Stage};
 use crate::stress::Case;
 use std::sync::Arc;
 
-/// What the window shows, as the user has changed it.
+/// The picture in the window, with the user's changes.
 #[derive(Clone, Debug)]
 pub struct Document {
-    /// Where it comes from.
+    /// Where the picture comes from.
     pub origin: Arc<Origin>,
-    /// The camera.
+    /// The camera, as edited.
     pub camera: Camera,
     /// Size, depth, sampler, seed, halves.
     pub settings: RenderSettings,
-    /// When it ends.
+    /// When the render ends.
     pub stop: Stop,
 }
 
 impl PartialEq for Document {
-    /// Origins are never changed, so that it is enough to compare which one it is.
+    /// Origins are immutable, so comparing their addresses is enough.
     fn eq(&self, other: &Self) -> bool {
         self.has_same_film(other) && self.camera == other.camera && self.stop == other.stop
     }
 }
 
 impl Document {
-    /// The origin with nothing changed.
+    /// An unchanged document of `origin`.
     pub fn new(origin: Origin) -> Self {
         let Recipe { camera, settings, .. } = origin.recipe;
         Document { stop: origin.usual_stop(), camera, settings, origin: Arc::new(origin) }
     }
 
-    /// Makes everything as the origin has it.
+    /// Resets everything to the origin's values.
     pub fn reset(&mut self) {
         let Recipe { camera, settings, .. } = self.origin.recipe;
         (self.camera, self.settings, self.stop) = (camera, settings, self.origin.usual_stop());
     }
 
-    /// The scene, which is the origin's.
+    /// The scene of the origin.
     pub fn scene(&self) -> &Scene {
         &self.origin.recipe.scene
     }
 
-    /// The rules, which are the origin's.
+    /// The rules of the origin.
     pub fn rules(&self) -> &Rules {
         &self.origin.recipe.rules
     }
 
-    /// The stage.
+    /// The stage, if the origin is one.
     pub fn stage(&self) -> Option<&'static Stage> {
         self.origin.stage()
     }
 
-    /// The extreme scene.
+    /// The extreme scene, if the origin is one.
     pub fn case(&self) -> Option<&'static Case> {
         match self.origin.source {
             Source::Extreme(case) => Some(case),
@@ -65,7 +65,7 @@ impl Document {
         }
     }
 
-    /// What a badge or a menu calls the picture.
+    /// The name of the picture in menus and badges.
     pub fn title(&self) -> String {
         match &self.origin.source {
             Source::Stage(stage) => format!("{} {}", stage.section, stage.title),
@@ -74,18 +74,18 @@ impl Document {
         }
     }
 
-    /// Width by height.
+    /// Width divided by height.
     pub fn aspect(&self) -> f64 {
         f64::from(self.settings.width) / f64::from(self.settings.height)
     }
 
-    /// The camera as far as the picture depends on it: a pinhole has no focus distance of its own.
+    /// The camera without settings that have no effect: a pinhole camera has no focus distance.
     pub fn acting_camera(&self) -> Camera {
         let is_pinhole = self.camera.defocus_angle_degrees == 0.0;
         Camera { focus_distance: self.camera.focus_distance.filter(|_| !is_pinhole), ..self.camera }
     }
 
-    /// Whether both are made of the same samples.
+    /// Whether both documents consist of the same samples.
     pub fn has_same_film(&self, other: &Document) -> bool {
         Arc::ptr_eq(&self.origin, &other.origin)
             && self.acting_camera() == other.acting_camera()
@@ -103,17 +103,17 @@ impl Document {
         }
     }
 
-    /// The picture, at a whole fraction of its size.
+    /// The job of the picture, with its size divided by `divisor`.
     ///
     /// # Errors
-    /// If a value cannot be.
+    /// If a value is invalid.
     pub fn job(&self, divisor: u32) -> Result<RenderJob, JobError> {
         let RenderSettings { width, height, .. } = self.settings;
         let divisor = divisor.max(1);
         let settings = RenderSettings {
             width: width.div_ceil(divisor),
             height: height.div_ceil(divisor),
-            // What is shown for a moment needs no error.
+            // Previews need no error estimate.
             estimate_error: self.settings.estimate_error && divisor == 1,
             ..self.settings
         };

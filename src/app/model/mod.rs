@@ -1,5 +1,5 @@
-//! What the window is about: the document, what of it is looked at, who traces it, and what is remembered. Nothing here
-//! knows of controls or of drawing.
+//! The model of the window: the document, the view, the device, and the remembered settings. It does not depend on
+//! widgets or drawing.
 
 pub mod command_line;
 pub mod device;
@@ -15,25 +15,25 @@ use document::Document;
 use remembered::Remembered;
 use view::ViewState;
 
-/// All that the user has chosen.
+/// Everything that the user has chosen.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// The picture.
+    /// The picture being edited.
     pub document: Document,
-    /// What of it is looked at, and what it is compared with.
+    /// The current view and comparison.
     pub view: ViewState,
-    /// The window's settings, the device that traces among them.
+    /// The window's settings, including the device.
     pub remembered: Remembered,
-    /// What the command line said of the devices.
+    /// Device options from the command line.
     pub devices: DeviceOptions,
-    /// Tracing waits.
+    /// Whether tracing is paused.
     pub is_paused: bool,
-    /// The window takes the whole screen.
+    /// Whether the window is in full-screen mode.
     pub is_full_screen: bool,
 }
 
 impl Model {
-    /// Who traces: the chosen device, with lanes and threads as chosen.
+    /// The backend for the chosen device, lanes and threads.
     pub fn backend(&self) -> BackendChoice {
         let Remembered { device, lanes, threads, .. } = self.remembered;
         device.backend(&self.devices, lanes, threads)

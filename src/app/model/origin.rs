@@ -1,4 +1,4 @@
-//! Where a picture comes from.
+//! The origin of a picture.
 
 use crate::progressive::Stop;
 use crate::recipe::Recipe;
@@ -14,41 +14,41 @@ use std::sync::OnceLock;
 pub enum Source {
     /// A stage of the book.
     Stage(&'static Stage),
-    /// A built-in scene, which has the recipe's name.
+    /// A built-in scene. The recipe has its name.
     Builtin,
     /// A scene file.
     File(PathBuf),
     /// An extreme scene.
     Extreme(&'static Case),
-    /// Another picture by the book's own arithmetic.
+    /// The same picture as another origin's, by the book's own arithmetic.
     ByTheBook,
-    /// A picture that said how it was made, of a scene that is in no file.
+    /// A picture that contains its recipe. Its scene is in no other file.
     Embedded,
 }
 
-/// A recipe as it was before anyone changed it.
+/// A recipe before any edits.
 #[derive(Debug)]
 pub struct Origin {
     /// The recipe.
     pub recipe: Recipe,
-    /// Where it is from.
+    /// The source of the recipe.
     pub source: Source,
-    /// Its scene under its rules, checked, for any camera and size.
+    /// The scene with its rules, validated; usable for any camera and size.
     base: OnceLock<Result<RenderJob, JobError>>,
 }
 
 impl Origin {
-    /// A recipe from somewhere.
+    /// An origin from its parts.
     pub fn new(recipe: Recipe, source: Source) -> Self {
         Origin { recipe, source, base: OnceLock::new() }
     }
 
-    /// A stage's picture.
+    /// The origin of a stage.
     pub fn of_stage(stage: &'static Stage) -> Self {
         Origin::new(stage.recipe(), Source::Stage(stage))
     }
 
-    /// An extreme scene's picture.
+    /// The origin of an extreme scene.
     pub fn of_case(case: &'static Case) -> Self {
         Origin::new(case.shown(), Source::Extreme(case))
     }
@@ -59,14 +59,14 @@ impl Origin {
         Origin::new(recipe, Source::ByTheBook)
     }
 
-    /// Whether the book's own arithmetic would give a picture to hold against this one.
+    /// Whether the book's own arithmetic would give a picture that differs from this one.
     pub fn is_other_by_the_book(&self) -> bool {
         let rules = &self.recipe.rules;
         rules.surface == Surface::Exact && rules.shading != Shading::ImageGradient
     }
 
-    /// The origin of a recipe from elsewhere, which may have been changed. If a stage or a built-in scene has
-    /// the same spheres and rules, it is that one.
+    /// The origin of a recipe that may have been changed elsewhere. If a stage or a built-in scene has the same spheres
+    /// and rules, the result is that one.
     pub fn guess(recipe: &Recipe, stage: Option<&'static Stage>) -> Self {
         let is_same = |other: &Recipe| other.scene == recipe.scene && other.rules == recipe.rules;
         if let Some(stage) = stage.filter(|stage| is_same(&stage.recipe())) {
@@ -78,8 +78,8 @@ impl Origin {
         }
     }
 
-    /// When its render ends, unless someone says otherwise: pictures without chance are done with their samples,
-    /// others when they are clean.
+    /// The default stop condition: deterministic pictures end after their samples, others when their noise is low
+    /// enough.
     pub fn usual_stop(&self) -> Stop {
         let Recipe { rules, settings, samples_per_pixel, .. } = &self.recipe;
         let is_noisy = rules.antialiasing && rules.shading == Shading::Path;
@@ -90,7 +90,7 @@ impl Origin {
         }
     }
 
-    /// The stage.
+    /// The stage, if the source is one.
     pub fn stage(&self) -> Option<&'static Stage> {
         match self.source {
             Source::Stage(stage) => Some(stage),
@@ -98,7 +98,7 @@ impl Origin {
         }
     }
 
-    /// The picture that `camera` and `settings` give of it. All that are asked for share one scene.
+    /// The job with this `camera` and `settings`. All jobs share one scene.
     pub(super) fn job(&self, camera: Camera, settings: RenderSettings) -> Result<RenderJob, JobError> {
         let checked = || {
             let (scene, rules) = (self.recipe.scene.clone(), self.recipe.rules);

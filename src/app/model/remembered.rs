@@ -1,27 +1,27 @@
-//! What the window remembers from one run to the next.
+//! Settings that the window keeps from one run to the next.
 
 use super::device::{self, Device};
 use crate::scene::Camera;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Colours of the window.
+/// The colour theme of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Theme {
-    /// As the desktop has it.
+    /// The theme of the desktop.
     #[default]
     System,
-    /// Light on dark.
+    /// Light text on a dark background.
     Dark,
-    /// Dark on light.
+    /// Dark text on a light background.
     Light,
 }
 
 impl Theme {
-    /// All of them.
+    /// All themes.
     pub const ALL: [Theme; 3] = [Theme::System, Theme::Dark, Theme::Light];
 
-    /// Its name.
+    /// The name in the menu.
     pub fn name(self) -> &'static str {
         match self {
             Theme::System => "System",
@@ -31,10 +31,10 @@ impl Theme {
     }
 }
 
-/// A camera to come back to.
+/// A saved camera.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bookmark {
-    /// What it is called.
+    /// The bookmark's name.
     pub name: String,
     look_from: DVec3,
     look_at: DVec3,
@@ -45,13 +45,13 @@ pub struct Bookmark {
 }
 
 impl Bookmark {
-    /// A bookmark of a camera.
+    /// Makes a bookmark of `camera`.
     pub fn new(name: String, camera: &Camera) -> Self {
         let Camera { look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance } = *camera;
         Bookmark { name, look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance }
     }
 
-    /// The camera.
+    /// The saved camera.
     pub fn camera(&self) -> Camera {
         let Bookmark { look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance, .. } =
             *self;
@@ -59,29 +59,29 @@ impl Bookmark {
     }
 }
 
-/// The settings of the window, not of the picture.
+/// Settings of the window, as opposed to those of the picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Remembered {
-    /// Colours.
+    /// The colour theme.
     pub theme: Theme,
     /// Whether panels are shown at all.
     pub has_panels: bool,
-    /// The panel at the left.
+    /// Whether the left panel is shown.
     pub has_controls: bool,
-    /// The panel at the right.
+    /// Whether the right panel is shown.
     pub has_info: bool,
-    /// The plot.
+    /// Whether the plot is shown.
     pub has_plot: bool,
-    /// Who traces.
+    /// The device that traces.
     pub device: Device,
-    /// Lanes of a packet; `None`: those of a register.
+    /// Lanes per packet; `None` for as many as a register holds.
     pub lanes: Option<usize>,
-    /// Threads; `None`: what keeps the window smooth.
+    /// Number of threads; `None` for as many as leave the window responsive.
     pub threads: Option<usize>,
-    /// Cameras to come back to.
+    /// Saved cameras.
     pub bookmarks: Vec<Bookmark>,
-    /// Where files were saved last.
+    /// The directory of the last saved file.
     pub directory: Option<std::path::PathBuf>,
 }
 
@@ -103,7 +103,7 @@ impl Default for Remembered {
 }
 
 impl Remembered {
-    /// Takes out what this machine does not have, be it of another run or another version.
+    /// Replaces settings that are not available on this machine; they may come from another machine or version.
     pub fn mended(mut self) -> Self {
         let lanes = device::lane_counts();
         self.lanes = self.lanes.filter(|count| lanes.contains(count));
@@ -111,7 +111,7 @@ impl Remembered {
         if self.device.unavailable().is_some() {
             self.device = Device::Cpu;
         }
-        // A window that opens without any panel would be a riddle.
+        // A window that opens without any panel would confuse the user.
         self.has_panels = true;
         self.bookmarks.retain(|bookmark| bookmark.camera().validate().is_ok());
         self

@@ -1,30 +1,30 @@
-//! The views of a picture.
+//! The views of a film.
 
 use crate::heat::HeatScale;
 use crate::layers::Layer;
 
-/// What the picture shows.
+/// A view of the film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Show {
-    /// The picture.
+    /// The rendered picture.
     #[default]
     Picture,
-    /// Normals of what is seen first.
+    /// Normals at the first hit.
     Normals,
-    /// The materials' own colours.
+    /// Albedo of the materials at the first hit.
     Albedo,
     /// Rays per path.
     Bounces,
     /// Standard error of each pixel.
     Error,
-    /// How full packets were.
+    /// Share of lanes in use.
     Occupancy,
     /// Difference from a loaded film.
     Difference,
 }
 
 impl Show {
-    /// All of them.
+    /// All views.
     pub const ALL: [Show; 7] = [
         Show::Picture,
         Show::Normals,
@@ -35,7 +35,7 @@ impl Show {
         Show::Difference,
     ];
 
-    /// Its name, after "Show".
+    /// The name, to follow "Show".
     pub fn name(self) -> &'static str {
         match self {
             Show::Picture => "picture",
@@ -48,7 +48,7 @@ impl Show {
         }
     }
 
-    /// What it is.
+    /// A description of the view.
     pub fn help(self) -> &'static str {
         match self {
             Show::Picture => "The film, as it will be saved",
@@ -66,7 +66,7 @@ impl Show {
         }
     }
 
-    /// The layer that it is, if it is one.
+    /// The layer, if the view shows one.
     pub fn layer(self) -> Option<Layer> {
         match self {
             Show::Normals => Some(Layer::Normals),
@@ -76,7 +76,7 @@ impl Show {
         }
     }
 
-    /// What its colours mean, if it is a heat map.
+    /// The scale, if the view is a heat map.
     pub fn scale(self) -> Option<HeatScale> {
         match self {
             Show::Bounces => Some(HeatScale::RAYS),

@@ -1,4 +1,4 @@
-//! What stands in the picture's place: a view of the film, or the picture beside another one.
+//! What the viewport shows: a view of the film, or a comparison with another picture.
 
 use super::document::Document;
 use super::origin::Origin;
@@ -11,9 +11,9 @@ use std::sync::Arc;
 /// How two pictures are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// One at each side of a divider.
+    /// The pictures are on the two sides of a divider.
     Wipe,
-    /// A heat map of where they differ.
+    /// A heat map of the difference.
     Difference,
 }
 
@@ -27,7 +27,7 @@ pub enum Other {
 }
 
 impl PartialEq for Other {
-    /// Origins are never changed, so that it is enough to compare which one it is.
+    /// Origins are immutable, so comparing their addresses is enough.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Other::Stage(a), Other::Stage(b)) => a == b,
@@ -38,7 +38,7 @@ impl PartialEq for Other {
 }
 
 impl Other {
-    /// The origin of that picture.
+    /// The origin of the other picture.
     pub fn origin(&self) -> Origin {
         match self {
             Other::Stage(stage) => Origin::of_stage(stage),
@@ -47,17 +47,17 @@ impl Other {
     }
 }
 
-/// What is looked at: one thing at a time.
+/// The current view, which is exactly one.
 #[derive(Clone, Debug)]
 pub struct ViewState {
     show: Show,
     mode: Option<Mode>,
     is_by_book: bool,
-    /// Compare with the next stage even where there is a pair.
+    /// Compare with the next stage even if the stage is paired with another.
     pub is_with_next: bool,
-    /// Where the divider of a wipe stands, `0..=1` of the picture's width.
+    /// Position of the wipe's divider, `0..=1` of the picture's width.
     pub divider: f32,
-    /// A film to compare with.
+    /// A loaded film to compare with.
     pub reference: Option<Arc<Reference>>,
 }
 
@@ -75,33 +75,33 @@ impl Default for ViewState {
 }
 
 impl ViewState {
-    /// The view of the film.
+    /// The current view of the film.
     pub fn show(&self) -> Show {
         self.show
     }
 
-    /// Whether and how two pictures are compared.
+    /// The comparison mode, if two pictures are compared.
     pub fn mode(&self) -> Option<Mode> {
         self.mode
     }
 
-    /// Whether the comparison is with the book's own arithmetic also where there is another stage.
+    /// Whether to compare with the book's own arithmetic even if there is another stage to compare with.
     pub fn is_by_book(&self) -> bool {
         self.is_by_book
     }
 
-    /// Shows a view of the film alone.
+    /// Shows only this view of the film.
     pub fn choose(&mut self, show: Show) {
         self.mode = None;
         self.show = show;
     }
 
-    /// Shows the picture in place of another view of the film; a comparison goes on.
+    /// Returns from another view of the film to the picture. A comparison continues.
     pub fn leave_show(&mut self) {
         self.show = Show::Picture;
     }
 
-    /// Starts a comparison, or ends it if it is this one.
+    /// Starts a comparison, or ends it if it is already active.
     pub fn toggle(&mut self, mode: Mode, is_by_book: bool) {
         let is_on = self.mode == Some(mode) && self.is_by_book == is_by_book;
         self.show = Show::Picture;
@@ -109,12 +109,12 @@ impl ViewState {
         self.is_by_book = is_by_book;
     }
 
-    /// Ends a comparison.
+    /// Ends the comparison.
     pub fn end_comparison(&mut self) {
         self.mode = None;
     }
 
-    /// How the film is resolved; `other` is the film of the second picture, once there is one.
+    /// The view for resolving the film; `other` is the film of the second picture, once there is one.
     pub fn of_film(&self, other: Option<&Arc<Reference>>) -> View {
         match (self.mode, other, self.show, &self.reference) {
             (Some(Mode::Difference), Some(other), ..) => View::Difference(Arc::clone(other)),
@@ -125,12 +125,12 @@ impl ViewState {
         }
     }
 
-    /// What `document` is to be compared with; `None` if it is not, or there is nothing.
+    /// The other picture that `document` is compared with; `None` without a comparison or a suitable picture.
     pub fn compared(&self, document: &Document) -> Option<Other> {
         self.mode.and_then(|_| self.other(document))
     }
 
-    /// What `document` can be compared with; `None` if there is nothing.
+    /// The picture with which `document` can be compared, if any.
     fn other(&self, document: &Document) -> Option<Other> {
         match document.stage().filter(|_| !self.is_by_book) {
             Some(stage) => self.other_of(stage).map(Other::Stage),
@@ -141,7 +141,7 @@ impl ViewState {
         }
     }
 
-    /// Whether the camera is what `document` and the other picture differ in, so that each keeps its own.
+    /// Whether `document` and the other picture differ in their cameras, so that each keeps its own.
     pub fn has_other_camera(&self, document: &Document) -> bool {
         !self.is_by_book && document.stage().is_some_and(|stage| self.is_of_cameras(stage))
     }
@@ -153,14 +153,14 @@ impl ViewState {
         if self.is_with_next { next.or(pair) } else { pair.or(next) }
     }
 
-    /// Whether the camera is what `stage` and the other differ in, so that each keeps its own.
+    /// Whether `stage` and the other stage differ in their cameras, so that each keeps its own.
     pub fn is_of_cameras(&self, stage: &'static Stage) -> bool {
         let mine = stage.recipe();
         self.other_of(stage).is_some_and(|other| differ_in_camera(&mine, &other.recipe()))
     }
 }
 
-/// Whether two pictures differ in nothing but the camera, so that it is what there is to compare.
+/// Whether the recipes differ only in their cameras.
 pub fn differ_in_camera(a: &Recipe, b: &Recipe) -> bool {
     a.camera != b.camera && a.rules == b.rules && a.scene == b.scene
 }

@@ -1,4 +1,4 @@
-//! Where the camera stands and where it looks.
+//! Controls for the camera's position and direction.
 
 use super::reset::Reset;
 use crate::app::command::Command;

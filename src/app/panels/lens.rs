@@ -1,4 +1,4 @@
-//! The lens: how blurred, and where it is sharp.
+//! Controls for the lens: defocus and focus distance.
 
 use super::reset::Reset;
 use crate::app::facts::Facts;

@@ -1,4 +1,4 @@
-//! The panel at the left: one file a group of controls.
+//! The left panel, with one file for each group of controls.
 
 mod camera;
 mod lens;
@@ -42,7 +42,7 @@ pub fn ui(
     group(ui, "Output", None, document, |ui, _| output::ui(ui, commands));
 }
 
-/// A group of controls that can be folded. `reset` is missing where a stage has nothing to say.
+/// A collapsible group of controls. `reset` is `None` if the stage has no values for the group.
 fn group(
     ui: &mut Ui,
     name: &str,

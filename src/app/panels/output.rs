@@ -1,4 +1,4 @@
-//! What becomes of the picture.
+//! Controls for saving the picture.
 
 use crate::app::command::Command;
 use crate::output::OutputFormat;

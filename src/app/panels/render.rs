@@ -1,4 +1,4 @@
-//! Who renders, and how.
+//! Controls for the device and the render settings.
 
 use super::reset::Reset;
 use crate::app::facts::Facts;

@@ -1,11 +1,11 @@
-//! How a group of controls is made as the stage has it.
+//! Resetting a group of controls to the stage's values.
 
 use crate::app::model::document::Document;
 
-/// How a group is made as the stage has it.
+/// How a group is compared with the stage and reset to it.
 pub(super) struct Reset {
-    /// Whether anything in it differs from the stage.
+    /// Whether any value of the group differs from the stage's.
     pub is_changed: fn(&Document) -> bool,
-    /// Makes it as the stage has it.
+    /// Resets the group to the stage's values.
     pub reset: fn(&mut Document),
 }

@@ -1,4 +1,4 @@
-//! When the render ends: the first condition that is met.
+//! Controls for the stop conditions; the first one that is met ends the render.
 
 use super::reset::Reset;
 use crate::app::facts::Facts;

@@ -1,4 +1,4 @@
-//! The picture, and the hand on it.
+//! The viewport: the picture, and mouse input on it.
 
 mod paint;
 mod placement;
@@ -19,49 +19,49 @@ use eframe::egui::{
 use paint::{Mark, paint, paint_drop};
 use std::time::Instant;
 
-/// Radians that a point of dragging turns.
+/// Radians of rotation per point of dragging.
 const TURN_PER_POINT: f64 = 0.006;
 
-/// The share of the distance that a point of scrolling covers.
+/// Share of the distance moved per point of scrolling.
 const DOLLY_PER_POINT: f64 = 0.002;
 
-/// How near the pointer must be to the divider of a wipe to take hold of it, points.
+/// How close the pointer must be to the wipe's divider to grab it, in points.
 const GRIP: f32 = 8.0;
 
-/// How the picture is looked at.
+/// The state of the viewport.
 #[derive(Default)]
 pub struct Viewport {
-    /// Where the picture is drawn, and how large.
+    /// Position and scale of the picture.
     pub placement: Placement,
     mark: Option<Mark>,
     is_dragging_divider: bool,
-    /// Where the menu of a right click was asked for, if on the picture.
+    /// Where the context menu was opened, if on the picture.
     menu_at: Option<Pos2>,
 }
 
-/// What the hand has done in a frame.
+/// The input of a frame.
 #[derive(Default)]
 pub struct Touch {
-    /// The camera was moved.
+    /// The user moved the camera.
     pub is_move: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
-    /// The pixel whose paths are asked for.
+    /// The pixel whose paths the user asked for.
     pub listed: Option<[u32; 2]>,
-    /// Where the picture's place is.
+    /// The area of the viewport.
     pub room: Option<Rect>,
 }
 
-/// What the hand can change.
+/// The state that the viewport may change.
 pub struct Handle<'a> {
-    /// The camera.
+    /// The camera that mouse input moves.
     pub camera: &'a mut Camera,
-    /// Where the divider of a wipe stands, `0..=1` of the picture's width.
+    /// Position of the wipe's divider, `0..=1` of the picture's width.
     pub divider: &'a mut f32,
 }
 
 impl Viewport {
-    /// Draws the picture and follows the hand on it.
+    /// Draws the picture and handles input on it.
     pub fn ui(
         &mut self,
         ui: &mut Ui,
@@ -237,7 +237,7 @@ impl Viewport {
     }
 }
 
-/// What can be done with a place of the picture.
+/// An action for a point of the picture.
 #[derive(Clone, Copy)]
 enum Spot {
     Focus,
@@ -246,7 +246,7 @@ enum Spot {
 }
 
 impl Spot {
-    /// Its name in the menu, and the mouse's way to it.
+    /// Its name in the menu, and its mouse shortcut.
     fn names(self) -> [&'static str; 2] {
         match self {
             Spot::Focus => ["Focus on this", "Click"],
@@ -256,13 +256,13 @@ impl Spot {
     }
 }
 
-/// Whether Alt was held when a button was let go: in a long frame it may have been let go since.
+/// Whether Alt was held when a button was released. In a long frame, Alt may have been released since.
 fn is_alt_release(ui: &Ui) -> bool {
     let is_it = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if modifiers.alt);
     ui.input(|input| input.events.iter().any(is_it))
 }
 
-/// Where the ray through a place of the picture meets the scene.
+/// Where the ray through a point of the picture hits the scene.
 fn pick(document: &Document, camera: &Camera, place: [f64; 2]) -> Option<Pick> {
     let direction = camera.direction_through(place, document.aspect());
     document.scene().pick(camera.look_from, direction)

@@ -1,4 +1,4 @@
-//! What stands in the picture's place: the picture, what it is compared with, scales, marks and words on it.
+//! Draws the viewport: the picture, the second picture, scales, markers and labels.
 
 use super::placement::{Placement, Zoom};
 use crate::app::facts::Facts;
@@ -17,22 +17,22 @@ use std::time::{Duration, Instant};
 
 const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 
-/// How long the mark of a click stays.
+/// How long a click's marker stays.
 const MARK: Duration = Duration::from_millis(1600);
 
-/// What there is to draw.
+/// The pictures to draw.
 pub struct Pictures<'a> {
-    /// The picture or a layer of it, and by how much that is smaller.
+    /// The picture or a layer of it, and the factor by which it is smaller.
     pub main: Option<(&'a mut Texture, u32)>,
-    /// Whether the film has a picture.
+    /// Whether there is a picture of the film.
     pub has_film: bool,
-    /// The second picture, by how much it is smaller, and its title.
+    /// The second picture, the factor by which it is smaller, and its title.
     pub second: Option<(&'a mut Texture, u32, String)>,
-    /// Paths that are drawn over it.
+    /// Paths to draw over the picture.
     pub paths: &'a Paths,
 }
 
-/// Draws the picture in `room`, at `rect`.
+/// Draws the picture at `rect`, within `room`.
 pub(super) fn paint(
     ui: &Ui,
     [room, rect]: [Rect; 2],
@@ -44,7 +44,7 @@ pub(super) fn paint(
 ) {
     let painter = ui.painter().with_clip_rect(room);
     let options = |divisor: u32| {
-        // At 100 % and above a pixel is a square; a preview's are no pixels of the picture.
+        // At 100 % and above, pixels are drawn as squares, but not the larger pixels of a preview.
         let is_square = divisor == 1 && placement.times() >= 1.0 - 1e-4;
         if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     };
@@ -52,7 +52,7 @@ pub(super) fn paint(
     let Pictures { main, has_film, second, paths } = pictures;
     let second = second.map(|(texture, divisor, title)| (texture.id(context, options(divisor)), title));
     let main = main.map(|(texture, divisor)| (texture.id(context, options(divisor)), divisor));
-    // The hole is a point smaller, so that no line stays free between the two.
+    // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::surround(ui));
     if let Some((texture, _)) = main {
@@ -92,7 +92,7 @@ pub(super) fn paint(
     paths.paint(document, ui, &painter, rect);
 }
 
-/// Fills `room` but for `hole`: where a processor draws, each pixel that is drawn twice is time lost.
+/// Fills `room` except for `hole`: software rendering pays for each pixel that is drawn twice.
 fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32) {
     if !hole.is_positive() {
         painter.rect_filled(room, 0.0, colour);
@@ -108,7 +108,7 @@ fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32)
     }
 }
 
-/// Draws the second picture right of the divider, and what each side is.
+/// Draws the second picture to the right of the divider, and labels both sides.
 fn paint_wipe(
     ui: &Ui,
     painter: &egui::Painter,
@@ -132,14 +132,14 @@ fn paint_wipe(
         painter.add(egui::Shape::convex_polygon(points, Color32::from_gray(60), Stroke::NONE));
     }
     let y = rect.top().max(painter.clip_rect().top()) + 8.0;
-    // Names that would reach beyond the picture stay within it.
+    // Labels are clipped at the picture's edges.
     let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
     let font = TextStyle::Body.resolve(ui.style());
     badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, mine, &font);
     badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, theirs, &font);
 }
 
-/// The colours of a heat map with what they mean.
+/// Draws the legend of a heat map.
 fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, scale: &HeatScale) {
     const STEPS: usize = 64;
     let font = TextStyle::Small.resolve(ui.style());
@@ -166,7 +166,7 @@ fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, scale: &HeatScale) 
     }
 }
 
-/// What happens to files that are held over the window.
+/// Shows what will happen to files dragged over the window.
 pub(super) fn paint_drop(ui: &Ui, room: Rect) {
     let Some(files) = ui.input(|input| words_for_files(&input.raw.hovered_files)) else { return };
     let painter =
@@ -192,7 +192,7 @@ fn words_for_files(files: &[egui::HoveredFile]) -> Option<String> {
     )
 }
 
-/// Text on a plate, so that it can be read on any picture.
+/// Text on a background plate, readable on any picture.
 fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, font: &FontId) {
     let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), ui.visuals().strong_text_color());
     let mut rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 6.0));
@@ -200,25 +200,25 @@ fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str,
     let (beyond_left, beyond_right) = (clip.left() + 4.0 - rect.left(), rect.right() + 4.0 - clip.right());
     if beyond_left > 0.0 || beyond_right > 0.0 {
         let along = if beyond_left > 0.0 { beyond_left } else { -beyond_right };
-        // A row lower, so that it does not cover what stands beside it.
+        // One row lower, so that it does not cover its neighbour.
         rect = rect.translate(vec2(along, rect.height() + 4.0));
     }
     painter.rect_filled(rect, CornerRadius::same(5), ui.visuals().panel_fill.gamma_multiply(0.9));
     painter.galley(rect.min + vec2(7.0, 3.0), galley, ui.visuals().strong_text_color());
 }
 
-/// What a click has found, for a moment.
+/// The result of a click, shown for a moment.
 pub(super) struct Mark {
-    /// Place in the picture, `0..=1` from the upper left.
+    /// Position in the picture, `0..=1` from the upper left.
     pub place: [f64; 2],
-    /// What is said of it.
+    /// The text beside the marker.
     pub text: String,
-    /// When it was clicked.
+    /// The time of the click.
     pub since: Instant,
 }
 
 impl Mark {
-    /// Draws it; false once its time is over.
+    /// Draws the marker; returns false once its time is over.
     pub fn paint(&self, ui: &Ui, room: Rect, rect: Rect) -> bool {
         let age = self.since.elapsed();
         if age > MARK {

@@ -1,26 +1,26 @@
-//! Where the picture is drawn, and how large.
+//! The position and scale of the picture.
 
 use eframe::egui::{Pos2, Rect, Vec2};
 
-/// How large the picture is drawn.
+/// The scale of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Zoom {
-    /// As large as there is room.
+    /// The largest scale at which the whole picture fits.
     Fit,
-    /// Pixels of the screen for one of the picture.
+    /// Screen pixels per pixel of the picture.
     Times(f32),
 }
 
 const ZOOM_LIMITS: [f32; 2] = [0.05, 64.0];
 
-/// Where the picture is drawn, and how large.
+/// The position and scale of the picture.
 pub struct Placement {
     zoom: Zoom,
-    /// Where the picture's middle is, points from the middle of the room.
+    /// Offset of the picture's middle from the middle of the viewport, in points.
     pan: Vec2,
-    /// Pixels of the screen for one of the picture, as it was drawn last.
+    /// Screen pixels per picture pixel when it was last drawn.
     times: f32,
-    /// Where the picture was drawn last.
+    /// Where the picture was last drawn.
     rect: Rect,
 }
 
@@ -31,40 +31,40 @@ impl Default for Placement {
 }
 
 impl Placement {
-    /// How large it is to be.
+    /// The chosen scale.
     pub fn zoom(&self) -> Zoom {
         self.zoom
     }
 
-    /// Pixels of the screen for one of the picture, as it was drawn last.
+    /// Screen pixels per picture pixel when it was last drawn.
     pub fn times(&self) -> f32 {
         self.times
     }
 
-    /// Where the picture was drawn last, points.
+    /// Where the picture was last drawn, in points.
     pub fn rect(&self) -> Rect {
         self.rect
     }
 
-    /// The whole picture, as large as there is room.
+    /// Fits the whole picture into the viewport.
     pub fn fit(&mut self) {
         self.zoom = Zoom::Fit;
     }
 
-    /// One pixel on one of the screen.
+    /// Shows one picture pixel per screen pixel.
     pub fn actual_size(&mut self) {
         self.zoom = Zoom::Times(1.0);
         self.pan = Vec2::ZERO;
     }
 
-    /// Zooms so that the middle of the room stays.
+    /// Zooms around the middle of the viewport.
     pub fn zoom_by(&mut self, factor: f32) {
         let times = self.limited(factor);
         self.pan *= times / self.times;
         self.zoom = Zoom::Times(times);
     }
 
-    /// Zooms so that what is at a point of the screen stays there.
+    /// Zooms around a point of the screen, whose content stays in place.
     pub fn zoom_at(&mut self, at: Pos2, factor: f32) {
         let times = self.limited(factor);
         let from_middle = at - self.rect.center();
@@ -72,7 +72,7 @@ impl Placement {
         self.zoom = Zoom::Times(times);
     }
 
-    /// Moves the picture.
+    /// Moves the picture by this many points.
     pub fn pan_by(&mut self, points: Vec2) {
         if self.zoom == Zoom::Fit {
             self.zoom = Zoom::Times(self.times);
@@ -85,7 +85,7 @@ impl Placement {
         (self.times * factor).clamp(low, high)
     }
 
-    /// Where a picture of `size` pixels goes in `room`, on whole pixels of the screen.
+    /// Places a picture of `size` pixels in `room`, aligned to screen pixels.
     pub fn place(&mut self, room: Rect, size: Vec2, pixels_per_point: f32) -> Rect {
         let fitting = (room.width() / size.x).min(room.height() / size.y) * pixels_per_point;
         self.times = match self.zoom {
@@ -101,7 +101,7 @@ impl Placement {
         self.rect
     }
 
-    /// The whole pixel of a picture of `size` pixels that is under a point of the screen.
+    /// The pixel at a point of the screen, for a picture of `size` pixels.
     pub fn pixel_at(&self, at: Pos2, size: [u32; 2]) -> Option<[u32; 2]> {
         if !self.rect.contains(at) || self.rect.width() <= 0.0 {
             return None;
@@ -128,7 +128,7 @@ mod tests {
         placement
     }
 
-    /// The place of the picture that is at a point of the screen, pixels.
+    /// The position in the picture at a point of the screen, in pixels.
     fn under(placement: &Placement, at: Pos2) -> Vec2 {
         (at - placement.rect().min) / placement.times()
     }
@@ -142,7 +142,7 @@ mod tests {
                 placement.zoom_at(at, factor);
                 placement.place(ROOM, SIZE, 1.0);
                 let off = (under(&placement, at) - before) * placement.times();
-                // The corner is on a whole pixel.
+                // The corner is aligned to a whole pixel.
                 assert!(off.length() < 1.5, "{at}, {factor}: off by {off} points");
             }
         }
