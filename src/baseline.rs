@@ -1,4 +1,4 @@
-//! The baseline: the same picture by a plain C89 program, which is compiled when it is asked for.
+//! The baseline: a plain C89 program that renders the same picture. It is compiled on demand.
 
 use crate::render::{RenderJob, RenderSettings};
 use crate::scene::{Camera, Parameter, Scene};
@@ -12,19 +12,19 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// `reference/rt_weekend.c`.
+/// The source, `reference/rt_weekend.c`.
 pub const SOURCE: &str = include_str!("../reference/rt_weekend.c");
 
-/// How it is compiled.
+/// The compiler's arguments.
 pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
 
-/// Time between looks at whether the caller wants to stop.
+/// How often the program checks whether the caller wants to stop.
 const POLL: Duration = Duration::from_millis(20);
 
-/// A baseline that cannot be had or did not end well.
+/// Why the baseline is not available or has failed.
 #[derive(Debug, thiserror::Error)]
 pub enum BaselineError {
-    /// No compiler.
+    /// There is no C compiler.
     #[error("there is no C compiler {compiler:?} ({reason}); install one or name it in CC")]
     NoCompiler {
         /// As CC has it, or cc.
@@ -32,7 +32,7 @@ pub enum BaselineError {
         /// What the system said.
         reason: io::Error,
     },
-    /// The compiler refuses it.
+    /// The compiler rejected the source.
     #[error("{compiler} cannot compile it: {message}")]
     Compile {
         /// As CC has it, or cc.
@@ -40,10 +40,10 @@ pub enum BaselineError {
         /// Its first words.
         message: String,
     },
-    /// What the baseline cannot do.
+    /// The job needs something that the baseline does not support.
     #[error("{0}")]
     Unfit(&'static str),
-    /// It ended without figures.
+    /// The run ended without figures.
     #[error("it failed: {0}")]
     Run(String),
     /// The caller asked to stop.
@@ -61,7 +61,7 @@ pub struct Baseline {
     pub compiler: String,
 }
 
-/// What the baseline said of a run.
+/// The figures of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlRun {
     /// Wall time of tracing, seconds.
@@ -103,7 +103,7 @@ impl Baseline {
         Ok(Baseline { directory, compiler })
     }
 
-    /// Writes what it is to render.
+    /// Writes the scene that the baseline is to render.
     ///
     /// # Errors
     /// [`BaselineError::Unfit`] for a stage's rules, [`BaselineError::Files`].
@@ -116,7 +116,7 @@ impl Baseline {
         Ok(path)
     }
 
-    /// A file that goes away with the baseline.
+    /// A temporary file that is deleted with the baseline.
     pub fn scratch(&self, name: &str) -> PathBuf {
         self.directory.path().join(name)
     }
@@ -152,14 +152,14 @@ impl Baseline {
         let read = |pipe: std::process::ChildStdout| {
             move || {
                 for line in BufReader::new(pipe).lines().map_while(Result::ok) {
-                    // Nobody listens any more where the run was cancelled.
+                    // After cancellation nobody receives this.
                     let _ = lines.send((Instant::now(), line));
                 }
             }
         };
         let reader = child.stdout.take().map(|pipe| std::thread::Builder::new().spawn(read(pipe)));
         let reader = reader.transpose().map_err(|reason| {
-            // If it has just ended there is nothing to end.
+            // If it has just ended, there is nothing to kill.
             let _ = child.kill();
             failed(reason)
         })?;
@@ -172,12 +172,12 @@ impl Baseline {
                 Err(RecvTimeoutError::Disconnected) => break,
             }
             if is_cancelled() {
-                // If it has just ended there is nothing to end.
+                // If it has just ended, there is nothing to kill.
                 let _ = child.kill();
             }
         }
         if let Some(reader) = reader {
-            // It only reads; that it could panic is none of the run's business.
+            // The thread only reads; a panic in it does not affect the run.
             let _ = reader.join();
         }
         let output = child.wait_with_output().map_err(failed)?;

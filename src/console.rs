@@ -1,8 +1,8 @@
-//! Standard output and standard error: the one way on which the program speaks.
+//! Standard output and standard error. All of the program's text goes through this module.
 //!
-//! What goes to standard error is only said: a pipe that has closed or a device that is full never ends a run.
-//! What goes to standard output is a result: if it cannot be written, whoever asked for it must be told. Either way
-//! a text may hold names, values and messages from outside, which must not steer a terminal or flood it.
+//! Text on standard error is informational: a closed pipe or a full device never ends a run. Text on standard output is
+//! a result: if it cannot be written, the caller gets an error. In both cases a text may contain names, values and
+//! messages from outside, which must neither control a terminal nor flood it.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;

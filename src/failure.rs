@@ -1,4 +1,4 @@
-//! What ends the program early, its exit code, and what a fault of the program itself says.
+//! Failures that end the program early, their exit codes, and the message after a panic.
 
 use crate::console;
 use std::backtrace::{Backtrace, BacktraceStatus};
@@ -23,7 +23,7 @@ pub const EXIT_CODES: &str = "\
 Exit codes: 0 done; 1 failed on the way (compare and diff: the two differ); 2 cannot be done, nothing was begun; \
 3 the render broke off, what it had rendered is in its files; 130 interrupted, what had been rendered is in its files";
 
-/// Why the program ends without having done what it was asked for.
+/// Why the program ends without having done what was asked.
 #[derive(Debug)]
 pub enum Failure {
     /// The command line cannot be understood, or asks for help.

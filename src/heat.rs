@@ -1,4 +1,4 @@
-//! Heat maps: colours from dark to bright for numbers, and the scale that tells them.
+//! Heat maps: colours from dark to bright for numbers, and the scale that explains them.
 
 /// What the colours of a heat map mean.
 #[derive(Clone, Copy, Debug, PartialEq)]

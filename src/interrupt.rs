@@ -1,5 +1,5 @@
-//! Ctrl-C and its kin (SIGINT, SIGTERM, SIGHUP): the first asks for an orderly end, a later one ends at once, but
-//! never while files are being written.
+//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first one asks for an orderly end. A later one ends the
+//! program immediately, but never while files are being written.
 
 use crate::console;
 use crate::failure::INTERRUPTED;
@@ -76,7 +76,7 @@ impl Interrupt {
         Ok(Interrupt(shared))
     }
 
-    /// One that hears nothing, for tests.
+    /// An instance that ignores signals, for tests.
     #[cfg(test)]
     pub(crate) fn unheard() -> Self {
         Interrupt(Arc::default())

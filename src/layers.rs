@@ -1,5 +1,5 @@
-//! What a picture is made of beside light: for each pixel the normal and the albedo of what is seen first, and
-//! how many rays its paths take. The paths are those of the picture, as [`PathRecorder`] tells them.
+//! Layers of a picture besides its light: the normal and the albedo at the first hit of each pixel, and the number of
+//! rays per path. The paths are those of the picture, as recorded by [`PathRecorder`].
 
 use crate::record::PathRecord;
 use crate::render::{JobError, RenderJob, RenderSettings};

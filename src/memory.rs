@@ -1,8 +1,8 @@
-//! Whether something fits into memory, found out before it is asked for: a system that promises more than it has ends
-//! the program in the middle, and an allocation that fails does so, too.
+//! Checks whether data fits into memory before it is allocated. A system that overcommits memory kills the program
+//! later, and a failed allocation also ends it.
 //!
-//! Whatever takes memory in proportion to a number from outside (films, pictures, scenes) asks [`check`] first, or
-//! takes it by [`filled`].
+//! Code that needs memory in proportion to a number from outside (films, pictures, scenes) first calls [`check`], or
+//! allocates with [`filled`].
 
 use std::fs;
 

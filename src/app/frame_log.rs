@@ -12,7 +12,7 @@ pub struct FrameTimes {
     pub cpu: Duration,
     /// Controls, layout and state; part of `cpu`.
     pub ui: Duration,
-    /// Uploading a new picture; part of `ui`.
+    /// Taking in a new picture; part of the above.
     pub picture: Duration,
 }
 

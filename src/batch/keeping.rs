@@ -1,5 +1,5 @@
-//! The film, written now and then while the render goes on: what ends the program without warning costs no more than
-//! the time since.
+//! Checkpoints: the film is written at intervals during a render, so that a crash loses only the time since the last
+//! one.
 
 use super::files::SharedPlace;
 use crate::cli::RenderOptions;
@@ -33,7 +33,7 @@ struct Snapshot {
     status: Status,
 }
 
-/// What became of a writing.
+/// The result of writing a checkpoint.
 struct Outcome {
     samples: Option<u64>,
     words: Option<String>,
@@ -118,7 +118,7 @@ impl Keeper {
         words
     }
 
-    /// Waits for the writing that is under way.
+    /// Waits for a checkpoint that is being written.
     pub(super) fn finish(&mut self) {
         self.snapshots = None;
         if let Some(thread) = self.thread.take() {

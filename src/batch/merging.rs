@@ -1,4 +1,4 @@
-//! `weekender merge`: films of one picture, added.
+//! `weekender merge`: merges films of one picture.
 
 use crate::cli::MergeOptions;
 use crate::failure::Failure;

@@ -1,4 +1,4 @@
-//! Rendering without a window: pictures to files, progress to standard error, figures at the end.
+//! Batch rendering without a window: pictures go to files, progress to standard error, and figures come at the end.
 
 mod files;
 mod keeping;
@@ -40,7 +40,7 @@ use summary::{Report, Summary};
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
     let places: Vec<Places> = options.renders.iter().map(Places::of).collect();
-    // Found out now, the film of a resumed render is read before a kernel is built.
+    // Checked now, because the film of a resumed render is read before kernels are built.
     let mut resumed = match options.renders.as_slice() {
         [RenderOptions { resume: Some(path), job, .. }] => {
             Some(saved::resume(path, job).map_err(Failure::input)?)
@@ -63,7 +63,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     for (render, places) in options.renders.iter().zip(&places) {
         let begun = Begun { options: &options, interrupt: &interrupt, places };
         let (summary, outcome) = begun.render(render, &mut progressive, renderer.take(), resumed.take());
-        // That nobody reads the figures is no reason to leave pictures out.
+        // Failing to print the figures does not stop the rendering of pictures.
         printed = printed.and(print_beside(options.json.as_ref(), &format!("{summary}\n")));
         summaries.push(summary);
         if let Err(error) = outcome {
@@ -101,7 +101,7 @@ fn write_scene(recipe: &Recipe, path: &Path) -> anyhow::Result<()> {
     Ok(write_text(path, &file::to_toml(recipe))?)
 }
 
-/// Finds out what would fail after the rendering.
+/// Checks in advance for everything that could fail after rendering.
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     if let Some(directory) = &options.directory {
         std::fs::create_dir_all(directory)
@@ -126,7 +126,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A batch under way.
+/// A batch in progress.
 struct Begun<'a> {
     options: &'a BatchOptions,
     interrupt: &'a Interrupt,
@@ -134,7 +134,7 @@ struct Begun<'a> {
 }
 
 impl Begun<'_> {
-    /// Renders a picture and writes its files. Whatever goes wrong, what has been rendered is kept.
+    /// Renders a picture and writes its files. On any failure, the samples rendered so far are kept.
     fn render(
         &self,
         render: &RenderOptions,

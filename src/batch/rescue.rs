@@ -1,4 +1,4 @@
-//! Samples whose files cannot be written, kept wherever there is room.
+//! Rescues samples whose files cannot be written, by saving them wherever there is room.
 
 use crate::cli::RenderOptions;
 use crate::film::{Description, Film, checkpoint, key};

@@ -1,4 +1,4 @@
-//! Who is measured: the baseline, levels and lane counts of the CPU, a GPU.
+//! The candidates to measure: the baseline, instruction levels and lane counts of the CPU, and a GPU.
 
 use super::figures::{Kind, Row, Run};
 use crate::backends::{self, BackendChoice};
@@ -27,7 +27,7 @@ enum Runner {
     Renderer(Box<dyn Renderer>),
 }
 
-/// A run that was not to be finished.
+/// The run was cancelled.
 #[derive(Debug)]
 pub struct Cancelled;
 

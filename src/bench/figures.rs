@@ -1,4 +1,4 @@
-//! What was measured: runs, medians and ranges.
+//! The measured figures: runs, medians and ranges.
 
 use super::machine::Machine;
 use crate::statistics::median;
@@ -7,7 +7,7 @@ use serde::Serialize;
 /// Version of the JSON: it grows when a key changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;
 
-/// A spread of runs above this share of their median puts the figures in doubt.
+/// If the range of the runs is above this share of their median, the figures are doubtful.
 pub const SPREAD_LIMIT: f64 = 0.1;
 
 /// Everything that was measured.
@@ -21,7 +21,7 @@ pub struct Report {
     pub scenes: Vec<SceneFigures>,
     /// Fields of growing size.
     pub scale: Vec<ScaleFigures>,
-    /// What puts the figures in doubt.
+    /// Why the figures are doubtful, if so.
     pub warnings: Vec<String>,
     /// Whether it was ended early.
     pub interrupted: bool,

@@ -1,4 +1,4 @@
-//! What is measured on, and whether it was quiet.
+//! The machine that is measured, and whether it was idle.
 
 use crate::render_cpu::Isa;
 use serde::Serialize;
@@ -19,7 +19,7 @@ pub struct Machine {
     pub load_at_start: Option<f64>,
 }
 
-/// From this load on the figures are in doubt.
+/// From this system load on, the figures are doubtful.
 pub const LOAD_LIMIT: f64 = 0.5;
 
 impl Machine {

@@ -1,4 +1,4 @@
-//! `weekender bench`: how fast this machine renders, beside a plain C program.
+//! `weekender bench`: how fast this machine renders, compared with a plain C program.
 
 mod candidate;
 mod figures;
@@ -68,7 +68,7 @@ fn scenes(options: &BenchOptions, report: &mut Report, cancel: &AtomicBool) -> a
     Ok(())
 }
 
-/// Runs all rows in turn, so that whatever drifts hits all alike.
+/// Runs all rows in turn, so that drift affects all of them alike.
 fn measure_scene(
     options: &BenchOptions,
     scene: &BenchScene,
@@ -130,7 +130,7 @@ fn fields(
     outcome
 }
 
-/// What puts the figures in doubt.
+/// Why the figures are doubtful.
 fn warnings(report: &Report) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some(load) = report.machine.load_at_start.filter(|load| *load > LOAD_LIMIT) {
@@ -163,7 +163,7 @@ fn warnings(report: &Report) -> Vec<String> {
 
 fn write(options: &BenchOptions, report: &Report) -> anyhow::Result<()> {
     let text = table::text(report);
-    // What could not be printed is written all the same.
+    // The files are written even if printing failed.
     let printed = terminal::print_beside(options.json.as_ref(), &text);
     if let Some(target) = &options.json {
         terminal::write_json(report, target)?;

@@ -1,4 +1,4 @@
-//! Where two pictures differ, as a picture.
+//! A heat map of the difference between two pictures.
 
 use super::side::Side;
 use super::verdict::differs_in_kind;
@@ -10,7 +10,7 @@ use std::io::{self, Seek, Write};
 /// Blocks that are framed.
 const FRAMED: usize = 5;
 
-/// What frames are drawn in: a colour that the map has not.
+/// The colour of the frames, which does not occur in the map.
 const FRAME: [u8; 3] = [0, 220, 255];
 
 /// Writes a PNG: each pixel's difference, root of the mean square of its channels, from dark (1e-4) to bright (1),

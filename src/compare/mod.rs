@@ -1,4 +1,4 @@
-//! `weekender compare`: whether two pictures are the same but for their noise.
+//! `weekender compare`: whether two pictures are the same except for noise.
 
 mod heat_map;
 mod side;
@@ -68,10 +68,10 @@ struct ReportedBlock {
     mean_difference: [f64; 3],
 }
 
-/// Compares two pictures and prints what they differ by. The exit code is 0 where that is noise, else 1.
+/// Compares two pictures and prints how they differ. The exit code is 0 if the difference is only noise, else 1.
 ///
 /// # Errors
-/// [`Failure::Input`] where they could not be compared: exit code 1 says that they differ.
+/// [`Failure::Input`] if they cannot be compared, because exit code 1 means that they differ.
 pub fn run(options: &CompareOptions) -> Result<ExitCode, Failure> {
     compared(options).map_err(Failure::Input)
 }

@@ -1,20 +1,20 @@
-//! Whether two pictures are the same but for noise and rounding.
+//! Decides whether two pictures are the same except for noise and rounding.
 
 use super::side::Side;
 use crate::film::Film;
 use crate::statistics::blocks::{BlockTest, Differences, Noise, SUM_DEVIATIONS};
 use serde::Serialize;
 
-/// What rounding may move a mean by: docs/numerics.md, cases 12 and 13.
+/// The largest effect of rounding on a mean: docs/numerics.md, cases 12 and 13.
 pub const ROUNDING_BIAS: f64 = 2e-6;
 
 /// What rounding may move samples by, root of the mean square over those that take the same path.
 pub const ROUNDING_RMS: f64 = 5e-5;
 
-/// A sample that differs by more has taken another path.
+/// A sample with a larger difference has taken a different path.
 pub const PARTED: f64 = 1e-3;
 
-/// The share of samples that rounding may send another way.
+/// The share of samples that rounding may send along a different path.
 pub const PARTED_SHARE: f64 = 1e-3;
 
 /// Where the noise of the difference is known from.
@@ -165,7 +165,7 @@ fn is_same(a: &Side, b: &Side) -> bool {
         && a.pixels.iter().flatten().zip(b.pixels.iter().flatten()).all(same)
 }
 
-/// What two pictures differ by, and what of it is noise.
+/// How two pictures differ, and how much of it is noise.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// Whether all pixels are equal to the bit; any NaN is equal to any other.
@@ -361,7 +361,7 @@ fn added(a: Option<&Vec<[f64; 3]>>, b: Option<&Vec<[f64; 3]>>) -> Option<Vec<[f6
 }
 
 impl Comparison {
-    /// Whether nothing but noise and rounding tells them apart.
+    /// Whether the pictures differ only by noise and rounding.
     pub fn is_equal(&self) -> bool {
         self.reasons.is_empty()
     }

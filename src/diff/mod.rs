@@ -1,4 +1,4 @@
-//! `weekender diff`: one path as two backends trace it, side by side, and where they part.
+//! `weekender diff`: one path as traced by two backends, side by side, and the point where they diverge.
 
 mod compare;
 mod find;

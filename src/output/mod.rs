@@ -1,5 +1,5 @@
-//! Pictures in files: 8-bit PNG, binary PPM (P6), and OpenEXR, which is the whole film. All of them say what they
-//! show: see [`Description`]. Pictures of other programs can be read, too: [`read_picture`].
+//! Picture files: 8-bit PNG, binary PPM (P6), and OpenEXR, which contains the whole film. All of them include a
+//! [`Description`]. Pictures of other programs can be read too: [`read_picture`].
 
 mod limits;
 mod pfm;

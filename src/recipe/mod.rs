@@ -1,5 +1,5 @@
-//! A recipe: everything that a picture is made from. A scene file holds one, a stage is one, the window edits
-//! one; checked, it becomes a [`RenderJob`].
+//! A recipe: everything that defines a picture. A scene file contains one, a stage is one, and the window edits one.
+//! Validation turns it into a [`RenderJob`].
 
 pub mod file;
 

@@ -1,4 +1,4 @@
-//! Whether the error that pictures tell of themselves is true.
+//! Checks whether the error estimates of pictures are accurate.
 
 use super::data::{Curve, Data, Measured};
 use serde::Serialize;

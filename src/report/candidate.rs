@@ -1,4 +1,4 @@
-//! Who renders a curve: a backend, or the plain C89 program.
+//! The candidate that renders a curve: a backend, or the plain C89 baseline.
 
 use super::data::{Curve, Measured, Run};
 use super::reference::{Reference, film_means};

@@ -1,4 +1,4 @@
-//! The pictures that errors are measured against, and the errors.
+//! The reference pictures against which errors are measured, and the errors.
 
 use super::data::ReferenceUsed;
 use crate::backends::{self, BackendChoice};
@@ -14,7 +14,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// No picture of a report has this seed, so that none shares numbers with its reference.
+/// The seed of references. No picture of a report has it, so none shares random numbers with its reference.
 const SEED: u32 = 0x5EED_0000;
 
 /// A picture that errors are measured against.

@@ -1,4 +1,4 @@
-//! What rounding changes in a picture.
+//! The effect of rounding on a picture.
 
 use super::data::Rounding;
 use crate::film::Film;
