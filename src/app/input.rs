@@ -13,11 +13,11 @@ const FLY_SHARE_PER_SECOND: f64 = 0.7;
 /// Speed factor while Shift is held.
 const FAST: f64 = 4.0;
 
-/// The state of the keyboard in the previous frame.
+/// What had the keyboard before this frame.
 pub struct Keyboard {
     /// A control, a menu or a dialog had the keyboard focus.
     pub had_focus: bool,
-    /// The window was in full-screen mode.
+    /// The window is in full-screen mode.
     pub is_full_screen: bool,
 }
 

@@ -164,7 +164,7 @@ impl Progressive {
         self.send(Command::SetView(view));
     }
 
-    /// Sets a callback for the render thread: a picture is ready or the phase has changed. It must return quickly.
+    /// Sets a callback that the render thread calls when a picture is ready or the phase has changed. It must be quick.
     pub fn set_notice(&self, notice: impl Fn() + Send + 'static) {
         self.shared.set_notice(Box::new(notice));
     }
