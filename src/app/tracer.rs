@@ -183,7 +183,7 @@ impl Tracer {
         self.start(want, 1, Some(film))
     }
 
-    /// Takes new results. Returns when the render of a new picture began.
+    /// Takes new results. For a new picture, returns the time at which its render began.
     pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
         self.status = Arc::new(self.progressive.status());
         let started = self.started.as_mut()?;
