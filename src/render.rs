@@ -3,6 +3,10 @@
 //! **A sample is a pure function** of (job, pixel, sample index). It does not depend on the backend, the packet
 //! width, the thread, its neighbours or what was rendered before. Everything else rests on that.
 
+mod settings;
+
+pub use settings::{NamedSetting, RenderSettings, SettingValue};
+
 pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
 
 use crate::film::Film;
@@ -41,44 +45,6 @@ impl SamplerKind {
             SamplerKind::Independent => "independent",
             SamplerKind::Sobol => "sobol",
         }
-    }
-}
-
-/// Numbers of a job that are neither scene nor camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RenderSettings {
-    /// Pixels across, `1..=16384`.
-    pub width: u32,
-    /// Pixels down, `1..=16384`.
-    pub height: u32,
-    /// Most rays of a path, the camera's included, `1..=10000`. A path that is cut off brings nothing.
-    pub max_depth: u32,
-    /// Where the numbers come from.
-    pub sampler: SamplerKind,
-    /// Chooses among pictures that differ in their noise alone.
-    pub seed: u32,
-    /// Whether samples go to two halves with scramblings of their own, so that the error can be estimated.
-    pub estimate_error: bool,
-}
-
-impl Default for RenderSettings {
-    /// What a scene file that does not say gets.
-    fn default() -> Self {
-        RenderSettings {
-            width: 800,
-            height: 450,
-            max_depth: 50,
-            sampler: SamplerKind::Sobol,
-            seed: 0,
-            estimate_error: true,
-        }
-    }
-}
-
-impl RenderSettings {
-    /// Halves of the film: 2 if the error is estimated, else 1.
-    pub fn half_count(&self) -> usize {
-        if self.estimate_error { 2 } else { 1 }
     }
 }
 

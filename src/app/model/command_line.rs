@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use super::origin::Source;
+use crate::render::RenderSettings;
 use std::borrow::Cow;
 use std::fmt::Write;
 
@@ -26,17 +27,11 @@ impl Document {
         if (mine.width, mine.height) != (theirs.width, theirs.height) {
             add("--size", &format!("{}x{}", mine.width, mine.height));
         }
-        if mine.max_depth != theirs.max_depth {
-            add("--depth", &mine.max_depth);
-        }
-        if mine.sampler != theirs.sampler {
-            add("--sampler", &mine.sampler.name());
-        }
-        if mine.seed != theirs.seed {
-            add("--seed", &mine.seed);
-        }
-        if mine.estimate_error != theirs.estimate_error {
-            add("--estimate-error", &if mine.estimate_error { "on" } else { "off" });
+        for named in RenderSettings::NAMED {
+            let value = (named.value)(mine);
+            if value != (named.value)(theirs) {
+                add(&format!("--{}", named.flag), &value);
+            }
         }
         let (camera, base) = (self.acting_camera(), &origin.camera);
         for (flag, value, default) in [
