@@ -5,7 +5,7 @@
 
 mod settings;
 
-pub use settings::{NamedSetting, RenderSettings, SettingValue};
+pub use settings::{NamedSetting, RenderSettings, SamplerKind, SettingValue};
 
 pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
 
@@ -13,7 +13,7 @@ use crate::film::Film;
 use crate::memory::{self, MemoryError};
 use crate::scene::{Camera, Scene, SceneError};
 use crate::stages::Rules;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::any::Any;
 use std::ops::Range;
 use std::sync::Arc;
@@ -23,30 +23,6 @@ use thiserror::Error;
 
 /// Largest number of rays a path may have.
 pub const DEPTH_LIMIT: u32 = 10_000;
-
-/// Where the numbers of a sample come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
-#[serde(rename_all = "lowercase")]
-pub enum SamplerKind {
-    /// Independent numbers, as in the book.
-    Independent,
-    /// Scrambled Sobol points: the same picture with fewer samples.
-    #[default]
-    Sobol,
-}
-
-impl SamplerKind {
-    /// All of them.
-    pub const ALL: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
-
-    /// The name used on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            SamplerKind::Independent => "independent",
-            SamplerKind::Sobol => "sobol",
-        }
-    }
-}
 
 /// What a pixel takes besides its sums while the picture is written.
 const OUTPUT_BYTES_PER_PIXEL: u64 = 4;

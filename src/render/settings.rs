@@ -1,8 +1,31 @@
 //! The settings of a render, and their names for whatever writes or compares them.
 
-use super::SamplerKind;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+
+/// Where the numbers of a sample come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
+#[serde(rename_all = "lowercase")]
+pub enum SamplerKind {
+    /// Independent numbers, as in the book.
+    Independent,
+    /// Scrambled Sobol points: the same picture with fewer samples.
+    #[default]
+    Sobol,
+}
+
+impl SamplerKind {
+    /// All of them.
+    pub const ALL: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
+
+    /// The name used on the command line and in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            SamplerKind::Independent => "independent",
+            SamplerKind::Sobol => "sobol",
+        }
+    }
+}
 
 /// Numbers of a job that are neither scene nor camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

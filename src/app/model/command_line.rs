@@ -65,8 +65,13 @@ impl Document {
     }
 }
 
-/// A word as a shell takes it. A NUL, which no argument can have, stays as it is.
+/// A word as a shell takes it. Vectors and the like have no quotes, though shlex would put them around a comma.
 fn quoted(word: &str) -> Cow<'_, str> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return Cow::Borrowed(word);
+    }
+    // It fails for a NUL alone, which no argument can have.
     shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
 }
 
@@ -123,6 +128,7 @@ mod tests {
     #[test]
     fn names_are_quoted_where_a_shell_needs_it() {
         assert_eq!(quoted("a-b.toml"), "a-b.toml");
+        assert_eq!(quoted("13,2,3"), "13,2,3");
         for name in ["my scene's.toml", "$HOME/a b", "a\"b", ""] {
             assert_eq!(shlex::split(&quoted(name)), Some(vec![name.to_owned()]), "{name}");
         }
