@@ -1,14 +1,14 @@
-// Traversal of the compressed hierarchy of eight children a node by one ray. (Ylitie, Karras and Laine 2017,
+// Traversal of the compressed hierarchy, with eight children per node, by a single ray. (Ylitie, Karras and Laine 2017,
 // "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs", sections 3 and 4.)
 
-// The 8 bits of a mask of hits that stand for nodes, the one to be visited first in the highest; below them are
-// 24 for spheres.
+// The 8 bits of a hit mask that stand for nodes; the node to visit first has the highest bit. The 24 bits below stand
+// for spheres.
 const NODE_HITS = 0xFF000000u;
 
 const BYTE_SHIFTS = vec4u(0u, 8u, 16u, 24u);
 
-// A ray prepared for a node's boxes: along each axis the distance is `bound * step + near` at the plane where it
-// enters, `bound * step + far` where it leaves.
+// A ray prepared for a node's boxes. Along each axis the distance to the entry plane is `bound * step + near`, and to
+// the exit plane `bound * step + far`.
 struct Grid {
     step: vec3f,
     near: vec3f,
@@ -19,8 +19,8 @@ fn bytes_of(word: u32) -> vec4u {
     return (vec4u(word) >> BYTE_SHIFTS) & vec4u(0xFFu);
 }
 
-// Which of four children the ray meets before distance `limit`, as the bits that their marks tell. By axis the
-// bounds of the planes where it enters and leaves. Slots of nodes are put in order by `octant`.
+// Returns which of four children the ray hits before distance `limit`, as the bits that their marks select. `x`, `y`
+// and `z` hold the bounds of the entry and exit planes. `octant` orders the slots of nodes.
 fn four_hits(
     grid: Grid, x: vec2u, y: vec2u, z: vec2u, marks: u32, octant: u32, limit: f32,
 ) -> u32 {
@@ -39,24 +39,24 @@ fn four_hits(
     return bits.x | bits.y | bits.z | bits.w;
 }
 
-// Takes the nearest hit among the spheres of the hierarchy.
+// Finds the nearest hit among the spheres of the hierarchy.
 fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
     var nearest = found;
     let slabs = slabs_of(ray, job.extent, CWBVH_MARGIN);
     let backward = slabs.inverse < vec3f(0.0);
     let near_origin = select(slabs.low, slabs.high, backward);
     let far_origin = select(slabs.high, slabs.low, backward);
-    // A child lies in the slot whose number's bits tell on which side, x in the highest: the slot of the ray's own
-    // octant is the nearest, and gets the highest bit.
+    // The bits of a child's slot number say which side of the node it lies on, x in the highest bit. The slot of the
+    // ray's own octant is the nearest and gets the highest bit.
     let forward = select(vec3u(4u, 2u, 1u), vec3u(0u), backward);
     let octant = forward.x | forward.y | forward.z;
-    // Nodes to be visited of one parent: the first child, and hits with the parent's mask of nodes below. At first
-    // the root, as an only child.
+    // The children of one parent that are still to be visited: the first child, and the hits with the parent's mask of
+    // nodes below. The traversal starts with the root as an only child.
     var group = vec2u(0u, 1u << 31u);
     var stack: array<vec2u, CWBVH_STACK_SIZE>;
     var depth = 0u;
     ray_is_cut = true;
-    // Ends by its `break`: no node is visited twice.
+    // Ends at the latest after `node_count` turns, usually by its `break`: no node is visited twice.
     for (var visits = 0u; visits < job.node_count; visits++) {
         turns += 1u;
         let bit = firstLeadingBit(group.y);
@@ -68,7 +68,7 @@ fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
             depth++;
         }
 
-        // The node's children.
+        // Tests the node's children.
         let unit = bitcast<vec3f>(bytes_of(node.units).xyz << vec3u(23u));
         let grid = Grid(
             unit * slabs.inverse,
@@ -82,9 +82,9 @@ fn traverse_cwbvh(ray: Ray, found: Nearest) -> Nearest {
         let hits = four_hits(grid, x.xz, y.xz, z.xz, node.marks.x, octant, limit)
             | four_hits(grid, x.yw, y.yw, z.yw, node.marks.y, octant, limit);
 
-        // Its spheres.
+        // Tests the node's spheres.
         var left = hits & ~NODE_HITS;
-        // Ends: each turn clears one of 24 bits.
+        // Terminates, because each turn clears one of 24 bits.
         for (; left != 0u; left &= left - 1u) {
             turns += 1u;
             let number = node.first_sphere + firstTrailingBit(left);
