@@ -48,7 +48,7 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
     }
     ray_is_cut = true;
     var is_leaf_cut = false;
-    // Ends at the latest after `node_count` turns, usually by its `break`: no node is visited twice.
+    // The `break` ends this loop before its limit, because no node is visited twice.
     for (var visits = 0u; visits < job.node_count; visits++) {
         turns += 1u;
         let count = node.count & COUNT_MASK;
