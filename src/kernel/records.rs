@@ -206,7 +206,7 @@ record! {
         pub extent: f32,
         /// Growth of the sky radiance with the direction's y, in units of the film.
         pub sky_slope: [f32; 3],
-        /// Most rays of a path.
+        /// Most rays per path.
         pub max_depth: u32,
         /// Seed of the sampler.
         pub seed: u32,

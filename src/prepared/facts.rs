@@ -205,7 +205,7 @@ struct Occupied {
 
 impl Occupied {
     fn by(cells: &[(u64, u32)]) -> Self {
-        // Sixteen bits per sphere: one in sixteen empty cells is searched in vain.
+        // Sixteen bits per sphere: the filter lets one in sixteen empty cells through to a search.
         let mut occupied = Occupied { bits: vec![0; (cells.len() / 4).next_power_of_two()] };
         for (mark, _) in cells {
             let (word, bit) = occupied.place(*mark);

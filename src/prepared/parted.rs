@@ -34,7 +34,7 @@ struct Open {
     depth: usize,
 }
 
-/// Whether so many spheres lie inside each other that clustering them would take long.
+/// Whether enough spheres are nested in each other that clustering them would take long.
 pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
     if spheres.len() < FEW_SPHERES {
         return false;

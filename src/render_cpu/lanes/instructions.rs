@@ -56,17 +56,17 @@ pub trait Instructions: Simd {
         x.round_ties_even().to_int()
     }
 
-    /// `u32::MAX` where `m`, else 0.
+    /// `u32::MAX` where `m` is true, else 0.
     #[inline(always)]
     fn ones_4(self, m: mask32x4<Self>) -> u32x4<Self> {
         m.select(u32x4::splat(self, u32::MAX), u32x4::splat(self, 0))
     }
-    /// `u32::MAX` where `m`, else 0.
+    /// `u32::MAX` where `m` is true, else 0.
     #[inline(always)]
     fn ones_8(self, m: mask32x8<Self>) -> u32x8<Self> {
         m.select(u32x8::splat(self, u32::MAX), u32x8::splat(self, 0))
     }
-    /// `u32::MAX` where `m`, else 0.
+    /// `u32::MAX` where `m` is true, else 0.
     #[inline(always)]
     fn ones_16(self, m: mask32x16<Self>) -> u32x16<Self> {
         m.select(u32x16::splat(self, u32::MAX), u32x16::splat(self, 0))

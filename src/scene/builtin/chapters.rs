@@ -91,8 +91,8 @@ pub fn touching_spheres() -> Scene {
     scene
 }
 
-/// A camera that looks at the three spheres from above and from their left, with a vertical field of view of `vfov_degrees`.
-/// (Section 12.2.)
+/// A camera that looks at the three spheres from above and from their left. `vfov_degrees` is the vertical
+/// field of view. (Section 12.2.)
 pub fn view_from_the_side(vfov_degrees: f64) -> Camera {
     Camera { look_from: DVec3::new(-2.0, 2.0, 1.0), vfov_degrees, ..Camera::BOOK }
 }
