@@ -3,13 +3,17 @@
 //! **A sample is a pure function** of (job, pixel, sample index). It does not depend on the backend, the packet width,
 //! the thread, neighbouring pixels or earlier samples. Everything else relies on this.
 
+mod settings;
+
+pub use settings::{NamedSetting, RenderSettings, SamplerKind, SettingValue};
+
 pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
 
 use crate::film::Film;
 use crate::memory::{self, MemoryError};
 use crate::scene::{Camera, Scene, SceneError};
 use crate::stages::Rules;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::any::Any;
 use std::ops::Range;
 use std::sync::Arc;
@@ -19,68 +23,6 @@ use thiserror::Error;
 
 /// Largest number of rays per path.
 pub const DEPTH_LIMIT: u32 = 10_000;
-
-/// The sampler, which generates the numbers of a sample.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
-#[serde(rename_all = "lowercase")]
-pub enum SamplerKind {
-    /// Independent random numbers, as in the book.
-    Independent,
-    /// Scrambled Sobol points, which need fewer samples for the same quality.
-    #[default]
-    Sobol,
-}
-
-impl SamplerKind {
-    /// All samplers.
-    pub const ALL: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
-
-    /// The sampler's name on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            SamplerKind::Independent => "independent",
-            SamplerKind::Sobol => "sobol",
-        }
-    }
-}
-
-/// The numbers of a job other than those of scene and camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RenderSettings {
-    /// Picture width in pixels, `1..=16384`.
-    pub width: u32,
-    /// Picture height in pixels, `1..=16384`.
-    pub height: u32,
-    /// Most rays per path, including the camera ray, `1..=10000`. A path that is cut off contributes nothing.
-    pub max_depth: u32,
-    /// The sampler.
-    pub sampler: SamplerKind,
-    /// Seed of the sampler: it changes only the noise.
-    pub seed: u32,
-    /// Whether samples are divided between two halves with separate scramblings, so that the error can be estimated.
-    pub estimate_error: bool,
-}
-
-impl Default for RenderSettings {
-    /// The settings for a scene file that specifies none.
-    fn default() -> Self {
-        RenderSettings {
-            width: 800,
-            height: 450,
-            max_depth: 50,
-            sampler: SamplerKind::Sobol,
-            seed: 0,
-            estimate_error: true,
-        }
-    }
-}
-
-impl RenderSettings {
-    /// Number of halves of the film: 2 if the error is estimated, else 1.
-    pub fn half_count(&self) -> usize {
-        if self.estimate_error { 2 } else { 1 }
-    }
-}
 
 /// Memory per pixel besides its sums while the picture is written.
 const OUTPUT_BYTES_PER_PIXEL: u64 = 4;
