@@ -8,8 +8,8 @@ use crate::scene::{Camera, Material, Sphere};
 use crate::stages::Surface;
 use glam::DVec3;
 
-/// A sphere is anchored when rounding at its radius exceeds this share of the smallest length near its surface. At that
-/// point the distances of the perpendicular form have an error of about `1e-4` of that length.
+/// A sphere is anchored when rounding at its radius exceeds this share of the smallest length near its surface. At this
+/// limit the distances of the perpendicular form have an error of about `1e-4` of that length.
 const ANCHOR_SHARE: f64 = 5e-5;
 
 /// Where one of two touching spheres is glass, the smaller counts as this many times smaller than it is. A ray that
@@ -28,7 +28,7 @@ const ANCHORED_LIMIT: usize = 16;
 const CANDIDATE_LIMIT: usize = 64;
 
 /// Coordinates are relative to a point near the eye if the eye's distance from the world's origin exceeds the smallest
-/// length near the eye by this factor. Beyond it, rounding would reach `8e-6` of that length.
+/// length near the eye by this factor. At that ratio, rounding reaches `8e-6` of that length.
 const SHIFT_RATIO: f64 = 128.0;
 
 /// Spacing of the grid for that point, as a multiple of the length. On a grid, the point stays fixed for small

@@ -25,7 +25,7 @@ const QUEUE_DEPTH: usize = 2;
 /// Most workgroups along one axis of a dispatch; WebGPU allows 65,535.
 const GROUPS_ACROSS: u32 = 32_768;
 
-/// Most threads in a dispatch that can put their paths aside, at 64 bytes each.
+/// Most threads in a dispatch; each can put its path aside, in [`ASIDE_SIZE`] bytes.
 const THREAD_LIMIT: u64 = 1 << 20;
 
 /// Bytes in which a thread puts its path aside.
@@ -121,7 +121,7 @@ pub(super) struct Dispatches {
 
 impl Dispatches {
     /// # Errors
-    /// If the device has not enough memory.
+    /// If the device runs out of memory.
     pub(super) fn new(gpu: &Gpu, target: Duration, turn_limit: Option<u32>) -> Result<Self, String> {
         Ok(Dispatches {
             slots: (0..QUEUE_DEPTH).map(|_| Slot::new(gpu, ASIDE_SIZE)).collect::<Result<_, _>>()?,
@@ -174,7 +174,7 @@ impl Dispatches {
     /// Allocates storage for the paths of a picture with `threads` threads, up to the limit of a dispatch.
     ///
     /// # Errors
-    /// If the device has not enough memory.
+    /// If the device runs out of memory.
     pub(super) fn make_room(&mut self, gpu: &Gpu, threads: u64, binding_limit: u64) -> Result<(), String> {
         let size = threads.min(THREAD_LIMIT).min(binding_limit / ASIDE_SIZE) * ASIDE_SIZE;
         for slot in &mut self.slots {

@@ -74,7 +74,7 @@ impl FilmBuffers {
     /// Allocates empty buffers for films with these settings, each at most `limit` bytes.
     ///
     /// # Errors
-    /// If not even one row of tiles fits, or the device has not enough memory.
+    /// If not even one row of tiles fits, or the device runs out of memory.
     pub fn new(gpu: &Gpu, settings: &RenderSettings, limit: u64) -> Result<Self, String> {
         let RenderSettings { width, height, .. } = *settings;
         let row_size = u64::from(width) * settings.half_count() as u64 * PIXEL_SIZE;

@@ -102,7 +102,7 @@ impl Receipt {
     /// Creates a receipt for this device.
     ///
     /// # Errors
-    /// If the device has not enough memory.
+    /// If the device runs out of memory.
     pub fn new(gpu: &Gpu) -> Result<Receipt, String> {
         let read = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         let staging = gpu.buffer("receipt", TIMES_SIZE + COUNTERS_SIZE, read)?;
