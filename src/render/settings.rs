@@ -1,24 +1,24 @@
-//! The settings of a render, and their names for whatever writes or compares them.
+//! Render settings, and their names in flags and scene files.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Where the numbers of a sample come from.
+/// The sampler, which generates the numbers of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
 #[serde(rename_all = "lowercase")]
 pub enum SamplerKind {
-    /// Independent numbers, as in the book.
+    /// Independent random numbers, as in the book.
     Independent,
-    /// Scrambled Sobol points: the same picture with fewer samples.
+    /// Scrambled Sobol points, which need fewer samples for the same quality.
     #[default]
     Sobol,
 }
 
 impl SamplerKind {
-    /// All of them.
+    /// All samplers, the default first.
     pub const ALL: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
 
-    /// The name used on the command line and in files.
+    /// The sampler's name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {
             SamplerKind::Independent => "independent",
@@ -27,25 +27,25 @@ impl SamplerKind {
     }
 }
 
-/// Numbers of a job that are neither scene nor camera.
+/// The numbers of a job other than those of scene and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RenderSettings {
-    /// Pixels across, `1..=16384`.
+    /// Picture width in pixels, `1..=16384`.
     pub width: u32,
-    /// Pixels down, `1..=16384`.
+    /// Picture height in pixels, `1..=16384`.
     pub height: u32,
-    /// Most rays of a path, the camera's included, `1..=10000`. A path that is cut off brings nothing.
+    /// Most rays per path, including the camera ray, `1..=10000`. A path that is cut off contributes nothing.
     pub max_depth: u32,
-    /// Where the numbers come from.
+    /// The sampler.
     pub sampler: SamplerKind,
-    /// Chooses among pictures that differ in their noise alone.
+    /// Seed of the sampler: it changes only the noise.
     pub seed: u32,
-    /// Whether samples go to two halves with scramblings of their own, so that the error can be estimated.
+    /// Whether samples are divided between two halves with separate scramblings, so that the error can be estimated.
     pub estimate_error: bool,
 }
 
 impl Default for RenderSettings {
-    /// What a scene file that does not say gets.
+    /// The settings for a scene file that specifies none.
     fn default() -> Self {
         RenderSettings {
             width: 800,
@@ -59,32 +59,32 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
-    /// Halves of the film: 2 if the error is estimated, else 1.
+    /// Number of halves of the film: 2 if the error is estimated, else 1.
     pub fn half_count(&self) -> usize {
         if self.estimate_error { 2 } else { 1 }
     }
 }
 
-/// A setting that flags and scene files name. Width and height are written together and are not among them.
+/// A setting with a name in flags and scene files. Width and height are excluded, because they are written together.
 pub struct NamedSetting {
-    /// Its flag, without dashes.
+    /// The name of its flag, without dashes.
     pub flag: &'static str,
-    /// Its key in scene files.
+    /// The key in scene files.
     pub key: &'static str,
-    /// What a scene file says next to it; may be empty.
+    /// The comment after it in scene files; may be empty.
     pub comment: &'static str,
-    /// Its value.
+    /// Reads the value from the settings.
     pub value: fn(&RenderSettings) -> SettingValue,
 }
 
-/// The value of a setting. Displayed as a flag takes it.
+/// The value of a setting. Its `Display` form is what the flag accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SettingValue {
     /// A whole number.
     Number(u32),
-    /// One of several names.
+    /// One of a fixed set of names.
     Name(&'static str),
-    /// On or off.
+    /// A switch: on or off.
     Switch(bool),
 }
 
@@ -99,7 +99,7 @@ impl fmt::Display for SettingValue {
 }
 
 impl RenderSettings {
-    /// All settings but the size.
+    /// All settings except the picture size.
     pub const NAMED: &[NamedSetting] = &[
         NamedSetting {
             flag: "depth",
@@ -132,7 +132,7 @@ impl RenderSettings {
 mod tests {
     use super::*;
 
-    /// Two settings that differ in everything must differ in every named value: else one is missing from the list.
+    /// Two settings that differ in every field must differ in every named value; otherwise the list lacks a setting.
     #[test]
     fn all_settings_but_the_size_are_named() {
         let settings = RenderSettings::default();
