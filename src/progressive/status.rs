@@ -12,7 +12,7 @@ pub enum Phase {
     /// Nothing has been asked for, or it was abandoned.
     #[default]
     Idle,
-    /// PreparedScene, hierarchy and kernels are being built.
+    /// The prepared scene, its hierarchy and kernels are being built.
     Preparing,
     /// Samples are being added.
     Tracing,

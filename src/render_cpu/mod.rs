@@ -30,7 +30,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tiles::{Tile, tile_side, tiles};
-use work::{DealtBlock, TileStats, Work, dealing_order};
+use work::{RefillBlock, TileStats, Work, refill_order};
 
 /// The nice value added to low-priority threads. Under contention each step costs about a tenth of the time.
 #[cfg(target_os = "linux")]
@@ -323,8 +323,8 @@ impl CpuRenderer {
         film: &mut Film,
     ) -> Vec<TracedTile> {
         let settings = &prepared.prepared.settings;
-        let blocks = DealtBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
-        let order = dealing_order(pass.side);
+        let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
+        let order = refill_order(pass.side);
         let tiles = tiles(film.halves_mut(), settings.width, pass.side);
         let trace_tile = |(index, tile): (usize, Tile)| {
             let mut work = Work::new(&blocks, &order, tile.corner, tile.height, tile.rows);

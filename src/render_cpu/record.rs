@@ -6,7 +6,7 @@ use super::broadcast::BroadcastScene;
 use super::lanes::{Lanes, Scalar, V3, Wide};
 use super::path::SinglePath;
 use super::sphere::NONE;
-use super::work::{DealtBlock, Work};
+use super::work::{RefillBlock, Work};
 use crate::film::PixelSum;
 use crate::kernel::Real;
 use crate::prepared::PreparedScene;
@@ -79,7 +79,7 @@ pub(super) fn record<L: Lanes>(
     index: u64,
 ) -> PathRecord {
     let prepared = &broadcast.prepared;
-    let blocks = DealtBlock::of_range(index..index + 1, &prepared.settings, 1);
+    let blocks = RefillBlock::of_range(index..index + 1, &prepared.settings, 1);
     let mut sums = vec![PixelSum::default(); prepared.settings.half_count()];
     let rows = sums.iter_mut().map(std::slice::from_mut).collect();
     let mut work = Work::new(&blocks, &[0], pixel, 1, rows);

@@ -32,7 +32,7 @@ impl TileStats {
 
 /// A block of samples as lanes count through it.
 #[derive(Clone, Copy, Debug)]
-pub struct DealtBlock {
+pub struct RefillBlock {
     half: u32,
     /// The part of the sampler's keys that depends on the half.
     half_key: HalfKey,
@@ -42,14 +42,14 @@ pub struct DealtBlock {
     end: u32,
 }
 
-impl DealtBlock {
+impl RefillBlock {
     /// Splits the sample range `range` into blocks.
-    pub fn of_range(range: std::ops::Range<u64>, settings: &RenderSettings, limit: u32) -> Vec<DealtBlock> {
+    pub fn of_range(range: std::ops::Range<u64>, settings: &RenderSettings, limit: u32) -> Vec<RefillBlock> {
         SampleBlock::split(range, settings.half_count() as u32, limit)
             .into_iter()
             .map(|block| {
                 let (counter, step) = block.counter(settings);
-                DealtBlock {
+                RefillBlock {
                     half: block.half,
                     half_key: HalfKey::new(settings, block.half),
                     counter,
@@ -94,7 +94,7 @@ impl Default for LaneBlocks {
 
 /// The pixels of a square tile with `side` pixels (at most 256) in refill order, as `y << 8 | x`. They are ordered in
 /// squares of four by four, so that a packet's first rays are close together.
-pub fn dealing_order(side: u32) -> Vec<u16> {
+pub fn refill_order(side: u32) -> Vec<u16> {
     const SQUARE: u32 = 4;
     let starts = || (0..side).step_by(SQUARE as usize);
     let within = |start: u32| start..(start + SQUARE).min(side);
@@ -111,8 +111,8 @@ pub fn dealing_order(side: u32) -> Vec<u16> {
 
 /// A tile's pixels, blocks and sums.
 pub struct Work<'film> {
-    blocks: &'film [DealtBlock],
-    /// Pixels in [`dealing_order`]; those outside the tile are skipped.
+    blocks: &'film [RefillBlock],
+    /// Pixels in [`refill_order`]; those outside the tile are skipped.
     order: &'film [u16],
     /// Position of the tile's upper left pixel in the picture.
     corner: [u32; 2],
@@ -129,7 +129,7 @@ pub struct Work<'film> {
 impl<'film> Work<'film> {
     /// Creates the work for a tile with `height` rows in each half.
     pub fn new(
-        blocks: &'film [DealtBlock],
+        blocks: &'film [RefillBlock],
         order: &'film [u16],
         corner: [u32; 2],
         height: u32,
@@ -174,7 +174,7 @@ impl<'film> Work<'film> {
 
     /// The next block, and its pixel's position in the tile.
     #[inline(always)]
-    fn next(&mut self) -> Option<(&'film DealtBlock, [u32; 2])> {
+    fn next(&mut self) -> Option<(&'film RefillBlock, [u32; 2])> {
         loop {
             let block = self.blocks.get(self.next_block)?;
             let Some(&place) = self.order.get(self.next_place) else {
@@ -242,7 +242,7 @@ mod tests {
     #[test]
     fn every_pixel_is_dealt_once() {
         for side in [1, 3, 8, 64, 256] {
-            let mut order = dealing_order(side);
+            let mut order = refill_order(side);
             order.sort_unstable();
             let expected: Vec<u16> =
                 (0..side).flat_map(|y| (0..side).map(move |x| (y << 8 | x) as u16)).collect();
