@@ -1,8 +1,9 @@
-// Paths that are put aside when a thread has made the turns that it may, and taken up by the next dispatch of the
-// same tiles: so a thread's work may be long, though no dispatch is.
+// A thread that has used up its loop turns puts its path aside. The next dispatch of the same tiles takes it up again.
+// Each dispatch is therefore short, however long a thread's work is.
 //
-// ASIDE_STRIDE words a thread: origin and sphere left | direction and sphere inside | throughput, and bounce, samples
-// left and whether it is absorbed in one word, 0 where nothing was put aside | next block and sums | sine2.
+// Layout: ASIDE_STRIDE words per thread: origin and the sphere left | direction and the sphere inside | throughput, and
+// one word with bounce, samples left and whether the path is absorbed (0 if nothing was put aside) | next block and
+// sums | sine2.
 //
 // Twin: src/render_gpu/dispatches.rs
 
@@ -14,7 +15,7 @@ fn put_aside(path: Path, next_block: u32, base: u32) {
     record_vector(base + 4u, path.ray.direction);
     words[base + 7u] = path.ray.inside;
     record_vector(base + 8u, path.throughput);
-    // A path has at most 10,000 rays and a block at most 128 samples.
+    // A path has at most 10,000 rays, and a block at most 128 samples.
     words[base + 11u] = path.bounce | (path.remaining << 16u) | select(0u, ABSORBED_BIT, path.absorbed);
     words[base + 12u] = next_block;
     words[base + 13u] = path.sums.x;
@@ -23,7 +24,7 @@ fn put_aside(path: Path, next_block: u32, base: u32) {
     words[base + 16u] = bitcast<u32>(path.sine2);
 }
 
-// Returns the next block. Where nothing was put aside, no samples are left.
+// Returns the next block. If nothing was put aside, no samples are left.
 fn take_up(path: ptr<function, Path>, base: u32) -> u32 {
     let state = words[base + 11u];
     let remaining = (state & ~ABSORBED_BIT) >> 16u;

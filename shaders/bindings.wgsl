@@ -1,5 +1,5 @@
-// What shaders read and write: the only file that names groups and bindings. Their structs, like all constants, tags
-// and overrides, are declared in src/kernel.
+// The inputs and outputs of the shaders. Only this file names groups and bindings. The structs and all constants, tags
+// and overrides are declared in src/kernel.
 
 @group(0) @binding(0) var<uniform> job: Job;
 @group(0) @binding(1) var<storage, read> spheres: array<vec4f>;
@@ -43,12 +43,12 @@ fn cwbvh_node_at(number: u32) -> CwbvhNode {
     );
 }
 
-// A sphere's place in the list that the leaves' order is not: it stands behind the nodes.
+// A sphere's place in the list, which differs from its place in the leaves. The places are stored after the nodes.
 fn rank_of(number: u32) -> u32 {
     return nodes[select(2u, 5u, CWBVH) * job.node_count + number / 4u][number % 4u];
 }
 
-// Adds to a pixel of the film; no other thread has it.
+// Adds sums to a pixel of the film. No other thread writes to this pixel.
 fn add_to_film(half: u32, pixel: u32, sums: vec3u) {
     let index = half * job.width * order.row_count + pixel;
     let sum = film[index];

@@ -1,15 +1,15 @@
-// Traversal of the hierarchy by one ray.
+// Traversal of the hierarchy by a single ray.
 //
 // Twin: src/render_cpu/bvh.rs
 
-// A ray prepared for boxes: 1/d, and the origin moved outwards by the rounding there can be.
+// A ray prepared for box tests: 1/d, and the origin moved outwards by the largest possible rounding error.
 struct Slabs {
     inverse: vec3f,
     low: vec3f,
     high: vec3f,
 }
 
-// `margin_share` is the rounding relative to the largest coordinate.
+// `margin_share` is the rounding error relative to the largest coordinate.
 fn slabs_of(ray: Ray, extent: f32, margin_share: f32) -> Slabs {
     let o = abs(ray.origin);
     let margin = max(max(o.x, o.y), max(o.z, extent)) * margin_share;
@@ -18,13 +18,13 @@ fn slabs_of(ray: Ray, extent: f32, margin_share: f32) -> Slabs {
     return Slabs(inverse, (ray.origin + margin) * inverse, (ray.origin - margin) * inverse);
 }
 
-// 1/d, finite also where d is 0.
+// 1/d, finite even where d is 0.
 fn inverse_of(d: f32) -> f32 {
     return copysign(1.0 / max(abs(d), LEAST_COMPONENT), d);
 }
 
-// The bits of the distance at which the ray enters the box; those of a negative number if it does not meet it
-// before distance `limit`.
+// Returns the bits of the distance at which the ray enters the box, or MISS_KEY if it does not hit the box before
+// distance `limit`.
 fn box_key(slabs: Slabs, low: vec3f, high: vec3f, limit: f32) -> u32 {
     let a = fma(low, slabs.inverse, -slabs.low);
     let b = fma(high, slabs.inverse, -slabs.high);
@@ -32,11 +32,11 @@ fn box_key(slabs: Slabs, low: vec3f, high: vec3f, limit: f32) -> u32 {
     let far = max(a, b);
     let enter = max(max(near.x, near.y), max(near.z, 0.0));
     let leave = min(min(far.x, far.y), min(far.z, limit));
-    // The factor is for the rounding of the distances themselves.
+    // The factor covers the rounding of the distances themselves.
     return select(MISS_KEY, bitcast<u32>(enter), leave * BOX_WIDENING >= enter);
 }
 
-// Takes the nearest hit among the spheres of the hierarchy.
+// Finds the nearest hit among the spheres of the hierarchy.
 fn traverse(ray: Ray, found: Nearest) -> Nearest {
     var nearest = found;
     let slabs = slabs_of(ray, job.extent, BOX_MARGIN);
@@ -48,14 +48,14 @@ fn traverse(ray: Ray, found: Nearest) -> Nearest {
     }
     ray_is_cut = true;
     var is_leaf_cut = false;
-    // Ends by its `break`: no node is visited twice.
+    // The `break` ends this loop before its limit, because no node is visited twice.
     for (var visits = 0u; visits < job.node_count; visits++) {
         turns += 1u;
         let count = node.count & COUNT_MASK;
         var next = NONE;
         if count > 0u {
             var i = 0u;
-            // Ends: a leaf has at most COUNT_MASK spheres.
+            // Terminates, because a leaf has at most COUNT_MASK spheres.
             for (; i < count; i++) {
                 let number = node.first + i;
                 nearest = take_in_any_order(nearest, signed_root(ray, sphere_at(number), number), number);

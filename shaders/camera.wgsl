@@ -2,13 +2,13 @@
 //
 // Twin: src/render_cpu/camera.rs
 
-// Where a ray starts and where it goes; the direction's length is not 1.
+// Where a ray starts and its direction, which is not normalised.
 struct CameraRay {
     origin: vec3f,
     direction: vec3f,
 }
 
-// A pixel coordinate on the plane at distance 1, left and upper edge.
+// Position of a pixel's left or upper edge on the plane at distance 1.
 fn screen(camera: Camera, position: vec2f) -> vec2f {
     return fma(position, vec2f(camera.scale_x, camera.scale_y), camera.offset);
 }
@@ -19,7 +19,7 @@ fn pinhole_ray(camera: Camera, corner: vec2f, jitter: vec2f) -> CameraRay {
     return CameraRay(camera.eye, through(camera, s));
 }
 
-// The same from the point `on_lens` of the unit disk.
+// Like `pinhole_ray`, but from the point `on_lens` of the unit disk.
 fn lens_ray(camera: Camera, corner: vec2f, jitter: vec2f, on_lens: vec2f) -> CameraRay {
     let s = fma(jitter, vec2f(camera.scale_x, camera.scale_y), corner);
     let direction = through(camera, fma(vec2f(-camera.tau), on_lens, s));

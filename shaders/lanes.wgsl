@@ -1,9 +1,9 @@
-// Arithmetic on single numbers and vectors. WGSL allows a compiler to assume that no NaN and no infinity
-// occurs, so nothing here or elsewhere relies on either: comparisons stand before the operation.
+// Arithmetic on numbers and vectors. A WGSL compiler may assume that NaN and infinity never occur, so no shader relies
+// on them: comparisons come before the operation.
 //
 // Twin: src/render_cpu/lanes
 
-// The size of one with the sign of another.
+// The magnitude of `size` with the sign of `signed`.
 fn copysign(size: f32, signed: f32) -> f32 {
     return bitcast<f32>((bitcast<u32>(size) & 0x7FFFFFFFu) | (bitcast<u32>(signed) & 0x80000000u));
 }
@@ -26,7 +26,7 @@ fn normalized(v: vec3f) -> vec3f {
     return v * inverseSqrt(dot3(v, v));
 }
 
-// A float in [0, 1) from the upper 24 bits.
+// Converts the upper 24 bits to a float in [0, 1).
 fn unit_float(u: u32) -> f32 {
     return f32(u >> 8u) * UNIT_FLOAT_SCALE;
 }
@@ -43,7 +43,7 @@ fn sin_cos_turns(u: f32) -> vec2f {
     return vec2f(-copysign(sine_of_quarter(0.25 - abs(q)), x), sine_of_quarter(q));
 }
 
-// A radiance in units of the film to the nearest integer, ties to even.
+// Rounds a radiance in units of the film to the nearest integer, ties to even.
 fn fixed_point(x: f32) -> u32 {
     return u32(round(min(x, FIXED_POINT_MAX)));
 }

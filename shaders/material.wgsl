@@ -1,51 +1,51 @@
-// What a surface does with a ray: it goes on along `along d + across n + weight u`. (Book 1, sections 9 to 11.)
+// How a surface scatters a ray, into the direction `along d + across n + weight u`. (Book 1, sections 9 to 11.)
 //
 // Twin: src/render_cpu/material.rs
 
 struct Surface {
-    // Length of the unit vector's part; with a minus sign (also on 0) the direction is a reflection.
+    // Length of the unit vector's part; a negative sign (also on 0) marks a reflection.
     weight: f32,
     // Refraction index; 0 if not glass.
     refraction_index: f32,
     // 1 / refraction index; 0 if not glass.
     inverse_index: f32,
-    // Schlick's share at normal incidence.
+    // Schlick's reflectance at normal incidence.
     f0: f32,
 }
 
-// The material of a shading record.
+// Extracts the material of a shading record.
 fn surface_of(record: ShadingRecord) -> Surface {
     return Surface(record.weight, record.refraction_index, record.inverse_index, record.f0);
 }
 
-// Where light goes on; the direction's length is not 1.
+// The result of scattering; the direction is not normalised.
 struct Scatter {
     direction: vec3f,
     refracts: bool,
     is_metal: bool,
-    // Sine in the refracted direction over that of incidence, where it refracts.
+    // Sine of the refracted angle over sine of the incident angle, where the ray refracts.
     ratio: f32,
 }
 
-// How a ray meets a surface: the cosine with the normal, in [0, 1], and the squared sine.
+// The angle at which a ray meets a surface: its cosine to the normal, in [0, 1], and its squared sine.
 struct Incidence {
     cosine: f32,
     sine2: f32,
 }
 
-// From the cosine of direction and outward normal, which rounding can make larger than 1.
+// Computes the incidence from the cosine between direction and outward normal, which rounding can push above 1.
 fn incidence_of(outward_cosine: f32) -> Incidence {
     let cosine = min(1.0, abs(outward_cosine));
     return Incidence(cosine, fma(-cosine, cosine, 1.0));
 }
 
-// From the squared sine, which rounding can make larger than 1.
+// Computes the incidence from the squared sine, which rounding can push above 1.
 fn incidence_of_sine2(squared_sine: f32) -> Incidence {
     let sine2 = min(1.0, squared_sine);
     return Incidence(sqrt(1.0 - sine2), sine2);
 }
 
-// Scatters at any surface. `front` says that the ray comes from outside; `coin` is uniform in [0, 1).
+// Scatters at any surface. `front` is true if the ray comes from outside; `coin` is uniform in [0, 1).
 fn scatter(
     surface: Surface,
     direction: vec3f,
@@ -69,7 +69,7 @@ fn scatter(
     if GLASS {
         let is_glass = surface.refraction_index > 0.0;
         ratio = select(surface.refraction_index, surface.inverse_index, front);
-        // Squared sine of the refracted ray's angle: above 1 Snell's law has no solution.
+        // Squared sine of the refraction angle: above 1, Snell's law has no solution.
         let refracted_sine2 = ratio * ratio * incidence.sine2;
         refracts = is_glass;
         if DIELECTRIC_LAWS != LAWS_REFRACT_ONLY {
@@ -93,14 +93,14 @@ fn scatter(
     return Scatter(sent, refracts, is_metal, ratio);
 }
 
-// The refracted direction from the part of the incoming one `across` the normal, which loses nothing where the other
-// form takes a difference of large numbers. Not of length 1.
+// The refracted direction, not normalised, from the part of the incoming direction `across` the normal. This form keeps
+// its precision where the usual form subtracts large numbers.
 fn refracted(across: vec3f, normal: vec3f, ratio: f32, sine2: f32) -> vec3f {
     let inner_cosine = sqrt(abs(1.0 - ratio * ratio * sine2));
     return neg_mul_add3(normal, inner_cosine, across * ratio);
 }
 
-// Schlick's approximation of the reflected share. (Section 11.4.)
+// Schlick's approximation of the reflectance. (Section 11.4.)
 fn reflectance(cosine: f32, f0: f32) -> f32 {
     let x = 1.0 - cosine;
     let x2 = x * x;

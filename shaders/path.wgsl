@@ -1,32 +1,33 @@
-// The path loop: a thread owns a pixel and walks through blocks of its samples. When a path ends the thread
-// starts its next sample at once, so that none waits for the longest path beside it.
+// The path loop. Each thread traces one pixel through blocks of its samples. When a path ends, the thread starts the
+// next sample immediately, so no thread waits for the longest path beside it.
 //
 // Twin: src/render_cpu/path
 
-// What lives on from one ray to the next is put aside, too: see aside.wgsl.
+// State that persists from ray to ray must also be put aside: see aside.wgsl.
 struct Path {
     ray: Ray,
     throughput: vec3f,
-    // Squared sine between a ray inside steep glass and the normal where it starts, and so where it ends.
+    // Squared sine of the angle between a ray inside steep glass and the normal where it starts; it is the same where
+    // the ray ends.
     sine2: f32,
     bounce: u32,
     counter: u32,
     step: u32,
-    // Samples left of the block, the current one included.
+    // Samples left in the block, including the current one.
     remaining: u32,
-    // The Sobol sampler's.
+    // Key of the Sobol sampler.
     key: u32,
     // x | y << 16
     pixel: u32,
     corner: vec2f,
     sums: vec3u,
     half: u32,
-    // The path was absorbed, or there was none yet: it ends without another ray.
+    // Whether the path was absorbed, or none has started yet: it ends without another ray.
     absorbed: bool,
     rejected: u32,
 }
 
-// What a thread did.
+// What a thread has traced.
 struct Traced {
     rays: u32,
     rejected: u32,
@@ -41,11 +42,11 @@ struct Traced {
 // Turns of all loops of this thread so far.
 var<private> turns: u32;
 
-// Whether the ray at hand left its traversal before the end: some drivers end loops that have many turns.
+// Whether the current ray's traversal ended early: some drivers end loops that have many turns.
 var<private> ray_is_cut: bool;
 
-// Traces the blocks of the dispatch at a pixel, which is number `slot` of the film buffer, or goes on with them. After
-// so many turns of loops as the dispatch allows, the path is put aside in the words from `aside` on.
+// Traces the blocks of the dispatch at a pixel, which has number `slot` in the film buffer, or continues them. After
+// the number of loop turns that the dispatch allows, the path is put aside in the words from `aside` on.
 fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
     var path: Path;
     path.pixel = position.x | (position.y << 16u);
@@ -62,8 +63,8 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
     var is_done = path.remaining == 0u;
     turns = 0u;
     ray_is_cut = false;
-    // Ends, since each turn makes `turns` larger: after `turn_limit` turns at the latest, those of the loops within
-    // included but for the last ray's.
+    // Terminates, because each turn increases `turns`: it ends after at most `turn_limit` turns, which include the
+    // turns of inner loops except those of the last ray.
     while !is_done && turns < order.turn_limit {
         turns += 1u;
         var nearest = nothing();
@@ -97,7 +98,7 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
         }
         send_on(&path, ended, nearest.sphere, record, point);
     }
-    // Counted here, since some drivers go through a branch whether it is taken or not.
+    // The count is computed outside the branch, because some drivers execute a branch whether or not it is taken.
     let end_block = select(max(next_block, 1u) - 1u, next_block, is_done);
     for (var i = first_block; i < end_block; i++) {
         traced.finished += blocks[i].count;
@@ -113,7 +114,7 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
     return traced;
 }
 
-// Turns of one ray's loops over lists: see `intersect`. Those over a hierarchy count themselves.
+// Turns of one ray's loops over lists: see `intersect`. Loops over a hierarchy count their own turns.
 fn turns_over_lists() -> u32 {
     let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
     if HIERARCHY && SURFACE == SURFACE_EXACT {
@@ -124,10 +125,10 @@ fn turns_over_lists() -> u32 {
     return opaque_count + two_root_count + anchored_count;
 }
 
-// What a ray meets first.
+// Finds the nearest hit of a ray.
 fn intersect(ray: Ray) -> Nearest {
     var nearest = nothing();
-    // Counts that are known when the kernel is built let its loops be unrolled.
+    // Counts that are known when the kernel is compiled let its loops be unrolled.
     let opaque_count = select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);
     let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
     let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
@@ -161,7 +162,7 @@ fn intersect(ray: Ray) -> Nearest {
     return nearest;
 }
 
-// The point that was hit.
+// The hit point.
 fn hit_point(ray: Ray, t: f32, record: ShadingRecord) -> SurfacePoint {
     var point: SurfacePoint;
     if SURFACE != SURFACE_EXACT {
@@ -176,13 +177,13 @@ fn hit_point(ray: Ray, t: f32, record: ShadingRecord) -> SurfacePoint {
     return point;
 }
 
-// Column and row from x | y << 16.
+// Splits x | y << 16 into column and row.
 fn pixel_position(pixel: u32) -> vec2f {
     return vec2f(f32(pixel & 0xFFFFu), f32(pixel >> 16u));
 }
 
-// Adds the light that arrives, ends the path, and goes to the next sample where it has ended, which is returned. Where
-// the ray goes on, `point` is set to the point that was hit.
+// Adds the arriving light, ends the path, and starts the next sample if the path has ended. Returns whether it has. If
+// the ray continues, sets `point` to the hit point.
 fn collect(
     path: ptr<function, Path>,
     nearest: Nearest,
@@ -214,15 +215,15 @@ fn collect(
     return ended;
 }
 
-// The sky's radiance in a direction of this height, in units of the film.
+// The sky's radiance in a direction with this y component, in units of the film.
 fn shade_miss(height: f32) -> vec3f {
     return max(vec3f(0.0), fma(job.sky_slope, vec3f(height), job.sky_middle));
 }
 
-// What a ray brings back where the stage shows something simpler than light: `light` where it misses.
+// A ray's contribution in stages that show something simpler than light; `light` if the ray misses.
 fn shade_hit(pixel: u32, miss: bool, outward: vec3f, light: vec3f) -> vec3f {
     if SHADING == SHADING_IMAGE_GRADIENT {
-        // A single column or row has no far end: it is 0 everywhere.
+        // A single column or row has no far end, so its value is 0.
         return vec3f(pixel_position(pixel) / max(job.camera.size - 1.0, vec2f(1.0)), 0.0) * FIXED_POINT_SCALE;
     }
     var shown = vec3f(FIXED_POINT_SCALE, 0.0, 0.0);
@@ -233,10 +234,10 @@ fn shade_hit(pixel: u32, miss: bool, outward: vec3f, light: vec3f) -> vec3f {
     return select(shown, light, miss);
 }
 
-// Adds a path's end to the sums, or counts it where it is not a number that can be added.
+// Adds the radiance of a finished path to the sums, or counts it as rejected if it is not a number that can be added.
 fn add_radiance(path: ptr<function, Path>, light: vec3f) {
     let radiance = light * (*path).throughput;
-    // As bits, since a compiler may take it that no NaN occurs: all that is wrong has larger bits.
+    // Compares bits, because a compiler may assume that NaN never occurs. All invalid values have larger bits.
     let total = bitcast<u32>(radiance.x + radiance.y + radiance.z);
     if total < RADIANCE_TOTAL_LIMIT_BITS || total == NEGATIVE_ZERO_BITS {
         (*path).sums += vec3u(fixed_point(radiance.x), fixed_point(radiance.y), fixed_point(radiance.z));
@@ -245,7 +246,7 @@ fn add_radiance(path: ptr<function, Path>, light: vec3f) {
     }
 }
 
-// Goes to sample `place` of a block.
+// Starts sample `place` of a block.
 fn enter_block(path: ptr<function, Path>, block: Block, place: u32) {
     (*path).half = block.half;
     (*path).counter = block.counter + place * block.step;
@@ -256,11 +257,11 @@ fn enter_block(path: ptr<function, Path>, block: Block, place: u32) {
 
 // The numbers for a path's next ray.
 struct Drawn {
-    // For a direction or a point on the lens.
+    // For a direction, or for a point on the lens.
     pair: vec2f,
-    // Sine and cosine of the second of the pair, in turns.
+    // Sine and cosine of the second number of the pair, in turns.
     sine_cosine: vec2f,
-    // For a point in the pixel.
+    // For the point in the pixel.
     jitter: vec2f,
 }
 
@@ -275,8 +276,8 @@ fn has_lens() -> bool {
     return LENS && job.camera.tau > 0.0;
 }
 
-// Sends the path on from a surface, or a new one from the camera where it has ended. Lanes go both ways side by
-// side, so what both need stands outside the branch: one set of numbers, one sine and cosine, one length.
+// Continues the path from a surface, or starts a new one at the camera if it has ended. Neighbouring threads take both
+// branches, so common work is outside the branch: one set of numbers, one sine and cosine, one normalisation.
 fn send_on(path: ptr<function, Path>, ended: bool, hit: u32, record: ShadingRecord, point: SurfacePoint) {
     let drawn = draw(*path);
     var sent: Ray;
@@ -292,7 +293,7 @@ fn send_on(path: ptr<function, Path>, ended: bool, hit: u32, record: ShadingReco
     (*path).ray = sent;
 }
 
-// The ray of a new path.
+// The camera ray of a new path.
 fn generate_camera_ray(corner: vec2f, drawn: Drawn) -> CameraRay {
     var jitter = drawn.jitter;
     if !ANTIALIASING {
@@ -305,7 +306,7 @@ fn generate_camera_ray(corner: vec2f, drawn: Drawn) -> CameraRay {
     return pinhole_ray(job.camera, corner, jitter);
 }
 
-// Scatters at what was hit. The direction's length is not 1.
+// Scatters at the hit. The direction is not normalised.
 fn scatter_path(
     path: ptr<function, Path>,
     drawn: Drawn,
@@ -346,15 +347,15 @@ fn scatter_path(
     if dot3(sent, sent) < NEAR_ZERO {
         sent = normal;
     }
-    // A fuzzy reflection into the surface is absorbed.
+    // Metal absorbs a fuzzy reflection that points into the surface.
     (*path).absorbed = METAL && bounced.is_metal && !(dot3(sent, normal) > 0.0);
     (*path).throughput *= albedo;
     let inward = front == bounced.refracts;
     return Ray(point.position, sent, select(hit, NONE, inward), select(NONE, hit, inward));
 }
 
-// Scatters where the angle of incidence must be known better than from its cosine. A ray inside glass meets it under
-// the angle under which it started: that is remembered, so that total reflection lasts.
+// Scatters where the rounded cosine does not give the angle of incidence precisely enough. A ray inside glass arrives
+// at the same angle at which it started. The angle is stored, so that total reflection persists.
 fn scatter_steeply(
     path: ptr<function, Path>,
     surface: Surface,
@@ -378,7 +379,7 @@ fn scatter_steeply(
     return bounced;
 }
 
-// The reflectance of the picture's strip that a pixel lies in: 10, 30, 50, 70, 90 %.
+// The reflectance of the picture strip that contains a pixel: 10, 30, 50, 70 or 90 %.
 fn strip_reflectance(pixel: u32) -> f32 {
     let strip = (pixel_position(pixel).x + 0.5) * (5.0 / job.camera.size.x) - 0.5;
     return fma(round(max(0.0, strip)), 0.2, 0.1);

@@ -1,6 +1,6 @@
-// Entry point: one sample of the pixel whose column and row are the first two words, traced as for a picture and
-// written down. The third word is the number of rays that are written down already, where the path was put aside. At
-// the end the header says the number of rays and what the film got.
+// Entry point: traces one sample of one pixel as for a picture and records it. The first two words are the pixel's
+// column and row; the third is the number of rays already recorded, if the path was put aside. On completion the header
+// contains the number of rays and the sums added to the film.
 
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn path_record(@builtin(local_invocation_index) thread: u32) {

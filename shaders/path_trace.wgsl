@@ -1,4 +1,4 @@
-// Entry point: one thread a pixel, one workgroup a tile.
+// Entry point: traces samples, with one thread per pixel and one workgroup per tile.
 
 var<workgroup> group_rays: atomic<u32>;
 var<workgroup> group_rejected: atomic<u32>;

@@ -1,5 +1,5 @@
-// Entry point for tests: runs one small function on many inputs. Thread i reads words PROBE_STRIDE i .. and
-// writes its results over them.
+// Entry point for tests: runs one small function on many inputs. Thread i reads the words from PROBE_STRIDE * i on and
+// overwrites them with its results.
 
 fn f(base: u32, i: u32) -> f32 {
     return bitcast<f32>(words[base + i]);

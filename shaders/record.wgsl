@@ -1,4 +1,4 @@
-// What a path did, ray by ray. The words are RECORD_HEADER words of the path and RECORD_STRIDE of each ray.
+// Records a path ray by ray, in RECORD_HEADER words for the path and RECORD_STRIDE words for each ray.
 //
 // Twin: src/render_gpu/record.rs
 

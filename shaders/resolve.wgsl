@@ -1,4 +1,4 @@
-// Entry point: the film as a picture, one word a pixel: red in the lowest byte, the highest 255.
+// Entry point: converts the film to a picture, with one word per pixel: red in the lowest byte, 255 in the highest.
 //
 // Twin: src/film/mod.rs, to_byte
 

@@ -1,15 +1,15 @@
-// The numbers of a sample.
+// The random numbers of a sample.
 //
 // Twin: src/render_cpu/rng.rs
 
-// A bijection of 32 bits.
+// Hashes 32 bits to 32 bits; a bijection.
 fn mix32(v: u32) -> u32 {
     var x = (v ^ (v >> 16u)) * 0x7FEB352Du;
     x = (x ^ (x >> 15u)) * 0x846CA68Bu;
     return x ^ (x >> 16u);
 }
 
-// Four numbers from four.
+// Hashes four numbers to four numbers.
 fn pcg4d(numbers: vec4u) -> vec4u {
     let v = stir(numbers * 1664525u + 1013904223u);
     return stir(v ^ (v >> vec4u(16u)));
@@ -24,7 +24,7 @@ fn stir(numbers: vec4u) -> vec4u {
     return v;
 }
 
-// Owen's scrambling of reversed bits.
+// Owen scrambling on reversed bits.
 fn laine_karras(reversed: u32, seed: u32) -> u32 {
     var x = reversed ^ (reversed * 0x3D20ADEAu);
     x = x + seed;
@@ -33,7 +33,7 @@ fn laine_karras(reversed: u32, seed: u32) -> u32 {
     return x ^ (x * 0x53A22864u);
 }
 
-// The second Sobol coordinate from the first.
+// Computes the second Sobol coordinate from the first.
 fn pascal(first: u32) -> u32 {
     var u = first ^ (first << 16u);
     u = u ^ ((u & 0x00FF00FFu) << 8u);
@@ -42,28 +42,28 @@ fn pascal(first: u32) -> u32 {
     return u ^ ((u & 0x55555555u) << 1u);
 }
 
-// A pair of Sobol coordinates of the reversed sample index `counter`.
+// A pair of Sobol coordinates for the reversed sample index `counter`.
 fn sobol_pair(counter: u32, stream: u32) -> vec2u {
     let u = laine_karras(counter, mix32(stream));
     return vec2u(u, pascal(u));
 }
 
-// `key` moved on to the dimensions of `bounce`.
+// Moves `key` to the dimensions of `bounce`.
 fn stream_of(key: u32, bounce: u32) -> u32 {
     return key + bounce * GOLDEN_RATIO;
 }
 
-// `key` moved on to the second pair of dimensions of `bounce`.
+// Moves `key` to the second pair of dimensions of `bounce`.
 fn lens_stream_of(key: u32, bounce: u32) -> u32 {
     return stream_of(key, bounce + LENS_BLOCK);
 }
 
-// What tells the Sobol scramblings of pixels, halves and seeds apart.
+// The key that separates the Sobol scramblings of pixels, halves and seeds.
 fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
     return mix32(mix32(seed + half * GOLDEN_RATIO) ^ pixel);
 }
 
-// What a sampler's streams of numbers for a pixel begin with; nothing where the pixel itself is hashed.
+// The start of a pixel's streams of numbers; 0 for samplers that hash the pixel itself.
 fn sampler_key(seed: u32, half: u32, pixel: u32) -> u32 {
     if SAMPLER == SAMPLER_SOBOL {
         return pixel_key(seed, half, pixel);
@@ -71,7 +71,7 @@ fn sampler_key(seed: u32, half: u32, pixel: u32) -> u32 {
     return 0u;
 }
 
-// Two pairs of numbers of a path's next ray, the second of which differs `with_lens` alone.
+// Two pairs of numbers for a path's next ray; the second pair differs only `with_lens`.
 fn numbers(seed: u32, pixel: u32, counter: u32, key: u32, bounce: u32, with_lens: bool) -> vec4u {
     if SAMPLER == SAMPLER_SOBOL {
         let first = sobol_pair(counter, stream_of(key, bounce));

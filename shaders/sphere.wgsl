@@ -1,10 +1,10 @@
-// Rays against spheres. (Book 1, section 5.) A distance is ordered as the bits of a float, an unsigned integer,
-// in which negative numbers come last: -1 stands for a miss.
+// Ray-sphere intersection. (Book 1, section 5.) Distances are compared as the bits of a float, read as an unsigned
+// integer. In that order negative numbers come last: -1 stands for a miss.
 //
 // Twin: src/render_cpu/sphere.rs
 
-// A ray on its way. `left` is the sphere that it leaves outwards, `inside` the one that it enters, or NONE. From an eye
-// on a surface `left` is EYE.
+// A ray being traced. `left` is the sphere that it leaves outwards, `inside` the sphere that it enters, or NONE. For a
+// ray that starts at an eye on a surface, `left` is EYE.
 struct Ray {
     origin: vec3f,
     direction: vec3f,
@@ -12,7 +12,7 @@ struct Ray {
     inside: u32,
 }
 
-// The nearest hit so far: its distance's bits and the sphere's number, or NONE.
+// The nearest hit found so far: the bits of its distance and the sphere's number, or NONE.
 struct Nearest {
     key: u32,
     sphere: u32,
@@ -22,13 +22,13 @@ fn nothing() -> Nearest {
     return Nearest(INFINITE_KEY, NONE);
 }
 
-// Of two spheres at one distance the first taken stays.
+// Of two spheres at the same distance, the one taken first stays.
 fn take(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
     let nearer = key < nearest.key;
     return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
 }
 
-// Of two spheres at one distance that which stands first in the list stays, which leaves do not keep the order of.
+// Of two spheres at the same distance, the first in the list stays. Leaves do not keep the order of the list.
 fn take_in_any_order(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
     var nearer = key < nearest.key;
     if key == nearest.key && nearest.sphere != NONE {
@@ -37,12 +37,12 @@ fn take_in_any_order(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
     return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
 }
 
-// The smaller of two distances' bits.
+// The smaller of two distances, as bits.
 fn smaller_key(a: f32, b: f32) -> u32 {
     return min(bitcast<u32>(a), bitcast<u32>(b));
 }
 
-// Distance to the middle of the chord, and the square of half its length: negative for a miss.
+// Distance to the middle of the chord, and the square of half its length, which is negative for a miss.
 fn chord(ray: Ray, sphere: vec4f) -> vec2f {
     let f = sphere.xyz - ray.origin;
     let h = dot3(ray.direction, f);
@@ -58,7 +58,7 @@ fn near_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
     return bitcast<u32>(select(-1.0, near, hd.y >= 0.0 && ray.left != number));
 }
 
-// Distance to a sphere from within or without.
+// Distance to a sphere from inside or outside.
 fn nearest_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
     let hd = chord(ray, sphere);
     let s = sqrt(max(hd.y, 0.0));
@@ -66,12 +66,12 @@ fn nearest_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
     let leaves = ray.left == number;
     let enters = ray.inside == number;
     let near = select(-1.0, hd.x - s, meets && !leaves && !enters);
-    // From its own surface inwards a ray runs the chord 2h.
+    // A ray that enters the sphere from its surface travels the chord 2h.
     let far = hd.x + select(s, abs(hd.x), enters);
     return smaller_key(near, select(-1.0, far, (meets || enters) && !leaves));
 }
 
-// Distance to a sphere of a hierarchy, whose squared radius has a minus sign where only the nearer root counts.
+// Distance to a sphere of a hierarchy. Its squared radius is negative if only the nearer root counts.
 fn signed_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
     let hd = chord(ray, vec4f(sphere.xyz, abs(sphere.w)));
     let s = sqrt(max(hd.y, 0.0));
@@ -84,7 +84,7 @@ fn signed_root(ray: Ray, sphere: vec4f, number: u32) -> u32 {
     return smaller_key(near, select(-1.0, far, both && (meets || enters) && !leaves));
 }
 
-// Distance to a sphere that is seen from its anchor: everything is measured from there.
+// Distance to an anchored sphere: everything is measured from the anchor.
 fn anchored_root(ray: Ray, sphere: AnchoredSphere, number: u32) -> u32 {
     let d = ray.direction;
     let m = sphere.inward;
@@ -103,11 +103,11 @@ fn anchored_root(ray: Ray, sphere: AnchoredSphere, number: u32) -> u32 {
     let starts = EYE_ON_SURFACE && ray.left == EYE && (sphere.flags & UNDER_EYE) != 0u;
     let leaves = ray.left == number || (starts && m_along < 0.0);
     let enters = ray.inside == number;
-    // From its own surface inwards a ray runs the chord 2b.
+    // A ray that enters the sphere from its surface travels the chord 2b.
     let second = select(q, b + abs(b), enters) / k;
     let roots = sphere.flags & ROOTS_MASK;
     if roots == ROOTS_NEARER {
-        // A ray that rounding puts inside meets it where it starts.
+        // A ray that rounding puts inside hits the sphere where it starts.
         return bitcast<u32>(select(-1.0, max(c, 0.0) / q, meets && q > 0.0 && !leaves));
     }
     if roots == ROOTS_FARTHER {
@@ -121,7 +121,7 @@ fn anchored_root(ray: Ray, sphere: AnchoredSphere, number: u32) -> u32 {
     return smaller_key(first, select(-1.0, second, (meets || enters) && !leaves));
 }
 
-// The book's own quadratic, without memory of the surface left: the nearer root that is beyond `t_min`.
+// The book's own quadratic, which does not track the surface that a ray leaves: the nearer root beyond `t_min`.
 fn book_root(ray: Ray, sphere: vec4f, t_min: f32) -> u32 {
     let f = sphere.xyz - ray.origin;
     let a = dot3(ray.direction, ray.direction);
@@ -135,27 +135,27 @@ fn book_root(ray: Ray, sphere: vec4f, t_min: f32) -> u32 {
     return smaller_key(select(-1.0, near, meets && near > t_min), select(-1.0, far, meets && far > t_min));
 }
 
-// A point on a surface, and the unit normal away from the centre.
+// A point on a surface, and the unit normal pointing away from the centre.
 struct SurfacePoint {
     position: vec3f,
     outward: vec3f,
 }
 
-// The point at distance `t`, moved onto the sphere along the normal, whose length one Newton step makes 1.
+// The point at distance `t`, moved onto the sphere along the normal, which one Newton step normalises.
 fn surface_point(ray: Ray, t: f32, center: vec3f, curvature: f32, radius: f32) -> SurfacePoint {
     let w = mul_add3(ray.direction, t, ray.origin - center) * curvature;
     let outward = w * fma(-0.5, dot3(w, w), 1.5);
     return SurfacePoint(mul_add3(outward, radius, center), outward);
 }
 
-// The same by the book's own arithmetic: the point stays where rounding leaves it.
+// Like `surface_point`, with the book's own arithmetic: rounding may leave the point off the surface.
 fn book_point(ray: Ray, t: f32, center: vec3f, curvature: f32) -> SurfacePoint {
     let position = mul_add3(ray.direction, t, ray.origin);
     return SurfacePoint(position, (position - center) * curvature);
 }
 
-// The same on a sphere so far away that `t` is rounded by a part of its radius: the way from the centre to the ray, and
-// half the chord from there.
+// Like `surface_point`, for a sphere so far away that the rounding of `t` is a sizeable part of its radius. The point
+// is found from the vector between the centre and the ray, and half the chord from there.
 fn speck_surface_point(ray: Ray, t: f32, center: vec3f, curvature: f32, radius: f32) -> SurfacePoint {
     let g = ray.origin - center;
     let h = dot3(ray.direction, g);
@@ -166,7 +166,7 @@ fn speck_surface_point(ray: Ray, t: f32, center: vec3f, curvature: f32, radius: 
     return SurfacePoint(mul_add3(outward, radius, center), outward);
 }
 
-// The same on an anchored sphere.
+// Like `surface_point`, on an anchored sphere.
 fn anchored_surface_point(ray: Ray, t: f32, anchor: vec3f, inward: vec3f, curvature: f32) -> SurfacePoint {
     let x = mul_add3(ray.direction, t, ray.origin - anchor);
     let away = x * curvature - inward;

@@ -1,36 +1,36 @@
-//! One path, ray by ray, as plain data: what every backend can tell of a sample.
+//! One path, ray by ray, as plain data that every backend can report.
 
 use serde::Serialize;
 
-/// What a ray of a path met.
+/// The hit of a recorded ray.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RecordedHit {
     /// Index of the sphere in the scene.
     pub sphere: usize,
-    /// Along the ray, scene units.
+    /// Distance along the ray, scene units.
     pub distance: f64,
-    /// Where the path went on from; `None` where it ended.
+    /// The point from which the path continued; `None` if it ended there.
     pub position: Option<[f64; 3]>,
 }
 
-/// A ray of a path.
+/// One ray of a recorded path.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RecordedRay {
-    /// Where it starts, scene units.
+    /// Origin of the ray, scene units.
     pub origin: [f64; 3],
-    /// Where it goes, a unit vector.
+    /// Unit direction of the ray.
     pub direction: [f64; 3],
-    /// What light that arrives along it counts for in the pixel, linear RGB.
+    /// Factor by which light arriving along the ray contributes to the pixel, linear RGB.
     pub throughput: [f64; 3],
-    /// `None`: it left the scene.
+    /// What the ray hit; `None` if it left the scene.
     pub hit: Option<RecordedHit>,
 }
 
-/// A path, from the camera on.
+/// A recorded path, starting at the camera.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PathRecord {
-    /// Rays in order, at least one unless the stage traces none.
+    /// The rays in order; at least one, unless the stage traces no rays.
     pub rays: Vec<RecordedRay>,
-    /// What the sample adds to the pixel, linear RGB; black also where the sample was rejected.
+    /// The sample's contribution to the pixel, linear RGB; black if the sample was rejected.
     pub radiance: [f64; 3],
 }

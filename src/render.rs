@@ -1,7 +1,11 @@
-//! What every backend renders and how it is asked: [`RenderJob`] and the [`Renderer`] trait.
+//! The job that every backend renders, and its interface: [`RenderJob`] and the [`Renderer`] trait.
 //!
-//! **A sample is a pure function** of (job, pixel, sample index). It does not depend on the backend, the packet
-//! width, the thread, its neighbours or what was rendered before. Everything else rests on that.
+//! **A sample is a pure function** of (job, pixel, sample index). It does not depend on the backend, the packet width,
+//! the thread, neighbouring pixels or earlier samples. Everything else relies on this.
+
+mod settings;
+
+pub use settings::{NamedSetting, RenderSettings, SamplerKind, SettingValue};
 
 pub use crate::film::{SAMPLE_LIMIT, SIZE_LIMIT};
 
@@ -9,7 +13,7 @@ use crate::film::Film;
 use crate::memory::{self, MemoryError};
 use crate::scene::{Camera, Scene, SceneError};
 use crate::stages::Rules;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::any::Any;
 use std::ops::Range;
 use std::sync::Arc;
@@ -17,78 +21,16 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Largest number of rays a path may have.
+/// Largest number of rays per path.
 pub const DEPTH_LIMIT: u32 = 10_000;
 
-/// Where the numbers of a sample come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, Default)]
-#[serde(rename_all = "lowercase")]
-pub enum SamplerKind {
-    /// Independent numbers, as in the book.
-    Independent,
-    /// Scrambled Sobol points: the same picture with fewer samples.
-    #[default]
-    Sobol,
-}
-
-impl SamplerKind {
-    /// All of them.
-    pub const ALL: [SamplerKind; 2] = [SamplerKind::Sobol, SamplerKind::Independent];
-
-    /// The name used on the command line and in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            SamplerKind::Independent => "independent",
-            SamplerKind::Sobol => "sobol",
-        }
-    }
-}
-
-/// Numbers of a job that are neither scene nor camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RenderSettings {
-    /// Pixels across, `1..=16384`.
-    pub width: u32,
-    /// Pixels down, `1..=16384`.
-    pub height: u32,
-    /// Most rays of a path, the camera's included, `1..=10000`. A path that is cut off brings nothing.
-    pub max_depth: u32,
-    /// Where the numbers come from.
-    pub sampler: SamplerKind,
-    /// Chooses among pictures that differ in their noise alone.
-    pub seed: u32,
-    /// Whether samples go to two halves with scramblings of their own, so that the error can be estimated.
-    pub estimate_error: bool,
-}
-
-impl Default for RenderSettings {
-    /// What a scene file that does not say gets.
-    fn default() -> Self {
-        RenderSettings {
-            width: 800,
-            height: 450,
-            max_depth: 50,
-            sampler: SamplerKind::Sobol,
-            seed: 0,
-            estimate_error: true,
-        }
-    }
-}
-
-impl RenderSettings {
-    /// Halves of the film: 2 if the error is estimated, else 1.
-    pub fn half_count(&self) -> usize {
-        if self.estimate_error { 2 } else { 1 }
-    }
-}
-
-/// What a pixel takes besides its sums while the picture is written.
+/// Memory per pixel besides its sums while the picture is written.
 const OUTPUT_BYTES_PER_PIXEL: u64 = 4;
 
-/// What a sphere takes besides its place in the scene: prepared scene, hierarchy, and what building them takes at its peak.
+/// Memory per sphere besides its place in the scene: prepared scene, hierarchy, and the peak while building them.
 pub const TRACING_BYTES_PER_SPHERE: u64 = 400;
 
-/// A picture to be rendered, checked once. Two equal jobs have the same samples.
+/// A job: a picture to render, validated once. Two equal jobs have the same samples.
 #[derive(Clone, Debug)]
 pub struct RenderJob {
     scene: Arc<Scene>,
@@ -98,7 +40,7 @@ pub struct RenderJob {
 }
 
 impl PartialEq for RenderJob {
-    /// Scenes that are one in memory are not compared sphere by sphere.
+    /// Scenes that share memory are not compared sphere by sphere.
     fn eq(&self, other: &Self) -> bool {
         (self.camera, self.settings, self.rules) == (other.camera, other.settings, other.rules)
             && (Arc::ptr_eq(&self.scene, &other.scene) || self.scene == other.scene)
@@ -106,10 +48,10 @@ impl PartialEq for RenderJob {
 }
 
 impl RenderJob {
-    /// Checks everything that a backend relies on.
+    /// Creates a job and validates everything that backends rely on.
     ///
     /// # Errors
-    /// The first thing that is wrong, with its value, its limit and what to do.
+    /// The first invalid value, with its limit and a remedy.
     pub fn new(
         scene: impl Into<Arc<Scene>>,
         camera: Camera,
@@ -121,11 +63,10 @@ impl RenderJob {
         RenderJob { scene, camera, settings, rules }.seen_by(camera, settings)
     }
 
-    /// The same scene under the same rules, seen by another camera or in another size: the scene is shared, and
-    /// not checked again.
+    /// The same scene and rules with another camera or picture size. The scene is shared and not validated again.
     ///
     /// # Errors
-    /// The first thing that is wrong with the camera or the settings.
+    /// The first invalid value of the camera or the settings.
     pub fn seen_by(&self, camera: Camera, settings: RenderSettings) -> Result<Self, JobError> {
         camera.validate()?;
         for (what, pixels) in [("width", settings.width), ("height", settings.height)] {
@@ -139,41 +80,41 @@ impl RenderJob {
         Ok(RenderJob { scene: Arc::clone(&self.scene), camera, settings, rules: self.rules })
     }
 
-    /// Whether both have one scene in memory, under the same rules.
+    /// Whether both jobs share one scene in memory, under the same rules.
     pub fn shares_scene_with(&self, other: &RenderJob) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene) && self.rules == other.rules
     }
 
-    /// Spheres, materials and sky.
+    /// The scene: spheres, materials and sky.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The camera.
+    /// The camera of the job.
     pub fn camera(&self) -> &Camera {
         &self.camera
     }
 
-    /// Size, depth, sampler, seed, halves.
+    /// Size, depth, sampler, seed and halves.
     pub fn settings(&self) -> &RenderSettings {
         &self.settings
     }
 
-    /// The rules in force.
+    /// The rules in effect.
     pub fn rules(&self) -> &Rules {
         &self.rules
     }
 
-    /// An empty film for this job.
+    /// Creates an empty film for this job.
     pub fn new_film(&self) -> Film {
         Film::new(self.settings.width, self.settings.height, self.settings.half_count())
     }
 
-    /// Refuses a job that would not fit into memory with `films` films of its size, while it is prepared, traced and
-    /// written.
+    /// Returns an error if the job and `films` films of its size do not fit into memory while it is prepared, traced
+    /// and written.
     ///
     /// # Errors
-    /// [`MemoryError`], with what to do.
+    /// [`MemoryError`], with a remedy.
     pub fn check_memory(&self, films: u64) -> Result<(), MemoryError> {
         let RenderSettings { width, height, .. } = self.settings;
         let film = Film::bytes(width, height, self.settings.half_count()).saturating_mul(films);
@@ -192,7 +133,7 @@ impl RenderJob {
         )
     }
 
-    /// Whether a film has the shape of this job's.
+    /// Whether a film has this job's shape.
     pub fn fits(&self, film: &Film) -> bool {
         let RenderSettings { width, height, .. } = self.settings;
         (film.width(), film.height(), film.halves().len()) == (width, height, self.settings.half_count())
@@ -202,46 +143,46 @@ impl RenderJob {
 /// A job that cannot be rendered.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum JobError {
-    /// The scene or camera.
+    /// The scene or the camera is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The picture's size.
+    /// The picture's size is out of range.
     #[error(
         "the picture's {what} is {pixels} pixels, but must be within 1 and {SIZE_LIMIT}; choose a smaller picture or stitch several"
     )]
     Size {
-        /// "width" or "height".
+        /// The dimension: "width" or "height".
         what: &'static str,
-        /// Pixels.
+        /// The requested number of pixels.
         pixels: u32,
     },
-    /// The depth.
+    /// The depth is out of range.
     #[error("max_depth is {depth}, but must be within 1 and {DEPTH_LIMIT} rays a path; 50 is the book's")]
     Depth {
-        /// Rays a path.
+        /// The requested number of rays per path.
         depth: u32,
     },
 }
 
-/// What a call to [`Renderer::accumulate`] did.
+/// Statistics of a call to [`Renderer::accumulate`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stats {
-    /// Paths that were finished: pixels times samples.
+    /// Completed paths: pixels times samples.
     pub paths: u64,
-    /// Rays that were traced.
+    /// Rays traced.
     pub rays: u64,
-    /// Samples that were NaN, infinite or negative.
+    /// Rejected samples: NaN, infinite or negative.
     pub rejected: u64,
-    /// Lanes that traced a ray, over all intersections of packets.
+    /// Lanes that traced a ray, summed over all intersections of packets.
     pub busy_lanes: u64,
-    /// Lanes there were, over all intersections of packets.
+    /// Available lanes, summed over all intersections of packets.
     pub offered_lanes: u64,
-    /// Wall time of tracing.
+    /// Wall time spent tracing.
     pub trace: Duration,
 }
 
 impl Stats {
-    /// Adds another call's figures.
+    /// Adds the statistics of another call.
     pub fn add(&mut self, other: &Stats) {
         self.paths += other.paths;
         self.rays += other.rays;
@@ -252,19 +193,19 @@ impl Stats {
     }
 }
 
-/// How full the packets were in each tile of a picture.
+/// Occupancy of packets in each tile of a picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TileOccupancy {
-    /// Side of a tile, pixels.
+    /// Side of a tile in pixels.
     pub side: u32,
-    /// Tiles in a row.
+    /// Number of tiles in a row.
     pub columns: u32,
-    /// Lanes that traced a ray, and lanes there were, over all intersections; row by row from the top.
+    /// Busy lanes and available lanes of each tile, summed over all intersections; row by row from the top.
     pub tiles: Vec<[u64; 2]>,
 }
 
 impl TileOccupancy {
-    /// Share of lanes in use in the tile of a pixel, `0..=1`; `None` where nothing has been traced.
+    /// Share of lanes in use in the tile of a pixel, `0..=1`; `None` if nothing has been traced there.
     pub fn share_at(&self, [x, y]: [u32; 2]) -> Option<f64> {
         let side = self.side.max(1);
         let [busy, offered] = *self.tiles.get((y / side * self.columns + x / side) as usize)?;
@@ -272,113 +213,112 @@ impl TileOccupancy {
     }
 }
 
-/// Why samples could not be added.
+/// Why samples could not be added to a film.
 #[derive(Debug, Error)]
 pub enum RenderError {
-    /// The caller asked to stop in the middle. The film's sums are then of no use.
+    /// The caller cancelled the call. The film's sums are then unusable.
     #[error("cancelled")]
     Cancelled,
-    /// The backend failed; another can go on from the last good film.
+    /// The backend failed; another can continue from the last good film.
     #[error("{backend} failed: {reason}")]
     Backend {
-        /// Its name.
+        /// Name of the backend.
         backend: &'static str,
-        /// What it said.
+        /// The backend's error message.
         reason: String,
     },
-    /// The backend failed in the middle of adding, and what it had added could not be taken away again: the film is of
-    /// no use.
+    /// The backend failed while adding samples, and its partial additions could not be removed: the film is unusable.
     #[error("{backend} failed: {reason}; the samples that it was adding spoiled the film")]
     FilmLost {
-        /// Its name.
+        /// Name of the backend.
         backend: &'static str,
-        /// What it said.
+        /// The backend's error message.
         reason: String,
     },
-    /// The same samples were asked for twice.
+    /// The same samples were requested twice.
     #[error(transparent)]
     Film(#[from] crate::film::FilmError),
 }
 
 impl RenderError {
-    /// What a panic of a backend's is to others.
+    /// Converts a backend's panic to an error.
     pub fn of_panic(backend: &'static str, payload: &(dyn Any + Send)) -> Self {
         RenderError::Backend { backend, reason: format!("it panicked: {}", panic_text(payload)) }
     }
 }
 
-/// What a panic said.
+/// The message of a panic.
 pub fn panic_text(payload: &(dyn Any + Send)) -> &str {
     let text = payload.downcast_ref::<String>().map(String::as_str);
     text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("for no stated reason")
 }
 
-/// What a backend is, for reports.
+/// Describes a backend, for reports.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct BackendInfo {
     /// "cpu", "reference" or "gpu".
     pub name: &'static str,
-    /// The instruction level or the adapter.
+    /// The instruction level, or the adapter.
     pub device: String,
-    /// Paths that advance in step.
+    /// Number of paths that advance in step.
     pub lanes: usize,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
 }
 
-/// Adds samples to a film.
+/// A backend, which adds samples to a film.
 pub trait Renderer: Send {
-    /// What this is.
+    /// Describes this backend.
     fn info(&self) -> BackendInfo;
 
-    /// Who added the samples of the last [`Renderer::accumulate`], which were `added` a pixel. One renderer alone
-    /// added them all.
+    /// The backends that added the samples of the last [`Renderer::accumulate`], which added `added` samples per pixel.
+    /// By default, this renderer added all of them.
     fn credits(&self, added: u64) -> Vec<(BackendInfo, u64)> {
         vec![(self.info(), added)]
     }
 
-    /// What the user should know and has not been told: a software adapter in use, a part that failed.
+    /// Takes messages that the user has not seen yet, such as a software adapter in use or a part that failed.
     fn take_messages(&mut self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Wall time that building the prepared job's hierarchy took; zero where there is none.
+    /// Wall time of building the prepared job's hierarchy; zero if it has none.
     fn hierarchy_time(&self) -> Duration {
         Duration::ZERO
     }
 
-    /// What the device spent on all dispatches since this was made, by its own clock; `None` without one.
+    /// Total time of all dispatches so far by the device's own clock; `None` without one.
     fn device_time(&self) -> Option<Duration> {
         None
     }
 
-    /// What the prepared job's kernel contains, and what making it took, in words.
+    /// Describes the prepared job's kernel and the time it took to compile.
     fn kernel(&self) -> String {
         String::new()
     }
 
-    /// How full the packets were since the prepared job's first pass; `None` if it traces without packets.
+    /// Packet occupancy since the prepared job's first pass; `None` if the renderer traces without packets.
     fn tile_occupancy(&self) -> Option<TileOccupancy> {
         None
     }
 
-    /// Begins a film of `job`: builds what tracing it needs (prepared scene, hierarchy, kernels), unless that is there, and
-    /// forgets what was traced and not collected.
+    /// Begins a film of `job`: builds whatever tracing needs and is not there yet (prepared scene, hierarchy, kernels),
+    /// and discards traced samples that were not collected.
     ///
-    /// `cancel` is looked at while kernels are compiled.
+    /// Checks `cancel` while kernels compile.
     ///
     /// # Errors
-    /// [`RenderError::Backend`] if the backend cannot render this job, [`RenderError::Cancelled`].
+    /// [`RenderError::Backend`] if the backend cannot render this job; [`RenderError::Cancelled`] if it was cancelled.
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError>;
 
-    /// Adds samples `range` of every pixel to `film` and records them there. Prepares if need be.
+    /// Adds samples `range` of every pixel to `film` and records them there. Prepares the job if necessary.
     ///
-    /// `cancel` is looked at between small units of work.
+    /// Checks `cancel` between small units of work.
     ///
     /// # Errors
-    /// [`RenderError::Cancelled`] and [`RenderError::FilmLost`] leave the film's sums incomplete: throw it away. After
-    /// any other error it is as it was, and so it is after a panic: whoever adds to it in pieces catches panics and
-    /// takes the pieces away again.
+    /// After [`RenderError::Cancelled`] and [`RenderError::FilmLost`] the film's sums are incomplete: discard it. After
+    /// any other error the film is unchanged. It is also unchanged after a panic: a renderer that adds to it piece by
+    /// piece catches panics and removes the pieces.
     fn accumulate(
         &mut self,
         job: &RenderJob,
@@ -387,12 +327,12 @@ pub trait Renderer: Send {
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError>;
 
-    /// As [`Renderer::accumulate`], but need not wait for the results: samples may stay with the renderer and be
-    /// added to the same film by a later call. The film records those that it has, and the figures are of those
-    /// that this call added to it.
+    /// Like [`Renderer::accumulate`], but need not wait for results: samples may stay with the renderer until a later
+    /// call adds them to the same film. The film records the samples that it contains, and the statistics cover those
+    /// that this call added.
     ///
     /// # Errors
-    /// As [`Renderer::accumulate`]; samples that are not in the film are then lost.
+    /// As for [`Renderer::accumulate`]; samples that are not in the film are then lost.
     fn advance(
         &mut self,
         job: &RenderJob,
@@ -403,7 +343,7 @@ pub trait Renderer: Send {
         self.accumulate(job, range, film, cancel)
     }
 
-    /// Sends for what was traced so far: the next [`Renderer::advance`] adds it to the film while it traces.
+    /// Requests what has been traced so far: the next [`Renderer::advance`] adds it to the film while tracing.
     ///
     /// # Errors
     /// [`RenderError::Backend`].
@@ -411,7 +351,7 @@ pub trait Renderer: Send {
         Ok(())
     }
 
-    /// Adds to the film all that was traced and is not in it; waits for it.
+    /// Waits for everything traced so far and adds to the film what it does not contain.
     ///
     /// # Errors
     /// [`RenderError::Backend`]; samples that are not in the film are then lost.

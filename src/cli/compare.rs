@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::paths::Paths;
-use super::raw::RawPicture;
+use super::raw::{self, RawPicture};
 use super::sources::{self, Source};
 use super::values::JsonTarget;
 use crate::backends::BackendChoice;
@@ -139,7 +139,7 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         Some(source) => source,
         None => sources::find(&raw.picture, None)?,
     };
-    sources::change(&mut recipe, &raw.picture, None);
+    raw::change(&mut recipe, &raw.picture, None);
     sources::narrow(&mut recipe, &raw.picture, COMPARE_WIDTH);
     recipe.samples_per_pixel = COMPARE_SAMPLES;
     recipe.job()?;

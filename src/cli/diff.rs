@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::paths::Paths;
-use super::raw::{RawPicture, RawSwitch};
+use super::raw::{self, RawPicture, RawSwitch};
 use super::sources::{self, Source};
 use super::values::{JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance};
 use crate::render::{RenderJob, SAMPLE_LIMIT};
@@ -123,7 +123,7 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
         .write_json(json.as_ref())
         .check(&[])?;
     let Source { mut recipe, stage } = sources::find(&raw.picture, None)?;
-    sources::change(&mut recipe, &raw.picture, raw.estimate_error);
+    raw::change(&mut recipe, &raw.picture, raw.estimate_error);
     if raw.find.is_some() {
         sources::narrow(&mut recipe, &raw.picture, FIND_WIDTH);
     }

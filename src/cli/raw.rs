@@ -5,6 +5,7 @@ use super::values::{
     Level, Simd, parse_duration, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds,
     parse_simd, parse_size, parse_vector,
 };
+use crate::recipe::Recipe;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
@@ -229,4 +230,29 @@ pub enum ProgressChoice {
     On,
     /// Never.
     Off,
+}
+
+/// Puts the flags' values in place of the recipe's.
+pub(super) fn change(recipe: &mut Recipe, raw: &RawPicture, estimate_error: Option<RawSwitch>) {
+    fn set<T: Copy>(value: &mut T, flag: Option<T>) {
+        if let Some(flag) = flag {
+            *value = flag;
+        }
+    }
+    let settings = &mut recipe.settings;
+    set(&mut settings.width, raw.size.map(|(width, _)| width));
+    set(&mut settings.height, raw.size.map(|(_, height)| height));
+    set(&mut settings.max_depth, raw.depth);
+    set(&mut settings.sampler, raw.sampler);
+    set(&mut settings.seed, raw.seed);
+    set(&mut settings.estimate_error, estimate_error.map(|switch| switch == RawSwitch::On));
+    let camera = &mut recipe.camera;
+    set(&mut camera.look_from, raw.look_from);
+    set(&mut camera.look_at, raw.look_at);
+    set(&mut camera.vup, raw.vup);
+    set(&mut camera.vfov_degrees, raw.vfov);
+    set(&mut camera.defocus_angle_degrees, raw.defocus_angle);
+    if raw.focus_distance.is_some() {
+        camera.focus_distance = raw.focus_distance;
+    }
 }

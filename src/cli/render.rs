@@ -3,7 +3,7 @@
 use super::Request;
 use super::error::CliError;
 use super::paths::Paths;
-use super::raw::{DrawWith, ProgressChoice, RawDevice, RawRender};
+use super::raw::{self, DrawWith, ProgressChoice, RawDevice, RawRender};
 use super::sources::{self, Source};
 use super::values::{JsonTarget, Level, Simd};
 use crate::backends::BackendChoice;
@@ -156,7 +156,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
     }
     let mut source = sources::find(&raw.picture, raw.resume.as_deref())?;
     let unchanged = source.recipe.clone();
-    sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    raw::change(&mut source.recipe, &raw.picture, raw.estimate_error);
     source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
     let job = source.recipe.job()?;
     let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
@@ -187,7 +187,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
 }
 
 fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
-    sources::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    raw::change(&mut source.recipe, &raw.picture, raw.estimate_error);
     source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
     let job = source.recipe.job()?;
     if raw.noise_target.is_some() && !source.recipe.settings.estimate_error {

@@ -1,7 +1,7 @@
 //! Where a picture comes from: a built-in scene, a stage, a scene file or a film; and what flags change in it.
 
 use super::error::CliError;
-use super::raw::{RawPicture, RawSwitch};
+use super::raw::RawPicture;
 use crate::recipe::{Recipe, file};
 use crate::saved::Saved;
 use crate::stages::Stage;
@@ -81,29 +81,4 @@ pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
 fn of_film(path: &Path) -> Result<Source, CliError> {
     let saved = Saved::describe(path)?;
     Ok(Source { recipe: saved.recipe()?, stage: saved.stage() })
-}
-
-/// Puts the flags' values in place of the recipe's.
-pub(super) fn change(recipe: &mut Recipe, raw: &RawPicture, estimate_error: Option<RawSwitch>) {
-    fn set<T: Copy>(value: &mut T, flag: Option<T>) {
-        if let Some(flag) = flag {
-            *value = flag;
-        }
-    }
-    let settings = &mut recipe.settings;
-    set(&mut settings.width, raw.size.map(|(width, _)| width));
-    set(&mut settings.height, raw.size.map(|(_, height)| height));
-    set(&mut settings.max_depth, raw.depth);
-    set(&mut settings.sampler, raw.sampler);
-    set(&mut settings.seed, raw.seed);
-    set(&mut settings.estimate_error, estimate_error.map(|switch| switch == RawSwitch::On));
-    let camera = &mut recipe.camera;
-    set(&mut camera.look_from, raw.look_from);
-    set(&mut camera.look_at, raw.look_at);
-    set(&mut camera.vup, raw.vup);
-    set(&mut camera.vfov_degrees, raw.vfov);
-    set(&mut camera.defocus_angle_degrees, raw.defocus_angle);
-    if raw.focus_distance.is_some() {
-        camera.focus_distance = raw.focus_distance;
-    }
 }

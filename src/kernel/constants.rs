@@ -1,11 +1,11 @@
-//! Numbers that host and shaders share.
+//! Numeric constants that host and shaders share.
 
 use crate::film::{FIXED_POINT_MAX, FIXED_POINT_SCALE, RADIANCE_LIMIT};
 use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK, sine_coefficients};
 use crate::stages::BOOK_T_MIN;
 use std::fmt::Write;
 
-/// A number that can be written as a constant of WGSL.
+/// A number that can be written as a WGSL constant.
 trait Constant: Copy {
     fn wgsl(self) -> String;
 }
@@ -28,7 +28,7 @@ impl Constant for f64 {
     }
 }
 
-/// Declares constants in Rust and lists them for WGSL, together with others that are declared elsewhere.
+/// Declares constants in Rust and lists them for WGSL, together with some that are declared elsewhere.
 macro_rules! constants {
     (
         $($(#[$meta:meta])* pub const $name:ident: $type:ty = $value:expr;)*
@@ -46,80 +46,81 @@ macro_rules! constants {
 }
 
 constants! {
-    /// Threads of a workgroup.
+    /// Threads per workgroup.
     pub const WORKGROUP_SIZE: u32 = 64;
 
-    /// Spheres that fit the uniform buffer: as long as there are no more, all threads read them from there.
+    /// Capacity of the uniform buffer in spheres. If a scene has no more, all threads read them from there.
     pub const UNIFORM_SPHERES: usize = 32;
 
-    /// The same for anchored spheres.
+    /// Capacity of the uniform buffer in anchored spheres.
     pub const UNIFORM_ANCHORED: usize = 4;
 
-    /// Nodes of the hierarchy that a traversal can have set aside, one a level: most levels of a tree.
+    /// Stack entries of a traversal, one per level, and therefore the most levels of a tree.
     pub const STACK_SIZE: usize = 64;
 
-    /// The same for a compressed hierarchy.
+    /// Stack entries of a traversal of the compressed hierarchy.
     pub const CWBVH_STACK_SIZE: usize = 24;
 
-    /// Words in which a thread of the GPU puts its path aside: see shaders/aside.wgsl.
+    /// Words per thread for a path that the GPU puts aside: see shaders/aside.wgsl.
     pub const ASIDE_STRIDE: u32 = 17;
 
     /// Words of a probe's input and output.
     pub const PROBE_STRIDE: usize = 18;
 
-    /// Words before the rays of a recorded path.
+    /// Words before the rays in a recorded path.
     pub const RECORD_HEADER: usize = 4;
 
-    /// Words of a recorded ray.
+    /// Words per ray in a recorded path.
     pub const RECORD_STRIDE: usize = 12;
 
-    /// In place of a sphere's number: no sphere.
+    /// Stands for "no sphere" where a sphere's number is expected.
     pub const NONE: u32 = u32::MAX;
 
-    /// Where a ray starts in place of a sphere that it leaves: at an eye on the surface of one.
+    /// Stands for the sphere that a ray leaves if the ray starts at an eye on a surface.
     pub const EYE: u32 = u32::MAX - 1;
 
-    /// The bits of an anchored sphere's flags that tell which roots count.
+    /// Bits of an anchored sphere's flags that hold the tag of its [`super::Roots`].
     pub const ROOTS_MASK: u32 = 3;
 
-    /// The bit of an anchored sphere's flags that says that the eye is on the surface.
+    /// Bit of an anchored sphere's flags that is set if the eye is on its surface.
     pub const UNDER_EYE: u32 = 4;
 
-    /// The bits of a node's count that hold the number of spheres.
+    /// Bits of a node's count that hold the number of spheres.
     pub const COUNT_MASK: u32 = (1 << 29) - 1;
 
-    /// A distance's bits where nothing is met.
+    /// Bits of the distance where nothing is hit.
     pub const INFINITE_KEY: u32 = 0x7F80_0000;
 
-    /// More than the bits of any distance: a box that is not met.
+    /// Key of a box that is not hit: larger than the bits of any distance.
     pub const MISS_KEY: u32 = u32::MAX;
 
     /// The bits of -0.
     pub const NEGATIVE_ZERO_BITS: u32 = 1 << 31;
 
-    /// The bits of the least sum over the channels of a radiance that the film does not take.
+    /// Bits of the smallest sum over the channels of a radiance that the film rejects.
     pub const RADIANCE_TOTAL_LIMIT_BITS: u32 = (RADIANCE_TOTAL_LIMIT as f32).to_bits();
 
-    /// That sum, in units of the film.
+    /// That sum in units of the film.
     pub const RADIANCE_TOTAL_LIMIT: f64 = 3.0 * RADIANCE_LIMIT * FIXED_POINT_SCALE;
 
-    /// What a number's upper 24 bits count for.
+    /// Scale that turns a number's upper 24 bits into a float in `[0, 1)`.
     pub const UNIT_FLOAT_SCALE: f64 = 1.0 / 16_777_216.0;
 
-    /// Below this squared length, the normal plus a unit vector is a rounding error, and the normal stands in.
+    /// If the squared length of the normal plus a unit vector is below this, it is a rounding error, and the normal is
+    /// used.
     pub const NEAR_ZERO: f64 = 1e-14;
 
-    /// A direction's component counts as no smaller than this, so that its inverse is finite.
+    /// Smallest size of a direction's component in box tests, so that its inverse is finite.
     pub const LEAST_COMPONENT: f64 = 1e-18;
 
-    /// Rounding in the test of a sphere and of a box, relative to the largest coordinate that takes part, is below this.
+    /// Upper bound of the rounding error in sphere and box tests, relative to the largest coordinate involved.
     pub const BOX_MARGIN: f64 = 8.0 * HALF_EPSILON;
 
-    /// The same for boxes that are measured from the corner of a node: the distance to that corner is rounded by 2 units
-    /// more, and a box reaches farther than what it holds by at most 1 / 127 of its node.
+    /// The same bound for boxes relative to a node's corner: rounding the distance to the corner adds 2 units, and a
+    /// box extends beyond its contents by at most 1 / 127 of its node.
     pub const CWBVH_MARGIN: f64 = 12.0 * HALF_EPSILON;
 
-    /// By what a box's far side is moved away, for the rounding of the distances themselves.
+    /// Factor for the distance to a box's far side, which covers the rounding of the distances themselves.
     pub const BOX_WIDENING: f64 = 1.0 + 8.0 * HALF_EPSILON;
 
     also

@@ -1,30 +1,30 @@
-//! What a job needs of a kernel, each feature declared once: the question to the job that it answers, the part of the
-//! CPU's kernels that has its code, the pipeline override of the GPU's, and its words in summaries.
+//! What a job needs from a kernel. Each feature is declared once: how it follows from the job, which part of the CPU's
+//! kernels implements it, its pipeline override on the GPU, and its name in summaries.
 
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::render::{RenderJob, SamplerKind};
 use crate::scene::Material;
 use crate::stages::{DielectricLaws, Diffuse, Shading, Surface};
 
-/// Code that comes or goes as one in the CPU's kernels, as bits of their constant parameter. Every combination would
-/// have to be compiled, so there are fewer of these than features.
+/// Parts of the CPU's kernels that are compiled in or left out, as bits of their constant parameter. Every combination
+/// must be compiled, so there are fewer parts than features.
 pub mod parts {
     /// Spheres with both roots, and refraction.
     pub const GLASS: u32 = 1;
-    /// A lens of some size.
+    /// A lens of nonzero radius.
     pub const LENS: u32 = 2;
-    /// What few scenes need: anchored spheres, specks, steep glass.
+    /// What few scenes need: anchored spheres, specks and steep glass.
     pub const EXTREMES: u32 = 4;
-    /// The hierarchy.
+    /// Traversal of the hierarchy.
     pub const HIERARCHY: u32 = 8;
-    /// Stage rules.
+    /// The rules of the stages.
     pub const RULES: u32 = 16;
-    /// Everything.
+    /// All parts.
     pub const ALL: u32 = 31;
-    /// No part: the code is in every kernel, or the CPU's tracer looks at the job instead.
+    /// No part: every kernel has the code, or the CPU tracer checks the job at run time.
     pub const NONE: u32 = 0;
 
-    /// What a kernel of these parts has code for, in words.
+    /// Describes in words what a kernel with these parts supports.
     pub fn describe(parts: u32) -> String {
         let words = [
             (GLASS, "glass"),
@@ -39,36 +39,37 @@ pub mod parts {
     }
 }
 
-/// How a job's spheres are sorted: what features ask besides the job.
+/// How a job's spheres are sorted, as the features need to know it.
 #[derive(Clone, Copy, Debug)]
 pub struct SortedSpheres<'a, R> {
-    /// Spheres of one root.
+    /// Number of spheres of which only the nearer root counts.
     pub opaque_count: usize,
-    /// Spheres of two.
+    /// Number of spheres of which both roots count.
     pub two_root_count: usize,
-    /// Spheres that are seen from a point of their surface.
+    /// Spheres described relative to a point on their surface.
     pub anchored: &'a [AnchoredSphere<R>],
-    /// Whether there is a hierarchy over those of one root and of two.
+    /// Whether a hierarchy holds the spheres of one and two roots.
     pub has_hierarchy: bool,
-    /// Whether one is so small beside its distance that a hit's depth says little of where on it the hit lies.
+    /// Whether a sphere is so small relative to its distance that a hit's depth hardly determines where on it the hit
+    /// is.
     pub has_specks: bool,
 }
 
-/// Between these refraction indices a refracted direction is good to rounding when it is worked out from the cosine of
-/// incidence; beyond them the critical angle is lost in its rounding.
+/// Between these refraction indices, the refracted direction computed from the cosine of incidence is accurate to
+/// rounding. Beyond them, rounding of the cosine loses the critical angle.
 const GENTLE_INDICES: [f64; 2] = [0.25, 4.0];
 
-/// In glass that a path does not leave, each of so many rays may move the angle of incidence by a rounding error and
-/// still the critical angle is held to 1e-6.
+/// For paths of up to this many rays inside glass, each ray may change the angle of incidence by a rounding error, and
+/// the critical angle is still accurate to 1e-6.
 const GENTLE_DEPTH: u32 = 64;
 
-/// The type of a feature, as a pipeline override.
+/// A type that a feature can have, as a pipeline override.
 pub trait Override: Copy + Eq {
-    /// Its type in WGSL.
+    /// The type's name in WGSL.
     const TYPE: &'static str;
-    /// As the device takes it; a truth value as 0 or 1.
+    /// The value as the device takes it; a truth value becomes 0 or 1.
     fn number(self) -> u32;
-    /// As WGSL writes it.
+    /// The value as a WGSL literal.
     fn literal(self) -> String;
 }
 
@@ -102,7 +103,7 @@ impl<T: Tag> Override for T {
     }
 }
 
-/// The last of one or two values.
+/// Selects the last of one or two values.
 macro_rules! last {
     ($value:expr) => {
         $value
@@ -112,10 +113,10 @@ macro_rules! last {
     };
 }
 
-/// Declares [`Features`]. Each has its type; then, in brackets, the value for which a kernel needs no code (`off`), the
-/// value in a kernel that leaves nothing out where the samples stay the same whatever the value is (`general`), the part of
-/// the CPU's kernels that has its code (`cpu`), and the words for its values from 1 on (`says`); then the question that
-/// the job and its spheres answer. A feature's override in WGSL is its name in capitals.
+/// Declares [`Features`]. Each feature has a type and, in brackets: the value for which a kernel needs no code (`off`);
+/// the value in a kernel that leaves nothing out, if it does not affect the samples (`general`); the part of the CPU's
+/// kernels that implements it (`cpu`); and the words for its values from 1 on (`says`). An expression then computes the
+/// value from the job and its spheres. A feature's override in WGSL is its name in capitals.
 macro_rules! features {
     (
         |$job:ident, $spheres:ident|
@@ -129,41 +130,41 @@ macro_rules! features {
             ] = $answer:expr;
         )*
     ) => {
-        /// What a job needs of a kernel; code for what it does not need is left out.
+        /// What a job needs from a kernel; a kernel leaves out the code for everything else.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub struct Features {
             $($(#[doc = $doc])* pub $name: $type,)*
         }
 
         impl Default for Features {
-            /// A kernel that leaves nothing out that a job without stage rules and hierarchy may need.
+            /// A kernel with everything that a job without stage rules and hierarchy may need.
             fn default() -> Self {
                 Features { $($name: last!($off $(, $general)?),)* }
             }
         }
 
         impl Features {
-            /// What a job needs whose spheres are sorted so.
+            /// The features that a job needs, given how its spheres are sorted.
             pub fn of<R>($job: &RenderJob, $spheres: &SortedSpheres<R>) -> Self {
                 Features { $($name: $answer,)* }
             }
 
-            /// A kernel that leaves out nothing that leaves the samples as they are: to measure what specialising gains.
+            /// Enables every feature that does not affect the samples, to measure the gain of specialising.
             pub fn generalised(self) -> Self {
                 Features { $($name: last!(self.$name $(, $general)?),)* }
             }
 
-            /// The parts of the CPU's kernels that have code for it: bits of [`parts`].
+            /// The parts of the CPU's kernels that implement these features: bits of [`parts`].
             pub fn parts(&self) -> u32 {
                 0 $(| if self.$name == $off { 0 } else { last!(parts::NONE $(, parts::$part)?) })*
             }
 
-            /// The pipeline overrides: their names in WGSL and their values.
+            /// The pipeline overrides: their WGSL names and values.
             pub fn overrides(&self) -> Vec<(String, f64)> {
                 vec![$((stringify!($name).to_uppercase(), f64::from(self.$name.number()))),*]
             }
 
-            /// The declarations of the overrides, with these values as their defaults.
+            /// The declarations of the overrides, with these values as defaults.
             pub(super) fn wgsl(&self) -> String {
                 [$(format!(
                     "override {}: {} = {};\n",
@@ -171,7 +172,7 @@ macro_rules! features {
                 )),*].concat()
             }
 
-            /// By feature, the words for its value.
+            /// For each feature, its name and the words for its value.
             fn words(&self) -> Vec<(&'static str, &'static str)> {
                 vec![$((stringify!($name), word(self.$name, &[$($($words),+)?]))),*]
             }
@@ -186,75 +187,77 @@ fn word(value: impl Override, words: &[&'static str]) -> &'static str {
 
 features! {
     |job, spheres|
-    /// Lambertian surfaces.
+    /// The scene has Lambertian surfaces.
     lambertian: bool [off false, general true, says "lambertian"] =
         occurs(job, |material| matches!(material, Material::Lambertian { .. }));
-    /// Metals.
+    /// The scene has metals.
     metal: bool [off false, general true, says "metal"] =
         occurs(job, |material| matches!(material, Material::Metal { .. }));
-    /// Metals with fuzz.
+    /// The scene has metals with fuzz.
     fuzz: bool [off false, general true, says "fuzz"] = occurs(job, |material| material.effective_fuzz() > 0.0);
-    /// Glass.
+    /// The scene has glass.
     glass: bool [off false, general true, cpu GLASS, says "glass"] =
         occurs(job, |material| matches!(material, Material::Dielectric { .. }));
-    /// A lens of some size.
+    /// The camera has a lens of nonzero radius.
     lens: bool [off false, general true, cpu LENS, says "lens"] = job.camera().defocus_angle_degrees > 0.0;
-    /// Spheres that a ray can be inside of, or a hierarchy.
+    /// There are spheres that a ray can be inside of, or a hierarchy.
     two_root: bool [off false, general true, cpu GLASS, says "two roots"] = spheres.two_root_count > 0;
-    /// Spheres that are seen from a point of their surface.
+    /// There are spheres described relative to a point on their surface.
     anchored: bool [off false, general true, cpu EXTREMES, says "anchored"] = !spheres.anchored.is_empty();
-    /// The eye is on the surface of one of them, so that rays from the camera start there.
+    /// The eye is on the surface of an anchored sphere, so that camera rays start there.
     eye_on_surface: bool [off false, general true, cpu EXTREMES, says "eye on a surface"] =
         spheres.anchored.iter().any(AnchoredSphere::is_under_eye);
-    /// One of them, which no light passes, holds every ray.
+    /// An anchored opaque sphere encloses every ray.
     cavity: bool [off false, general true, cpu EXTREMES, says "cavity"] =
         spheres.anchored.iter().any(|sphere| sphere.roots() == Roots::Farther);
-    /// Spheres that are small beside their distance: where a ray meets them is told by the way across the ray.
+    /// There are spheres that are small relative to their distance: hit points are found from the offset across the
+    /// ray.
     specks: bool [off false, cpu EXTREMES, says "specks"] = spheres.has_specks;
-    /// Glass whose critical angle must be known better than from a rounded cosine, or for many rays.
+    /// There is glass whose critical angle needs more precision than a rounded cosine has, or has to hold for many
+    /// rays.
     steep_glass: bool [off false, cpu EXTREMES, says "steep glass"] = has_steep_glass(job);
-    /// A hierarchy.
+    /// The scene has a hierarchy.
     hierarchy: bool [off false, cpu HIERARCHY, says "hierarchy"] = spheres.has_hierarchy;
-    /// It is the compressed one: for the GPU to choose.
+    /// The hierarchy is the compressed one; the GPU decides this.
     cwbvh: bool [off false, general false, says "compressed hierarchy"] = false;
     /// The spheres fit the uniform buffer, and the next two counts are those of the scene.
     few_spheres: bool [off false, general false] = are_few(spheres);
-    /// Spheres of one root, if they are few.
+    /// Number of spheres with one root, if there are few spheres.
     opaque_count: u32 [off 0, general 0] = if are_few(spheres) { spheres.opaque_count as u32 } else { 0 };
-    /// Spheres of two roots, if they are few.
+    /// Number of spheres with two roots, if there are few spheres.
     two_root_count: u32 [off 0, general 0] = if are_few(spheres) { spheres.two_root_count as u32 } else { 0 };
     /// The anchored spheres fit the uniform buffer, and the next count is that of the scene.
     few_anchored: bool [off false, general false] = spheres.anchored.len() <= UNIFORM_ANCHORED;
-    /// Anchored spheres, if they are few.
+    /// Number of anchored spheres, if there are few.
     anchored_count: u32 [off 0, general 0] =
         if spheres.anchored.len() <= UNIFORM_ANCHORED { spheres.anchored.len() as u32 } else { 0 };
-    /// Where the numbers of a sample come from.
+    /// The sampler, which generates the numbers of a sample.
     sampler: SamplerKind [off SamplerKind::Sobol] = job.settings().sampler;
     /// Samples are spread over the pixel.
     antialiasing: bool [off true] = job.rules().antialiasing;
-    /// Rays are traced at all.
+    /// Any rays are traced.
     rays: bool [off true] = job.rules().shading != Shading::ImageGradient;
     /// How rays leave the surface that they start on.
     surface: Surface [off Surface::Exact, cpu RULES, says "acne" "the book's arithmetic"] = job.rules().surface;
-    /// Lambertian surfaces send light evenly over the hemisphere.
+    /// Lambertian surfaces scatter uniformly over the hemisphere.
     hemisphere: bool [off false, cpu RULES, says "hemisphere"] = job.rules().diffuse == Diffuse::Hemisphere;
-    /// The reflectance is that of the picture's strip.
+    /// The reflectance depends on the picture strip.
     reflectance_strips: bool [off false, cpu RULES, says "strips"] = job.rules().reflectance_strips;
-    /// Paths can be too long for one dispatch of the GPU: for the GPU to decide.
+    /// Paths may be too long for one dispatch of the GPU; the GPU decides this.
     aside: bool [off true, general true] = true;
-    /// What a ray brings back.
+    /// What a ray contributes.
     shading: Shading [off Shading::Path, cpu RULES] = job.rules().shading;
-    /// The laws of glass.
+    /// The laws that glass obeys.
     dielectric_laws: DielectricLaws [off DielectricLaws::Schlick, cpu RULES] = job.rules().dielectric;
 }
 
 impl Features {
-    /// Whether the job needs code that few do: anchored spheres, specks, steep glass.
+    /// Whether the job needs code that few jobs need: anchored spheres, specks or steep glass.
     pub fn are_extreme(&self) -> bool {
         self.parts() & parts::EXTREMES != 0
     }
 
-    /// What a kernel for just this contains, for reports: `lambertian, metal, glass, 5 spheres in constants`.
+    /// Describes a kernel with exactly these features, for reports: `lambertian, metal, glass, 5 spheres in constants`.
     pub fn describe(&self) -> String {
         let is_told =
             |(name, words): &(&str, &str)| !(words.is_empty() || self.cwbvh && *name == "hierarchy");
@@ -274,7 +277,7 @@ fn are_few<R>(spheres: &SortedSpheres<R>) -> bool {
     !spheres.has_hierarchy && spheres.opaque_count + spheres.two_root_count <= UNIFORM_SPHERES
 }
 
-/// Whether the angles of glass matter more than a rounded cosine tells.
+/// Whether glass needs more precise angles than a rounded cosine gives.
 fn has_steep_glass(job: &RenderJob) -> bool {
     let many_rays = job.settings().max_depth > GENTLE_DEPTH;
     let [least, most] = GENTLE_INDICES;

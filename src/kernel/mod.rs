@@ -1,12 +1,12 @@
-//! What the CPU's tracer and the GPU's share, each thing declared once.
+//! What the tracers of CPU and GPU share, each thing declared once.
 //!
-//! - [`records`]: the structs that a prepared scene holds and shaders read. The Rust types for `f32` and `f64`, the named loads
-//!   of the CPU's packets and the structs of WGSL come from one declaration.
-//! - [`constants`] and [`tags`]: numbers, and enumerations that shaders know by numbers.
-//! - [`features`]: what a job needs of a kernel. The CPU chooses its variant by them, the GPU its pipeline overrides,
-//!   and summaries are worded by them.
+//! - [`records`]: the structs that a prepared scene holds and shaders read. One declaration generates the Rust
+//!   types for `f32` and `f64`, the named loads of the CPU's packets and the WGSL structs.
+//! - [`constants`] and [`tags`]: numbers, and enumerations that shaders represent as numbers.
+//! - [`features`]: what a job needs from a kernel. They select the variant on the CPU and the pipeline overrides on the
+//!   GPU, and provide the words of summaries.
 //!
-//! Everything here reaches the shaders as text: [`wgsl`].
+//! [`wgsl`] passes all of these declarations to the shaders as text.
 
 pub mod constants;
 pub mod features;
@@ -22,7 +22,7 @@ pub use record::{Columns, Field, Record, Shared, words_of};
 pub use records::*;
 pub use tags::{Roots, Tag};
 
-/// All that is declared here, in WGSL: constants, tags, overrides, structs.
+/// All shared declarations in WGSL: constants, tags, overrides and structs.
 pub fn wgsl() -> String {
     let constants = constants::wgsl() + &tags::wgsl();
     let overrides = Features::default().wgsl();

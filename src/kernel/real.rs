@@ -1,12 +1,12 @@
-//! The precisions of records.
+//! The floating-point precisions of records.
 
-/// A number of a record: `f32`, or `f64` for the reference.
+/// A number in a record: `f32`, or `f64` for the reference.
 pub trait Real: Copy + Default + Send + Sync + PartialOrd + std::fmt::Debug + 'static {
-    /// The nearest number of this precision.
+    /// Rounds to the nearest number of this precision.
     fn from_f64(x: f64) -> Self;
-    /// Without loss.
+    /// Converts to `f64` without loss.
     fn to_f64(self) -> f64;
-    /// With the other sign.
+    /// The number with its sign flipped.
     fn negated(self) -> Self;
 }
 

@@ -1,21 +1,21 @@
-//! How a record is declared once: a macro that makes the Rust struct, its fields as data, and its text in WGSL.
+//! A macro that declares a record once: it generates the Rust struct, its fields as data, and its WGSL text.
 
 use super::Real;
 
 /// A type that host and shaders share.
 pub trait Shared: Copy {
-    /// What WGSL calls it, such as `vec3f`.
+    /// The type's name in WGSL, such as `vec3f`.
     fn wgsl() -> String;
-    /// Appends it as the words that shaders read.
+    /// Appends the value as the words that shaders read.
     fn write(&self, words: &mut Vec<u32>);
 }
 
 /// A struct that host and shaders share, declared by [`record!`].
 pub trait Record: Shared {
-    /// Its fields, in order.
+    /// The record's fields, in order.
     fn fields() -> Vec<Field>;
 
-    /// Its declaration in WGSL.
+    /// The record's declaration in WGSL.
     fn declaration() -> String {
         let mut text = format!("struct {} {{\n", Self::wgsl());
         for field in Self::fields() {
@@ -31,24 +31,24 @@ pub trait Record: Shared {
 /// A field of a [`Record`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// Its name, in Rust and in WGSL.
+    /// The name, the same in Rust and WGSL.
     pub name: &'static str,
-    /// Its type in WGSL.
+    /// The type in WGSL.
     pub wgsl: String,
-    /// Bytes before it, in the Rust struct.
+    /// Offset in the Rust struct, in bytes.
     pub offset: usize,
-    /// Its docstring, line by line.
+    /// Lines of the doc comment.
     pub docs: &'static [&'static str],
 }
 
-/// The words of many records, as a shader's array has them.
+/// The words of a slice of records, laid out as a shader's array.
 pub fn words_of<T: Shared>(items: &[T]) -> Vec<u32> {
     let mut words = Vec::with_capacity(size_of_val(items) / size_of::<u32>());
     items.iter().for_each(|item| item.write(&mut words));
     words
 }
 
-/// Types that have a name in WGSL.
+/// Implements [`Shared`] for types that have a name in WGSL.
 macro_rules! shared {
     ($($type:ty = $name:literal, $self:ident => $words:expr;)*) => {
         $(impl Shared for $type {
@@ -90,25 +90,25 @@ impl<T: Record, const N: usize> Shared for [T; N] {
     }
 }
 
-/// Numbers by column, from which a packet loads a record's fields: one record a lane.
+/// Columns of numbers from which a packet loads the fields of records, one record per lane.
 pub trait Columns<R>: Sized {
-    /// A number of each lane's record.
+    /// One number per lane.
     type Number;
-    /// A vector of each lane's record.
+    /// One vector per lane.
     type Vector;
-    /// Column `column`.
+    /// Loads column `column`.
     fn number(&self, column: usize) -> Self::Number;
-    /// Columns `column`, `column + 1` and `column + 2`.
+    /// Loads columns `column`, `column + 1` and `column + 2` as a vector.
     fn vector(&self, column: usize) -> Self::Vector;
 }
 
-/// A field's type as a packet sees it.
+/// How packets load and store a field of this type.
 pub trait Shape<R> {
-    /// In a packet.
+    /// The type that the field has in a packet.
     type Of<C: Columns<R>>;
-    /// Loads it from the column on at which it begins.
+    /// Loads the field, which begins at column `first`.
     fn load<C: Columns<R>>(columns: &C, first: usize) -> Self::Of<C>;
-    /// Stores it from there on.
+    /// Stores the field, beginning at column `first`.
     fn store(self, columns: &mut [R], first: usize);
 }
 
@@ -134,9 +134,9 @@ impl<R: Real> Shape<R> for [R; 3] {
     }
 }
 
-/// Declares a [`Record`]: an ordinary struct, with the name that it has in WGSL. A struct with a type parameter is one
-/// of numbers in either precision; shaders read that of `f32`. `as` after a field's type gives it another name in WGSL.
-/// With `loaded by`, packets load its fields by name.
+/// Declares a [`Record`]: an ordinary struct with the name that it has in WGSL. A struct with a type parameter holds
+/// numbers in either precision, and shaders read the `f32` version. `as` after a field's type gives the type another
+/// name in WGSL. With `loaded by`, packets can load the fields by name.
 macro_rules! record {
     (
         $(#[$meta:meta])*
@@ -180,14 +180,14 @@ macro_rules! record {
     };
 }
 
-/// The precision of shaders, whatever the name of the parameter that stands for it.
+/// Replaces the precision parameter, whatever its name, by the shaders' precision.
 macro_rules! single {
     ($real:ident) => {
         f32
     };
 }
 
-/// The second, if there is one, else the first.
+/// Selects the second name if there is one, else the first.
 macro_rules! named {
     ($name:expr) => {
         $name
@@ -197,7 +197,7 @@ macro_rules! named {
     };
 }
 
-/// A trait by which packets load the fields of a record of numbers by name.
+/// Declares a trait by which packets load the fields of a record of numbers by name.
 macro_rules! loads {
     (
         $name:ident<$real:ident> by $loads:ident {
@@ -218,7 +218,7 @@ macro_rules! loads {
         impl<$real: Real, C: Columns<$real>> $loads<$real> for C {}
 
         impl<$real: Real> $name<$real> {
-            /// Its numbers, one after the other, into the first of `columns`.
+            /// Stores all numbers in order at the start of `columns`.
             pub fn store(self, columns: &mut [$real]) {
                 $(<$type as Shape<$real>>::store(self.$field, columns, column_of!($name, $field));)*
             }
@@ -226,7 +226,7 @@ macro_rules! loads {
     };
 }
 
-/// The column at which a field begins.
+/// The first column of a field.
 macro_rules! column_of {
     ($name:ident, $field:ident) => {
         const { std::mem::offset_of!($name<f32>, $field) / size_of::<f32>() }

@@ -1,31 +1,31 @@
-//! The records: what a prepared scene holds and shaders read.
+//! The records that a prepared scene holds and shaders read.
 //!
-//! Rust lays a struct out without gaps where each `vec3f` and `vec4f` begins at a multiple of 16 bytes, as WGSL asks for;
-//! a test holds both layouts against each other.
+//! Rust lays out a struct without gaps if each `vec3f` and `vec4f` begins at a multiple of 16 bytes, as WGSL requires.
+//! A test compares the two layouts.
 
 use super::record::{Columns, Field, Record, Shape, Shared, column_of, loads, named, record, single};
 use super::{Real, Roots, UNDER_EYE, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use bytemuck::{Pod, Zeroable};
 
 record! {
-    /// What shading needs to know of a sphere.
+    /// The data that shading needs about a sphere.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct ShadingRecord<R> as "ShadingRecord", loaded by LoadShading {
-        /// Centre, or anchor.
+        /// Centre, or anchor of an anchored sphere.
         pub reference: [R; 3],
         /// 1 / radius.
         pub curvature: R,
-        /// Reflected share of each colour.
+        /// Reflectance, linear RGB.
         pub albedo: [R; 3],
-        /// Length of the unit vector's part in the scattered direction; with a minus sign (also on 0) that is a reflection.
+        /// Length of the unit vector's part in the scattered direction; a negative sign (also on 0) marks a reflection.
         pub weight: R,
-        /// Radius.
+        /// Radius of the sphere.
         pub radius: R,
         /// Refraction index; 0 if not glass.
         pub refraction_index: R,
         /// 1 / refraction index; 0 if not glass.
         pub inverse_index: R,
-        /// Schlick's share at normal incidence.
+        /// Schlick's reflectance at normal incidence.
         pub f0: R,
         /// Unit vector from the anchor to the centre; 0 if not anchored.
         pub inward: [R; 3],
@@ -34,16 +34,16 @@ record! {
     }
 }
 
-/// Numbers of a [`ShadingRecord`].
+/// Number of columns in a [`ShadingRecord`].
 pub const SHADING_COLUMNS: usize = size_of::<ShadingRecord<f32>>() / size_of::<f32>();
 
-/// The same, filled up to whole groups of [`GROUP`]: a record's stride.
+/// The number of columns rounded up to whole groups of [`GROUP`]: the stride of a record.
 pub const RECORD_COLUMNS: usize = SHADING_COLUMNS.next_multiple_of(GROUP);
 
-/// Columns that are gathered at once.
+/// Number of columns that are gathered at once.
 pub const GROUP: usize = 4;
 
-/// A [`ShadingRecord`] as numbers, which lanes gather by column: in `f32` it begins with a cache line.
+/// A [`ShadingRecord`] as numbers, gathered by column. In `f32` it is aligned to a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct RecordColumns<R>(pub [R; RECORD_COLUMNS]);
@@ -76,29 +76,29 @@ impl<R: Real> Columns<R> for RecordColumns<R> {
 }
 
 record! {
-    /// A sphere as seen from a point of its surface.
+    /// A sphere described relative to a point on its surface.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct AnchoredSphere<R> as "AnchoredSphere" {
-        /// That point, near what is looked at.
+        /// The anchor: a point on the surface near the region of interest.
         pub anchor: [R; 3],
         /// 1 / radius.
         pub curvature: R,
         /// Unit vector from the anchor to the centre.
         pub inward: [R; 3],
-        /// A `ROOTS_` tag, and `UNDER_EYE` where the eye is a point of the surface, and on its outer side: rays that
-        /// start there and go outwards leave the sphere, the others meet it where they start.
+        /// A `ROOTS_` tag, plus `UNDER_EYE` if the eye is on the surface, on its outer side: rays that start there and
+        /// point outwards leave the sphere; the others meet it where they start.
         pub flags: u32,
     }
 }
 
 impl<R> AnchoredSphere<R> {
-    /// Which of the distances to it count.
+    /// Which roots count.
     #[inline(always)]
     pub fn roots(&self) -> Roots {
         Roots::of_flags(self.flags)
     }
 
-    /// Whether the eye is a point of the surface.
+    /// Whether the eye is on the surface.
     #[inline(always)]
     pub fn is_under_eye(&self) -> bool {
         self.flags & UNDER_EYE != 0
@@ -106,38 +106,38 @@ impl<R> AnchoredSphere<R> {
 }
 
 record! {
-    /// The camera in the form that gives a ray with a few multiplications and no difference of far points.
+    /// The camera in a form that gives a ray with a few multiplications and no differences between distant points.
     ///
-    /// A pixel position `p` (with the point in the pixel) lies at `s = p scale + offset` on the plane at distance 1.
-    /// With a point `xi` of the unit disk on the lens, the direction is
-    /// `(s.x - tau xi.x) u + (s.y - tau xi.y) v - w`, the origin `eye + lens_radius (xi.x u + xi.y v)`.
+    /// A pixel position `p`, which includes the offset in the pixel, maps to `s = p scale + offset` on the plane at
+    /// distance 1. With a point `xi` of the unit disk for the lens, the ray has the direction
+    /// `(s.x - tau xi.x) u + (s.y - tau xi.y) v - w` and the origin `eye + lens_radius (xi.x u + xi.y v)`.
     #[derive(Clone, Copy, Debug, Default)]
     pub struct CameraTable<R> as "Camera" {
-        /// The eye.
+        /// Position of the eye.
         pub eye: [R; 3],
-        /// Tangent of half the defocus angle; 0 without a lens.
+        /// Tangent of half the defocus angle; 0 for a pinhole.
         pub tau: R,
-        /// Right.
+        /// Unit vector to the right.
         pub u: [R; 3],
         /// Radius of the lens.
         pub lens_radius: R,
-        /// Up.
+        /// Unit vector upwards.
         pub v: [R; 3],
         /// Width of a pixel on the plane at distance 1.
         pub scale_x: R,
-        /// Against the view.
+        /// Unit vector backwards, against the viewing direction.
         pub w: [R; 3],
-        /// Height of a pixel there, negative.
+        /// Height of a pixel on that plane, negative.
         pub scale_y: R,
-        /// Left and upper edge of the picture.
+        /// Left and upper edge of the picture on that plane.
         pub offset: [R; 2],
-        /// Pixels across and down.
+        /// Picture size in pixels: width and height.
         pub size: [R; 2],
     }
 }
 
 impl<R: Copy> CameraTable<R> {
-    /// The same in another form of number.
+    /// Applies `f` to every number.
     pub fn map<T>(&self, f: impl Fn(R) -> T) -> CameraTable<T> {
         CameraTable {
             eye: self.eye.map(&f),
@@ -155,175 +155,176 @@ impl<R: Copy> CameraTable<R> {
 }
 
 record! {
-    /// A box of the hierarchy and what it holds.
+    /// A node of the hierarchy: a box and its contents.
     #[derive(Clone, Copy, Debug, Default, PartialEq)]
     pub struct Node<R> as "Node" {
-        /// Lowest corner.
+        /// Lowest corner of the box.
         pub low: [R; 3],
-        /// First sphere of a leaf, or the first of two children that stand side by side.
+        /// First sphere of a leaf, or first of two adjacent children.
         pub first: u32,
-        /// Highest corner.
+        /// Highest corner of the box.
         pub high: [R; 3],
-        /// Spheres of a leaf in the bits of `COUNT_MASK`; else 0 there, the axis that parts the children in bits 30 and
-        /// 31, and bit 29 set where the second child lies before the first.
+        /// For a leaf, the number of spheres in the bits of `COUNT_MASK`. For an inner node these bits are 0; bits 30
+        /// and 31 hold the axis that separates the children, and bit 29 is set if the second child comes before the
+        /// first.
         pub count: u32,
     }
 }
 
 record! {
-    /// Eight boxes, compressed: the bytes of obvhs' node. (Ylitie, Karras and Laine 2017.)
+    /// Eight compressed boxes, in the byte layout of obvhs. (Ylitie, Karras and Laine 2017.)
     #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
     pub struct GpuCwbvhNode as "CwbvhNode" {
-        /// Lowest corner, from which the children's boxes are measured.
+        /// Lowest corner, which the children's boxes are relative to.
         pub low: [f32; 3],
-        /// By axis, 8 bits: the exponent of the unit of their bounds. In the highest 8 bits, which children are nodes.
+        /// Low 24 bits: for each axis, 8 bits with the exponent of its unit. High 8 bits: which children are nodes.
         pub units: u32,
-        /// Its children that are nodes stand side by side from here on.
+        /// First child that is a node; these children are adjacent.
         pub first_child: u32,
-        /// The spheres of the others stand side by side from here on.
+        /// First sphere of the other children; their spheres are adjacent.
         pub first_sphere: u32,
-        /// By child, 8 bits: what it adds to a mask of hits, in the upper 3, at the bit that the lower 5 tell.
+        /// 8 bits per child: the upper 3 are added to a mask of hits, shifted by the number in the lower 5.
         pub marks: [u32; 2],
-        /// By axis, 8 bits a child: lower bounds of children 0 .. 3 and 4 .. 7, then upper bounds.
+        /// 8 bits per child: lower bounds of children 0 to 3 and 4 to 7, then upper bounds, along x.
         pub x: [u32; 4],
-        /// Along y.
+        /// The same along y.
         pub y: [u32; 4],
-        /// Along z.
+        /// The same along z.
         pub z: [u32; 4],
     }
 }
 
 record! {
-    /// What a job is, the same for all its dispatches.
+    /// The parameters of a job, the same for all its dispatches.
     #[derive(Clone, Copy, Debug)]
     pub struct GpuJob as "Job" {
-        /// The camera.
+        /// The camera in single precision.
         pub camera: CameraTable<f32>,
-        /// Sky radiance at the horizon in units of the film.
+        /// Sky radiance at the horizon, in units of the film.
         pub sky_middle: [f32; 3],
-        /// Largest coordinate of any box of the hierarchy.
+        /// Largest absolute coordinate of any box of the hierarchy.
         pub extent: f32,
         /// Growth of the sky radiance with the direction's y, in units of the film.
         pub sky_slope: [f32; 3],
-        /// Most rays of a path.
+        /// Most rays per path.
         pub max_depth: u32,
-        /// The sampler's seed.
+        /// Seed of the sampler.
         pub seed: u32,
-        /// Spheres of one root.
+        /// Number of spheres with one root.
         pub opaque_count: u32,
-        /// Spheres of two.
+        /// Number of spheres with two roots.
         pub two_root_count: u32,
-        /// Spheres that are seen from a point of their surface.
+        /// Number of anchored spheres.
         pub anchored_count: u32,
-        /// Pixels across.
+        /// Picture width in pixels.
         pub width: u32,
-        /// Pixels down.
+        /// Picture height in pixels.
         pub height: u32,
-        /// Pixels across a workgroup's tile.
+        /// Width of a workgroup's tile in pixels.
         pub tile_width: u32,
-        /// Nodes of the hierarchy: a traversal visits each once at most.
+        /// Number of nodes in the hierarchy; a traversal visits each at most once.
         pub node_count: u32,
-        /// The spheres where they are few: all threads read one at a time, which constant memory is made for.
+        /// The spheres, if there are few: all threads read the same one at a time, which suits constant memory.
         pub few_spheres: [[f32; 4]; UNIFORM_SPHERES],
-        /// The anchored spheres where they are few.
+        /// The anchored spheres, if there are few.
         pub few_anchored: [AnchoredSphere<f32>; UNIFORM_ANCHORED],
     }
 }
 
 record! {
-    /// What one dispatch is to do.
+    /// The parameters of one dispatch.
     #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
     pub struct GpuDispatch as "Dispatch" {
         /// First tile of the film.
         pub first_tile: u32,
-        /// Tiles.
+        /// Number of tiles.
         pub tile_count: u32,
-        /// Blocks of samples.
+        /// Number of blocks of samples.
         pub block_count: u32,
-        /// Turns of its loops after which a thread puts its path aside.
+        /// Loop iterations (turns) after which a thread puts its path aside.
         pub turn_limit: u32,
-        /// First row of the picture that the film buffer holds.
+        /// First picture row in the film buffer.
         pub first_row: u32,
-        /// Rows that it holds.
+        /// Number of rows in the film buffer.
         pub row_count: u32,
-        /// For resolve: samples in the film.
+        /// For resolve: number of samples in the film.
         pub sample_count: u32,
         /// For resolve: a `TRANSFER_` tag.
         pub transfer: u32,
-        /// 1 where threads go on with what they put aside, 0 where they begin.
+        /// 1 if threads resume the paths that were put aside, 0 if they start new ones.
         pub resumes: u32,
-        /// The first of the words in which paths are put aside.
+        /// First word of the storage for paths that are put aside.
         pub first_aside: u32,
     }
 }
 
 record! {
-    /// A block of samples of a half of the film.
+    /// A block of samples in one half of the film.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
     pub struct GpuBlock as "Block" {
-        /// Half of the film.
+        /// Index of the half.
         pub half: u32,
-        /// The sampler's counter of the first sample.
+        /// The sampler's counter for the first sample.
         pub counter: u32,
-        /// What it grows by.
+        /// Increment of the counter per sample.
         pub step: u32,
-        /// Samples.
+        /// Number of samples.
         pub count: u32,
     }
 }
 
 record! {
-    /// A pixel's sums in units of 2^-24: the bytes of a [`crate::film::PixelSum`].
+    /// Sums of a pixel in units of 2^-24, in the byte layout of a [`crate::film::PixelSum`].
     #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
     pub struct GpuPixelSum as "PixelSum" {
-        /// Low and high word.
+        /// Red: low and high word.
         pub red: [u32; 2],
-        /// Low and high word.
+        /// Green: low and high word.
         pub green: [u32; 2],
-        /// Low and high word.
+        /// Blue: low and high word.
         pub blue: [u32; 2],
     }
 }
 
 record! {
-    /// What was counted since the film was last sent for.
+    /// Counters since the film was last fetched.
     #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
     pub struct GpuCounters as "Counters" {
         /// Rays traced, low word.
         pub rays: u32 as "atomic<u32>",
-        /// High word.
+        /// Rays traced, high word.
         pub rays_high: u32 as "atomic<u32>",
-        /// Samples left out, low word.
+        /// Samples rejected, low word.
         pub rejected: u32 as "atomic<u32>",
-        /// High word.
+        /// Samples rejected, high word.
         pub rejected_high: u32 as "atomic<u32>",
-        /// What one dispatch counted.
+        /// Counters of the current dispatch.
         pub dispatch: GpuDispatchCounters,
     }
 }
 
 record! {
-    /// What was counted in one dispatch alone.
+    /// Counters of a single dispatch.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
     pub struct GpuDispatchCounters as "DispatchCounters" {
         /// Samples whose sums are in the film, low word.
         pub finished: u32 as "atomic<u32>",
-        /// High word.
+        /// Samples whose sums are in the film, high word.
         pub finished_high: u32 as "atomic<u32>",
         /// Threads that have put a path aside.
         pub unfinished: u32 as "atomic<u32>",
-        /// Those of them that could not trace one ray to its end.
+        /// Threads among them that could not trace a single ray to its end.
         pub stuck: u32 as "atomic<u32>",
     }
 }
 
-/// A record's name in WGSL, its size in bytes as an element of an array, and its fields.
+/// A record's WGSL name, its size in bytes as an array element, and its fields.
 pub type Layout = (String, usize, Vec<Field>);
 
-/// Makes the list of all records.
+/// Lists all records.
 macro_rules! all {
     ($($record:ty = $size:expr),* $(,)?) => {
-        /// All records, as the host lays them out.
+        /// All records as the host lays them out.
         pub fn layouts() -> Vec<Layout> {
             vec![$((<$record>::wgsl(), $size, <$record>::fields())),*]
         }

@@ -1,17 +1,17 @@
-//! Enumerations that shaders know by numbers.
+//! Enumerations that shaders represent as numbers.
 
 use super::ROOTS_MASK;
 use crate::render::SamplerKind;
 use crate::stages::{DielectricLaws, Shading, Surface, Transfer};
 use std::fmt::Write;
 
-/// An enumeration of which shaders know each value by a number.
+/// An enumeration whose values are numbers in the shaders.
 pub trait Tag: Copy + Eq + 'static {
-    /// All values.
+    /// All values of the enumeration.
     const ALL: &'static [Self];
-    /// What shaders call it.
+    /// The name of the value's WGSL constant.
     fn constant(self) -> &'static str;
-    /// Its number.
+    /// The value's number in WGSL.
     fn tag(self) -> u32;
 }
 
@@ -19,17 +19,17 @@ pub trait Tag: Copy + Eq + 'static {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Roots {
-    /// The nearer: no ray is inside of it. One that rounding puts inside meets it where it starts.
+    /// The nearer root: no ray is inside the sphere. A ray that rounding puts inside hits it where it starts.
     Nearer = 0,
-    /// Both.
+    /// Both roots.
     Both = 1,
-    /// The farther: it is opaque and holds the eye, so that every ray is inside of it and meets it, whatever
-    /// rounding says.
+    /// The farther root: the sphere is opaque and encloses the eye, so every ray is inside and hits it, whatever
+    /// rounding does.
     Farther = 2,
 }
 
 impl Roots {
-    /// From the flags of an [`super::AnchoredSphere`].
+    /// Reads the tag from the flags of an [`super::AnchoredSphere`].
     #[inline(always)]
     pub fn of_flags(flags: u32) -> Self {
         match flags & ROOTS_MASK {
@@ -40,7 +40,7 @@ impl Roots {
     }
 }
 
-/// Gives each value of an enumeration its name in WGSL.
+/// Implements [`Tag`] for an enumeration: gives each value its WGSL name.
 macro_rules! tags {
     ($type:ident { $($value:ident = $constant:literal),* $(,)? }) => {
         impl $crate::kernel::Tag for $type {

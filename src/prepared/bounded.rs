@@ -1,4 +1,4 @@
-//! Spheres as a hierarchy is built over them.
+//! Spheres in the form that hierarchies are built from.
 
 use crate::kernel::BOX_MARGIN;
 use crate::scene::Sphere;
@@ -6,15 +6,15 @@ use glam::DVec3;
 use obvhs::Boundable;
 use obvhs::aabb::Aabb;
 
-/// A sphere, measured from a point, whose box is widened by the rounding in the test of a sphere. The box is worked
-/// out when it is asked for: in a scene of millions it would be most of what a build takes.
+/// A sphere relative to an origin. Its box is widened by the rounding error of the intersection test. The box is
+/// computed on demand: in a scene of millions of spheres, storing boxes would take most of a build's time.
 pub(super) struct Bounded<'scene, 'origin> {
     sphere: &'scene Sphere,
     origin: &'origin DVec3,
 }
 
 impl<'scene, 'origin> Bounded<'scene, 'origin> {
-    /// All of `spheres`, measured from `origin`.
+    /// Wraps all `spheres`, with coordinates relative to `origin`.
     pub(super) fn all(
         spheres: impl IntoIterator<Item = &'scene Sphere>,
         origin: &'origin DVec3,

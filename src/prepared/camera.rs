@@ -1,4 +1,4 @@
-//! The camera as kernels read it.
+//! The camera in the form that kernels read.
 
 use super::rounded;
 use crate::kernel::{CameraTable, Real};
@@ -6,7 +6,7 @@ use crate::scene::Camera;
 use glam::DVec3;
 
 impl<R: Real> CameraTable<R> {
-    /// For a picture of `width` by `height` pixels, with coordinates measured from `origin`.
+    /// The camera of a picture of `width` by `height` pixels, with coordinates relative to `origin`.
     pub fn new(camera: &Camera, width: u32, height: u32, origin: DVec3) -> Self {
         let basis = camera.basis();
         let half_height = (camera.vfov_degrees.to_radians() / 2.0).tan();

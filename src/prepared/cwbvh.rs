@@ -1,8 +1,8 @@
-//! A hierarchy of eight children a node whose boxes take 8 bits a bound: 80 bytes a node.
+//! A compressed wide hierarchy: eight children per node, 8 bits per box bound, 80 bytes per node.
 //!
 //! Ylitie, Karras and Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs". obvhs
-//! builds the tree and lays its nodes out; here their boxes are set anew, so that none is smaller by rounding than
-//! what it holds.
+//! builds the tree and lays out its nodes. This module recomputes the boxes, so that rounding never makes a box smaller
+//! than its contents.
 
 use super::bounded::Bounded;
 use super::hierarchy::build_tree;
@@ -15,26 +15,26 @@ use obvhs::bvh2::Bvh2;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 pub use obvhs::cwbvh::node::CwBvhNode;
 
-/// Most spheres of a leaf: a node's marks have room for 3.
+/// Most spheres in a leaf: a node's marks have room for 3.
 const LEAF_SPHERES: u32 = 3;
 
-/// Most levels of a tree: what a traversal has room for.
+/// Most levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = CWBVH_STACK_SIZE;
 
-/// Largest bound.
+/// Largest value of a compressed bound.
 const BOUND_MAX: f64 = 255.0;
 
-/// Nodes, the root first.
+/// The nodes of a compressed hierarchy, root first.
 #[derive(Clone, Debug)]
 pub struct Cwbvh {
-    /// All nodes; children stand behind their parents.
+    /// All nodes; children come after their parents.
     pub nodes: Vec<CwBvhNode>,
-    /// The order in which the leaves name the spheres.
+    /// For each place in the order of the leaves, the index of the sphere.
     pub order: Vec<u32>,
 }
 
 impl Cwbvh {
-    /// Builds it over at least one sphere, with coordinates measured from `origin`.
+    /// Builds the hierarchy over at least one sphere, with coordinates relative to `origin`.
     pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3) -> Self {
         let bounded = Bounded::all(spheres, &origin);
         let wide = |tree: Bvh2| {
@@ -48,11 +48,11 @@ impl Cwbvh {
         built
     }
 
-    /// Checks what traversals take for granted: each node is the child of one, behind its parent; each of the `spheres`
-    /// is in one leaf, and within all boxes around that.
+    /// Checks what traversals rely on: each node has one parent, which comes before it; each of the `spheres` is in one
+    /// leaf and inside all boxes around that leaf.
     fn validate(&self, spheres: &[Bounded<'_, '_>]) -> Result<(), String> {
         let (mut is_reached, mut is_held) = (vec![false; self.nodes.len()], vec![false; spheres.len()]);
-        // Every node with the boxes that it lies in.
+        // Every node, with the boxes that enclose it.
         let mut open = vec![(0_u32, Vec::new())];
         while let Some((index, around)) = open.pop() {
             let Some(node) = self.nodes.get(index as usize) else {
@@ -98,7 +98,7 @@ impl Cwbvh {
         }
     }
 
-    /// Sets all boxes from those of the spheres in the order of the leaves.
+    /// Computes all boxes from the spheres' boxes, given in the order of the leaves.
     fn set_boxes(&mut self, spheres: &[Aabb]) {
         let mut boxes = vec![Aabb::empty(); self.nodes.len()];
         for index in (0..self.nodes.len()).rev() {
@@ -118,7 +118,7 @@ impl Cwbvh {
         }
     }
 
-    /// Nodes on the longest way from the root to a leaf.
+    /// The number of nodes on the longest path from the root to a leaf.
     pub fn depth(&self) -> usize {
         let mut depths = vec![1; self.nodes.len()];
         for (index, node) in self.nodes.iter().enumerate() {
@@ -130,7 +130,7 @@ impl Cwbvh {
     }
 }
 
-/// The corners of a child's box, without rounding.
+/// The corners of a child's box, decoded without rounding.
 fn corners(node: &CwBvhNode, child: usize) -> [DVec3; 2] {
     let local = node.local_child_aabb(child);
     let unit = node.compute_extent().as_dvec3();
@@ -141,13 +141,13 @@ fn united(boxes: &[Aabb]) -> Aabb {
     boxes.iter().fold(Aabb::empty(), |all, one| all.union(one))
 }
 
-/// Measures the children's boxes from the lowest corner of `whole`, in the smallest unit in which they fit.
+/// Encodes the children's boxes relative to the lowest corner of `whole`, in the smallest unit that fits them.
 fn set_children(node: &mut CwBvhNode, whole: &Aabb, children: &[Aabb; 8]) {
     let wide = |v: Vec3A| v.as_dvec3().to_array();
     let (low, high) = (wide(whole.min), wide(whole.max));
     node.p = whole.min.into();
     for axis in 0..3 {
-        // Sizes are differences of f32, so that f64 has them with 29 bits to spare.
+        // Sizes are differences of `f32` numbers, which `f64` holds with 29 bits to spare.
         let size = high[axis] - low[axis];
         let unit = |exponent: u8| f64::from(f32::from_bits(u32::from(exponent) << 23));
         let exponent = (1..u8::MAX).find(|e| unit(*e) * BOUND_MAX >= size).unwrap_or(u8::MAX - 1);
@@ -187,11 +187,11 @@ mod tests {
             }
             check(&spheres);
         }
-        // All at one place.
+        // All spheres at the same place.
         check(&[field(1).0.spheres[0]; 40]);
     }
 
-    /// What is done to a tree, and a part of what the check must say.
+    /// How a test damages a tree, and part of the error that the check must report.
     type Damage = (&'static str, fn(&mut Cwbvh));
 
     #[test]

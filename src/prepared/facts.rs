@@ -1,5 +1,5 @@
-//! What follows from a scene alone, whoever looks at it: spheres that others cover, and layers so thin that rounding
-//! may show.
+//! Properties of a scene that do not depend on the camera: spheres that others cover, and layers so thin that rounding
+//! may be visible.
 
 use crate::kernel::HALF_EPSILON;
 use crate::render::RenderJob;
@@ -7,48 +7,51 @@ use crate::scene::{Material, Scene, Sphere};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Two spheres whose surfaces are everywhere closer than this share of their radius are a layer.
+/// Two spheres form a layer if their surfaces are everywhere closer than this share of their radius.
 const LAYER_SHARE: f64 = 1e-2;
 
-/// A layer is right while it is thicker than this many units of rounding of the coordinates that it lies at ...
+/// A layer renders correctly if it is thicker than this many rounding units of its coordinates ...
 const LAYER_UNITS: f64 = 16.0;
 
-/// ... and than this many of the distance from which the eye sees it: nearer surfaces have one distance.
+/// ... and than this many rounding units of its distance from the eye: surfaces closer than that have the same
+/// distance.
 const DISTANCE_UNITS: f64 = 4.0;
 
-/// A layer whose surfaces touch or cross is too thin somewhere, whatever its thickest place. It is told of where that is
-/// so many times as thick as a layer must be, or less: a path that meets the wrong surface first is hardly longer.
+/// Where the surfaces of a layer touch or cross, it is too thin somewhere, however thick it is elsewhere. Such a layer
+/// is reported only if its greatest thickness is at most this many times the required one: a path that hits the wrong
+/// surface first is then hardly longer.
 const CLOSING_RATIO: f64 = 100.0;
 
-/// The same where one side is glass: a path that misses its way out of glass is another path.
+/// The same limit where one side is glass: a path that misses its exit from the glass becomes a different path.
 const GLASS_CLOSING_RATIO: f64 = 1e4;
 
-/// So many spheres are compared with each other in a cell; in a fuller one each with the next larger.
+/// In cells of up to this many spheres, all pairs are compared; in fuller cells, each sphere only with the next larger
+/// one.
 const CELL_LIMIT: usize = 64;
 
-/// See the module.
+/// Covered spheres and thin layers of a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Facts {
-    /// Spheres that an earlier one of the same place and size covers: indices in the scene, rising.
+    /// Indices, ascending, of spheres that are covered by an earlier sphere of the same place and size.
     covered: Vec<u32>,
     layers: Vec<Layer>,
 }
 
-/// Two spheres with almost the same surface.
+/// Two spheres with nearly the same surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Layer {
     spheres: [u32; 2],
-    /// Most distance between the surfaces.
+    /// Greatest distance between the surfaces.
     thickness: f64,
-    /// Least distance, 0 where they cross.
+    /// Smallest distance between the surfaces; 0 where they cross.
     opening: f64,
 }
 
-/// A layer that shows rounding.
+/// A layer in which rounding is visible.
 #[derive(Clone, Copy, Debug)]
 struct Unresolved {
     layer: Layer,
-    /// How thick it would have to be.
+    /// The thickness that the layer would need.
     limit: f64,
 }
 
@@ -67,12 +70,12 @@ impl Facts {
         facts
     }
 
-    /// Whether the sphere is never met since another is in its place.
+    /// Whether the sphere is never hit because an equal sphere is in its place.
     pub fn covers(&self, index: u32) -> bool {
         self.covered.binary_search(&index).is_ok()
     }
 
-    /// What single precision does not hold of a job whose coordinates are measured from `origin`.
+    /// What single precision cannot represent in a job whose coordinates are relative to `origin`.
     pub fn warnings(&self, job: &RenderJob, origin: DVec3) -> Vec<String> {
         let unresolved: Vec<Unresolved> =
             self.layers.iter().filter_map(|layer| unresolved(*layer, job, origin)).collect();
@@ -101,8 +104,8 @@ impl Facts {
         thin_ones.into_iter().chain(closing_ones).collect()
     }
 
-    /// Compares spheres of about one size and place: those of one cell, and those beyond its border where one lies close
-    /// to it.
+    /// Compares spheres of similar size and place: those in the same cell, and those in the neighbouring cell if one is
+    /// close to the border.
     fn compare_neighbours(&mut self, spheres: &[Sphere]) {
         let mut cells: Vec<(u64, u32)> =
             spheres.par_iter().enumerate().map(|(index, sphere)| (own_mark(sphere), index as u32)).collect();
@@ -132,7 +135,7 @@ impl Facts {
         }
     }
 
-    /// Keeps of spheres that are alike the first of the scene.
+    /// Of equal spheres, keeps the first in the scene.
     fn drop_covered(&mut self, spheres: &[Sphere], members: &mut Vec<u32>) {
         let numbers = |index: u32| {
             let Sphere { center: DVec3 { x, y, z }, radius, .. } = spheres[index as usize];
@@ -159,7 +162,7 @@ impl Facts {
         let spheres = [a.min(b), a.max(b)];
         let apart = first.center.distance(second.center);
         let thickness = apart + (first.radius - second.radius).abs();
-        // Surfaces that cross differ by no more where they do.
+        // Where surfaces cross, they differ by no more than this either.
         if thickness < LAYER_SHARE * first.radius.min(second.radius) {
             let opening = ((first.radius - second.radius).abs() - apart).max(0.0);
             self.layers.push(Layer { spheres, thickness, opening });
@@ -167,7 +170,7 @@ impl Facts {
     }
 }
 
-/// `None` if the layer is right.
+/// Returns `None` if the layer renders correctly.
 fn unresolved(layer: Layer, job: &RenderJob, origin: DVec3) -> Option<Unresolved> {
     let spheres = layer.spheres.map(|index| job.scene().spheres[index as usize]);
     let limits = spheres.map(|Sphere { center, radius, .. }| {
@@ -183,7 +186,7 @@ fn unresolved(layer: Layer, job: &RenderJob, origin: DVec3) -> Option<Unresolved
     (is_thin || closes).then_some(Unresolved { layer, limit })
 }
 
-/// The one that is worst beside how thick it would have to be.
+/// The layer that falls furthest short of the thickness it needs.
 fn worst(all: &[Unresolved]) -> Option<Unresolved> {
     let share = |found: &Unresolved| found.layer.thickness / found.limit;
     all.iter().copied().min_by(|a, b| share(a).total_cmp(&share(b)))
@@ -195,14 +198,14 @@ fn members_of(cells: &[(u64, u32)], mark: u64) -> impl Iterator<Item = u32> {
     cells[first..].iter().take_while(move |cell| cell.0 == mark).take(CELL_LIMIT).map(|(_, index)| *index)
 }
 
-/// Most cells that hold nothing, told without a search: one bit for those marks that end alike.
+/// Rules out most empty cells without a search: one bit for all marks with the same low bits.
 struct Occupied {
     bits: Vec<u64>,
 }
 
 impl Occupied {
     fn by(cells: &[(u64, u32)]) -> Self {
-        // Sixteen times as many bits as spheres: one empty cell in sixteen is searched for in vain.
+        // Sixteen bits per sphere: the filter lets one in sixteen empty cells through to a search.
         let mut occupied = Occupied { bits: vec![0; (cells.len() / 4).next_power_of_two()] };
         for (mark, _) in cells {
             let (word, bit) = occupied.place(*mark);
@@ -221,14 +224,14 @@ impl Occupied {
     }
 }
 
-/// How far beyond a border of its cell a sphere may lie that makes a layer with another, in cells.
+/// How far outside a cell, in cells, a sphere may lie and still form a layer with one inside.
 const REACH: f64 = 2.0 * LAYER_SHARE;
 
-/// Radii that are powers of two are common: so moved, they lie far from a border of sizes.
+/// Radii are often powers of two; this shift moves them far from the borders between sizes.
 const SIZE_SHIFT: f64 = 0.37;
 
-/// The mark of the cell that a sphere lies in. A cell holds spheres of about one size and place, and is about as wide as
-/// their radius: hardly any two spheres of a plain scene share one.
+/// The mark of the cell that contains a sphere. A cell holds spheres of similar size and place and is about as wide as
+/// their radius, so in an ordinary scene two spheres rarely share a cell.
 fn own_mark(sphere: &Sphere) -> u64 {
     let size = (sphere.radius.log2() + SIZE_SHIFT).floor();
     let [x, y, z] = (sphere.center / size.exp2()).floor().to_array();
@@ -242,7 +245,7 @@ fn mark(cell: [f64; 4]) -> u64 {
     })
 }
 
-/// The marks of the cells that a sphere lies close to.
+/// The marks of the neighbouring cells that a sphere is close to.
 fn marks_beyond_borders(sphere: &Sphere) -> Vec<u64> {
     let mut marks = Vec::new();
     let sizes = cells_near(sphere.radius.log2() + SIZE_SHIFT);
@@ -254,13 +257,13 @@ fn marks_beyond_borders(sphere: &Sphere) -> Vec<u64> {
         let all = x.into_iter().flatten().flat_map(|x| {
             y.into_iter().flatten().flat_map(move |y| z.into_iter().flatten().map(move |z| [x, y, z]))
         });
-        // The first of all is the sphere's own.
+        // The first mark is that of the sphere's own cell.
         marks.extend(all.skip(usize::from(which == 0)).map(|[x, y, z]| mark([size, x, y, z])));
     }
     marks
 }
 
-/// The cell that a number lies in, and the next where it lies close to its border.
+/// The cell that contains a number, and the neighbouring cell if the number is close to the border.
 fn cells_near(number: f64) -> [Option<f64>; 2] {
     let cell = number.floor();
     let within = number - cell;
@@ -285,7 +288,7 @@ mod tests {
         scene
     }
 
-    /// Wherever two spheres lie and however large they are, they are found to be close if they are.
+    /// Two spheres that are close are found to be close, wherever they lie and however large they are.
     #[test]
     fn layers_are_found_across_borders() {
         let random =

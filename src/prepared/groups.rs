@@ -1,5 +1,5 @@
-//! Which spheres are intersected how, and what coordinates are measured from: all in `f64`, before anything is
-//! rounded.
+//! Decides how each sphere is intersected and which origin coordinates are relative to. All of it is computed in `f64`,
+//! before anything is rounded.
 
 use super::facts::Facts;
 use crate::kernel::{HALF_EPSILON, Roots};
@@ -8,66 +8,69 @@ use crate::scene::{Camera, Material, Sphere};
 use crate::stages::Surface;
 use glam::DVec3;
 
-/// A sphere is anchored when rounding at its radius exceeds this share of the smallest length near its surface. At
-/// that point the perpendicular form's distances are off by some `1e-4` of that length.
+/// A sphere is anchored when rounding at its radius exceeds this share of the smallest length near its surface. At this
+/// limit the distances of the perpendicular form have an error of about `1e-4` of that length.
 const ANCHOR_SHARE: f64 = 5e-5;
 
-/// What touches a much larger sphere counts as so many times smaller than it is where one of the two is glass. A ray that
-/// leaves the one near there may start beyond the other's surface by as much as rounding moves it, and then misses it.
+/// Where one of two touching spheres is glass, the smaller counts as this many times smaller than it is. A ray that
+/// leaves one sphere near the contact may start beyond the other's surface, because rounding moves it, and then miss
+/// that surface.
 const TOUCHING_SHARE: f64 = 50.0;
 
-/// Spheres touch where they cross, or where so many units of rounding part them.
+/// Spheres touch if they cross or are at most this many rounding units apart.
 const TOUCHING_UNITS: f64 = 16.0;
 
-/// Most spheres that are anchored for the sake of small lengths. Every ray tests them all, so they cost what a list
-/// costs; those that gain most come first.
+/// Most spheres that are anchored because of small lengths. Every ray tests all of them, as in a list. Those with the
+/// most to gain come first.
 const ANCHORED_LIMIT: usize = 16;
 
-/// Most spheres that are looked at for that.
+/// Most spheres that are examined for this.
 const CANDIDATE_LIMIT: usize = 64;
 
-/// Coordinates are measured from a point near the eye where the eye is farther from the world's origin than this
-/// many times the smallest length about it: there they would be rounded to `8e-6` of that length.
+/// Coordinates are relative to a point near the eye if the eye's distance from the world's origin exceeds the smallest
+/// length near the eye by this factor. At that ratio, rounding reaches `8e-6` of that length.
 const SHIFT_RATIO: f64 = 128.0;
 
-/// That point lies on a grid as coarse as this many times the length, so that it stays while the eye moves a little.
+/// Spacing of the grid for that point, as a multiple of the length. On a grid, the point stays fixed for small
+/// movements of the eye.
 const GRID_RATIO: f64 = 256.0;
 
-/// The eye is on a surface when the distance between them is rounding in `f64`: this many units in the last place.
+/// The eye is on a surface if their distance is within the rounding of `f64`: this many units in the last place.
 const ON_SURFACE_UNITS: f64 = 4.0;
 
-/// A sphere that is seen from a point of its surface.
+/// A sphere described relative to a point on its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Anchored {
-    /// Index in the scene.
+    /// Index of the sphere in the scene.
     pub index: u32,
-    /// Those that count.
+    /// Which roots count.
     pub roots: Roots,
-    /// Whether the eye is a point of the surface, so that rays from the camera start on it, on the outer side.
+    /// Whether the eye is on the surface, so that camera rays start on it, on the outer side.
     pub under_eye: bool,
-    /// Near which point the anchor lies.
+    /// A point that the anchor is close to.
     pub near: DVec3,
 }
 
-/// Which spheres are intersected how: indices in the scene, rising. Spheres that another covers are in none.
+/// How each sphere is intersected: indices in the scene, ascending. Covered spheres are in no group.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Groups {
-    /// What coordinates are measured from.
+    /// The point that coordinates are relative to.
     pub origin: DVec3,
-    /// Of one root.
+    /// Spheres of which only the nearer root counts.
     pub opaque: Vec<u32>,
-    /// Of two.
+    /// Spheres of which both roots count.
     pub two_root: Vec<u32>,
-    /// Few.
+    /// Anchored spheres; there are few.
     pub anchored: Vec<Anchored>,
-    /// Whether a sphere is so small beside its distance that a hit's depth says little of where on it the hit lies.
+    /// Whether a sphere is so small relative to its distance that a hit's depth hardly determines where on it the hit
+    /// is.
     pub has_specks: bool,
 }
 
-/// The eye and its lens.
+/// The eye and the radius of its lens.
 struct Eye {
     position: DVec3,
-    /// Rays start within this distance of it.
+    /// Rays start within this distance of the eye.
     lens_radius: f64,
 }
 
@@ -77,7 +80,7 @@ impl Eye {
         Eye { position: camera.look_from, lens_radius: camera.effective_focus_distance() * tangent }
     }
 
-    /// Distance to the surface: negative inside, 0 where it cannot be told from 0.
+    /// Distance to the surface: negative inside, 0 if it is within rounding of 0.
     fn height(&self, sphere: &Sphere) -> f64 {
         let height = self.position.distance(sphere.center) - sphere.radius;
         let size = self.position.abs().max_element() + sphere.center.abs().max_element() + sphere.radius;
@@ -120,7 +123,7 @@ impl Groups {
                 continue;
             }
             groups.has_specks |= is_exact && is_speck(sphere, &eye);
-            // The margin is far above what rounding can move the eye by.
+            // The margin is far larger than the distance by which rounding can move the eye.
             let margin = 1e-5 * sphere.radius + 1e-6 * (eye.position - groups.origin).abs().max_element();
             let is_near = eye.height(sphere) <= eye.lens_radius * (1.0 + 1e-5) + margin;
             let group = if is_near || !is_opaque(sphere) { &mut groups.two_root } else { &mut groups.opaque };
@@ -129,12 +132,13 @@ impl Groups {
         groups
     }
 
-    /// All but the anchored, those of one root first: of two at one distance the first is met.
+    /// All spheres but the anchored ones, those with one root first. Of two hits at the same distance, the first in
+    /// this order wins.
     pub fn in_list_order(&self) -> Vec<u32> {
         self.opaque.iter().chain(&self.two_root).copied().collect()
     }
 
-    /// Whether a hierarchy over these spheres is one over those.
+    /// Whether a hierarchy over these spheres also serves `other`.
     pub fn share_hierarchy(&self, other: &Groups) -> bool {
         let indices = |groups: &Groups| groups.anchored.iter().map(|a| a.index).collect::<Vec<_>>();
         (self.origin, &self.opaque, &self.two_root) == (other.origin, &other.opaque, &other.two_root)
@@ -142,29 +146,29 @@ impl Groups {
     }
 }
 
-/// Whether a sphere can be met from within `cavity`, or is it.
+/// Whether a sphere is `cavity` or can be hit from inside it.
 fn reaches_into(sphere: &Sphere, cavity: &Sphere) -> bool {
     let apart = sphere.center.distance(cavity.center);
     sphere == cavity || (apart < sphere.radius + cavity.radius && apart + cavity.radius > sphere.radius)
 }
 
-/// Whether the surfaces cross, or are closer than rounding tells.
+/// Whether the surfaces cross or are closer than rounding can resolve.
 fn touch(a: &Sphere, b: &Sphere) -> bool {
     let apart = a.center.distance(b.center);
     let margin = TOUCHING_UNITS * HALF_EPSILON * a.radius.max(b.radius);
     apart <= a.radius + b.radius + margin && apart >= (a.radius - b.radius).abs() - margin
 }
 
-/// Whether rounding moves a hit by more than a share of the sphere that shows.
+/// Whether rounding moves a hit by a visible share of the sphere.
 fn is_speck(sphere: &Sphere, eye: &Eye) -> bool {
     HALF_EPSILON * eye.position.distance(sphere.center) > 5e-4 * sphere.radius
 }
 
-/// A point near what the eye is nearest to, on a grid; 0 where coordinates are small enough as they are.
+/// A grid point near the surface closest to the eye, or 0 if coordinates are already small enough.
 fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> DVec3 {
     let by_height = spheres.clone().map(|sphere| (eye.height(sphere).abs(), sphere));
     let Some((height, nearest)) = by_height.min_by(|a, b| a.0.total_cmp(&b.0)) else { return DVec3::ZERO };
-    // Layers about or in the nearest sphere are lengths, too.
+    // Layers around or inside the nearest sphere count as lengths, too.
     let layers = spheres.filter_map(|other| {
         let gap = (other.radius - nearest.radius).abs() - other.center.distance(nearest.center);
         (gap > 0.0).then_some(gap)
@@ -183,8 +187,8 @@ fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> D
     (foot / cell).round() * cell
 }
 
-/// Spheres that are seen from a point of their surface, by rising index: those that all rays start in or on, and those
-/// so large beside what is near their surface that rounding at their radius would show.
+/// Spheres to be anchored, by ascending index: those that all rays start in or on, and those so large relative to what
+/// is near their surface that rounding at their radius would be visible.
 fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
     shown: impl Fn() -> I + Copy,
     eye: &Eye,
@@ -237,19 +241,19 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
     chosen
 }
 
-/// What rounding at a sphere's radius could show in.
+/// What rounding at a sphere's radius could affect.
 #[derive(Clone, Copy, Debug)]
 struct Detail {
-    /// The smallest length near the surface: the radius of a sphere there, or its distance from the surface where that
-    /// is larger.
+    /// The smallest length near the surface: the radius of a nearby sphere, or its distance from the surface if that is
+    /// larger.
     length: f64,
     /// The middle of the spheres whose lengths are hardly larger.
     place: DVec3,
 }
 
 impl Detail {
-    /// `None` where all lengths are so large that they leave the sphere as it is. `counted` says what a sphere's length
-    /// counts as.
+    /// Returns `None` if all lengths are so large that the sphere needs no anchor. `counted` maps a sphere and its
+    /// length to the length that counts.
     fn near<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
         shown: impl Fn() -> I,
         sphere: &Sphere,
@@ -272,7 +276,7 @@ impl Detail {
     }
 }
 
-/// Infinity in place of 0.
+/// Replaces 0 by infinity.
 fn positive(length: f64) -> f64 {
     if length > 0.0 { length } else { f64::INFINITY }
 }

@@ -1,7 +1,7 @@
-//! A hierarchy of boxes over many spheres.
+//! A bounding volume hierarchy over many spheres.
 //!
-//! obvhs builds the tree; here it is laid out for the kernels, and its boxes are made wide enough that rounding
-//! never hides a hit that testing every sphere would find.
+//! obvhs builds the tree. This module lays it out for the kernels and widens its boxes, so that rounding never hides a
+//! hit that a test of every sphere would find.
 
 use super::bounded::Bounded;
 use super::parted;
@@ -14,26 +14,26 @@ use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use std::time::Duration;
 
-/// Most levels of a tree: what a traversal has room for.
+/// Most levels of a tree, limited by the traversal's stack.
 pub const DEPTH_LIMIT: usize = STACK_SIZE;
 
-/// Most spheres of a leaf.
+/// Most spheres in a leaf.
 const LEAF_SPHERES: u32 = 8;
 
-/// Nodes, the root first.
+/// The nodes of a hierarchy, root first, and the order of its spheres.
 #[derive(Clone, Debug)]
 pub struct Hierarchy<R> {
     /// All nodes.
     pub nodes: Vec<Node<R>>,
-    /// Largest coordinate of any box in size: how coarse rounding can be.
+    /// Largest absolute coordinate of any box, which bounds the rounding error.
     pub extent: R,
-    /// The place in the list of each sphere in the order of the leaves. Of two spheres at one distance that which
-    /// stands first in the list is met.
+    /// For each sphere in the order of the leaves, its place in the list. Of two hits at the same distance, the sphere
+    /// that comes first in the list wins.
     pub ranks: Vec<u32>,
 }
 
 impl<R: Real> Hierarchy<R> {
-    /// Builds it over at least one sphere, with coordinates measured from `origin`.
+    /// Builds the hierarchy over at least one sphere, with coordinates relative to `origin`.
     pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3) -> Self {
         let fits = |tree: &Bvh2| depth(&tree.nodes) <= DEPTH_LIMIT;
         let tree = build_tree(&Bounded::all(spheres, &origin), LEAF_SPHERES, |tree| tree, fits);
@@ -59,8 +59,8 @@ impl<R: Real> Hierarchy<R> {
     }
 }
 
-/// A tree over at least one sphere with at most `leaf_spheres` to a leaf, laid out: by obvhs, unless the spheres are
-/// such that it would take long, or what it makes does not fit (by having more levels than a traversal has room for).
+/// Builds and lays out a tree over at least one sphere, with at most `leaf_spheres` per leaf. obvhs builds it, unless
+/// that would take long for these spheres or its tree has more levels than a traversal supports.
 pub(super) fn build_tree<T>(
     spheres: &[Bounded<'_, '_>],
     leaf_spheres: u32,
@@ -78,7 +78,7 @@ pub(super) fn build_tree<T>(
     if fits(&tree) { tree } else { lay_out(parted::build(spheres, leaf_spheres as usize, true)) }
 }
 
-/// Nodes on the longest way from the root to a leaf.
+/// The number of nodes on the longest path from the root to a leaf.
 fn depth(nodes: &[Bvh2Node]) -> usize {
     levels(|index| {
         let node = &nodes[index as usize];
@@ -86,7 +86,7 @@ fn depth(nodes: &[Bvh2Node]) -> usize {
     })
 }
 
-/// Levels of a tree, given the first of a node's two children, which stand side by side.
+/// The number of levels of a tree. `first_child` gives the first of a node's two children, which are adjacent.
 fn levels(first_child: impl Fn(u32) -> Option<u32>) -> usize {
     let mut deepest = 0;
     let mut open = vec![(0_u32, 1_usize)];
@@ -100,7 +100,7 @@ fn levels(first_child: impl Fn(u32) -> Option<u32>) -> usize {
 }
 
 impl<R> Hierarchy<R> {
-    /// Nodes on the longest way from the root to a leaf.
+    /// The number of nodes on the longest path from the root to a leaf.
     pub fn depth(&self) -> usize {
         levels(|index| {
             let node = &self.nodes[index as usize];
@@ -109,15 +109,15 @@ impl<R> Hierarchy<R> {
     }
 }
 
-/// How obvhs is to build the tree of so many spheres.
+/// Build parameters of obvhs for this many spheres.
 fn params(spheres: usize, max_prims_per_leaf: u32) -> BvhBuildParams {
     let preset =
         if spheres <= 100_000 { BvhBuildParams::medium_build() } else { BvhBuildParams::fast_build() };
     BvhBuildParams { max_prims_per_leaf, ..preset }
 }
 
-/// The axis along which two sibling boxes lie farthest apart, in bits 30 and 31; bit 29 is set where the second
-/// lies before the first.
+/// The axis along which two sibling boxes are farthest apart, in bits 30 and 31. Bit 29 is set if the second box comes
+/// before the first on that axis.
 fn parting_axis(nodes: &[obvhs::bvh2::node::Bvh2Node], first: usize) -> u32 {
     let apart = nodes[first + 1].aabb().center() - nodes[first].aabb().center();
     let size = apart.abs();

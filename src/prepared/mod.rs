@@ -1,4 +1,4 @@
-//! What a kernel reads: the job, rounded once to the kernel's precision and laid out flat.
+//! The prepared scene: a job rounded once to the kernel's precision and laid out flat.
 
 mod bounded;
 mod camera;
@@ -24,31 +24,31 @@ use hierarchy::Hierarchy;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Spheres from which on there is a hierarchy. On generated fields at 8 lanes the list was faster with 4 spheres
-/// and the hierarchy with 48, by a tenth; between 12 and 32 they were alike.
+/// From this many spheres on, a hierarchy is built. On generated fields with 8 lanes, the list was a tenth faster with
+/// 4 spheres and the hierarchy a tenth faster with 48; between 12 and 32 they were equally fast.
 const HIERARCHY_MIN_SPHERES: usize = 24;
 
 /// A job's spheres, materials, camera and sky for a kernel of precision `R`.
 ///
-/// Spheres are numbered by their row, in the order `opaque`, `two_root`, `anchored`.
+/// A sphere's number is its row, in the order `opaque`, `two_root`, `anchored`.
 #[derive(Clone, Debug)]
 pub struct PreparedScene<R> {
     /// Centre and squared radius of spheres that no ray is ever inside of: only the nearer root counts.
     pub opaque: Vec<[R; 4]>,
-    /// Centre and squared radius of the others. Where there is a hierarchy, all spheres, in the order of its leaves,
-    /// the squared radius with a minus sign where only the nearer root counts.
+    /// Centre and squared radius of the other spheres. With a hierarchy, these are all spheres in the order of its
+    /// leaves, and the squared radius is negative where only the nearer root counts.
     pub two_root: Vec<[R; 4]>,
-    /// Spheres that are seen from a point on their surface: huge ones, and those that the eye is in or on.
+    /// Spheres described relative to a point on their surface: huge ones, and those that the eye is in or on.
     pub anchored: Vec<AnchoredSphere<R>>,
-    /// Over `two_root`.
+    /// The hierarchy over `two_root`, if there are enough spheres.
     pub hierarchy: Option<Hierarchy<R>>,
-    /// Wall time that building it took.
+    /// Wall time of building the hierarchy.
     pub hierarchy_time: Duration,
-    /// By row, what shading needs: a [`ShadingRecord`].
+    /// The [`ShadingRecord`] of each row.
     pub records: Vec<RecordColumns<R>>,
-    /// By row, the sphere's index in the scene.
+    /// The index in the scene of each row's sphere.
     pub scene_index: Vec<u32>,
-    /// The camera.
+    /// The camera in the kernel's precision.
     pub camera: CameraTable<R>,
     /// Sky radiance at the horizon times `2^24`, linear RGB.
     pub sky_middle: [R; 3],
@@ -56,11 +56,11 @@ pub struct PreparedScene<R> {
     pub sky_slope: [R; 3],
     /// Most samples whose sum in units of `2^-24` fits 32 bits: a power of two.
     pub block_limit: u32,
-    /// Size, depth, sampler, seed, halves.
+    /// Size, depth, sampler, seed and number of halves.
     pub settings: RenderSettings,
-    /// What the job needs of a kernel.
+    /// What the job needs from a kernel.
     pub features: Features,
-    /// What coordinates are measured from, in the scene's.
+    /// The origin of the prepared coordinates, in scene coordinates.
     pub origin: DVec3,
     groups: Groups,
     facts: Arc<Facts>,
@@ -68,12 +68,12 @@ pub struct PreparedScene<R> {
 }
 
 impl<R: Real> PreparedScene<R> {
-    /// Sorts, anchors and rounds the scene, and builds the hierarchy if one is worth it.
+    /// Sorts, anchors and rounds the scene, and builds a hierarchy if there are enough spheres.
     pub fn new(job: &RenderJob) -> Self {
         PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES)
     }
 
-    /// The same without a hierarchy, however many spheres there are: to compare with.
+    /// Like [`PreparedScene::new`], but never builds a hierarchy, for comparisons.
     pub fn as_list(job: &RenderJob) -> Self {
         PreparedScene::with_hierarchy_from(job, usize::MAX)
     }
@@ -97,7 +97,7 @@ impl<R: Real> PreparedScene<R> {
         let packed = |(place, index): (usize, &u32)| {
             let sphere = &scene.spheres[*index as usize];
             let center = sphere.center - groups.origin;
-            // In the hierarchy the sign tells spheres of one root.
+            // In the hierarchy, the sign marks spheres with one root.
             let is_signed = hierarchy.as_ref().is_some_and(|h| (h.ranks[place] as usize) < one_root);
             let radius2 = sphere.radius * sphere.radius * if is_signed { -1.0 } else { 1.0 };
             [center.x, center.y, center.z, radius2].map(R::from_f64)
@@ -130,8 +130,8 @@ impl<R: Real> PreparedScene<R> {
         prepared
     }
 
-    /// The prepared scene of `job`; where there is that of a job that differs in camera and settings alone, the
-    /// hierarchy is not built again.
+    /// Prepares the scene of `job`. If `old` is the prepared scene of a job that differs only in camera and settings,
+    /// its hierarchy is reused.
     pub fn renewed(old: Option<(Self, RenderJob)>, job: &RenderJob) -> Self {
         if let Some((mut prepared, before)) = old
             && prepared.follow(&before, job)
@@ -141,8 +141,8 @@ impl<R: Real> PreparedScene<R> {
         PreparedScene::new(job)
     }
 
-    /// Makes the prepared scene of `before` that of `job`, if it has a hierarchy and that would be the same, so that camera
-    /// and settings alone differ; else does nothing and returns false.
+    /// Turns the prepared scene of `before` into that of `job` if only camera and settings differ and the hierarchy can
+    /// be reused; otherwise changes nothing and returns false.
     pub fn follow(&mut self, before: &RenderJob, job: &RenderJob) -> bool {
         if self.hierarchy.is_none() || !job.shares_scene_with(before) {
             return false;
@@ -159,7 +159,7 @@ impl<R: Real> PreparedScene<R> {
         true
     }
 
-    /// Sets what depends on where the eye is.
+    /// Sets everything that depends on the position of the eye.
     fn see(&mut self, job: &RenderJob, groups: Groups) {
         let scene = job.scene();
         let listed = self.opaque.len() + self.two_root.len();
@@ -171,7 +171,7 @@ impl<R: Real> PreparedScene<R> {
             self.scene_index.push(anchored.index);
         }
         if self.records.is_empty() {
-            // A ray that hits nothing looks up row 0 and ignores it.
+            // A ray without a hit reads row 0 and ignores it.
             self.records.push(RecordColumns::default());
         }
         self.warnings = if job.rules().surface == Surface::Exact {
@@ -184,7 +184,7 @@ impl<R: Real> PreparedScene<R> {
         debug_assert_eq!(self.validate(job), Ok(()));
     }
 
-    /// What features ask of how the spheres are sorted.
+    /// How the spheres are sorted, as the features need to know it.
     fn sorted(&self) -> SortedSpheres<'_, R> {
         SortedSpheres {
             opaque_count: self.opaque.len(),
@@ -195,12 +195,12 @@ impl<R: Real> PreparedScene<R> {
         }
     }
 
-    /// What single precision does not hold of the scene, with the numbers and what to do.
+    /// What single precision cannot represent in the scene, with numbers and remedies.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
     }
 
-    /// Memory that grows with the number of spheres.
+    /// Memory in bytes that grows with the number of spheres.
     pub fn bytes(&self) -> usize {
         let Groups { opaque, two_root, .. } = &self.groups;
         let indices = [opaque, two_root, &self.scene_index];
@@ -215,14 +215,14 @@ impl<R: Real> PreparedScene<R> {
             + nodes
     }
 
-    /// The spheres of `two_root` as the scene has them. The prepared scene must be the job's.
+    /// The spheres of `two_root` as they are in the scene. `job` must be the job that this scene was prepared from.
     pub fn spheres_of_hierarchy<'a>(&'a self, job: &'a RenderJob) -> impl Iterator<Item = &'a Sphere> {
         let indices = self.scene_index.iter().skip(self.opaque.len()).take(self.two_root.len());
         indices.map(|index| &job.scene().spheres[*index as usize])
     }
 }
 
-/// The sphere as its anchor sees it.
+/// Describes a sphere relative to its anchor.
 fn anchored_sphere<R: Real>(scene: &Scene, anchored: &Anchored, origin: DVec3) -> AnchoredSphere<R> {
     let sphere = &scene.spheres[anchored.index as usize];
     let towards = (anchored.near - sphere.center).try_normalize().unwrap_or(DVec3::Y);
@@ -274,7 +274,7 @@ fn rounded<R: Real>(v: DVec3) -> [R; 3] {
     v.to_array().map(R::from_f64)
 }
 
-/// Most samples, as a power of two, whose sum is sure to fit 32 bits.
+/// Largest number of samples, a power of two, whose sum always fits 32 bits.
 fn block_limit(largest_radiance: f64) -> u32 {
     let largest = (largest_radiance * FIXED_POINT_SCALE).ceil().max(1.0);
     let fitting = (f64::from(u32::MAX) / largest).clamp(1.0, 128.0) as u32;

@@ -1,6 +1,6 @@
-//! Trees from the top down, for spheres that a clustering from the bottom up chains: nested shells, copies, and
-//! crowds about one place, where obvhs takes a time that grows with the square of their number and gives a tree as
-//! deep as there are spheres.
+//! A top-down tree builder for spheres that bottom-up clustering would chain: nested shells, copies, and crowds around
+//! one place. For these, obvhs takes time quadratic in the number of spheres and builds a tree as deep as there are
+//! spheres.
 
 use super::bounded::Bounded;
 use glam::DVec3;
@@ -10,23 +10,23 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use rayon::prelude::*;
 
-/// Levels that are parted where it pays most. Below them nodes are halved, so that no tree is deeper than this and
-/// the logarithm of the number of spheres.
+/// Levels that are split at the lowest cost. Below them nodes are halved, so that the depth of a tree is at most this
+/// plus the logarithm of the number of spheres.
 const CHOSEN_LEVELS: usize = 32;
 
-/// Classes that a node's spheres are sorted into to choose where to part them.
+/// Bins that a node's spheres are sorted into to choose a split.
 const BINS: usize = 16;
 
-/// So few spheres are clustered in no time, whatever they are like.
+/// Up to this many spheres, clustering is fast in any arrangement.
 const FEW_SPHERES: usize = 2048;
 
-/// Spheres in nested runs, from which on a scene counts as crowded.
+/// Number of spheres in nested runs from which on a scene counts as crowded.
 const CROWD: usize = 1024;
 
-/// Fewer nested spheres in a row are a hollow ball or the like.
+/// Shorter runs of nested spheres are hollow balls and the like.
 const NESTED_RUN: usize = 32;
 
-/// A node's spheres and where it goes.
+/// A range of spheres that is still to be split, and the node for it.
 struct Open {
     node: usize,
     first: usize,
@@ -34,7 +34,7 @@ struct Open {
     depth: usize,
 }
 
-/// Whether so many of the spheres lie within each other that clustering them would take long.
+/// Whether enough spheres are nested in each other that clustering them would take long.
 pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
     if spheres.len() < FEW_SPHERES {
         return false;
@@ -51,7 +51,7 @@ pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
     let (mut nested, mut run) = (0, 0);
     for pair in order.windows(2) {
         let [a, b] = [0, 1].map(|i| &spheres[pair[i].1 as usize]);
-        // Within the box is enough.
+        // Being inside the box is enough here.
         let apart = (a.center() - b.center()).abs().max_element();
         if apart <= (a.radius() - b.radius()).abs() {
             run += 1;
@@ -63,7 +63,7 @@ pub(super) fn is_crowded(spheres: &[Bounded<'_, '_>]) -> bool {
     nested >= CROWD
 }
 
-/// Interleaves 21 bits of each coordinate, which are within 0 and 1.
+/// Interleaves 21 bits of each coordinate; coordinates are between 0 and 1.
 fn morton_code(place: [f64; 3]) -> u64 {
     place.iter().enumerate().fold(0, |code, (axis, x)| {
         let mut bits = (x * f64::from((1 << 21) - 1)) as u64;
@@ -80,9 +80,9 @@ fn morton_code(place: [f64; 3]) -> u64 {
     })
 }
 
-/// A tree over at least one box, at most `leaf_size` to a leaf. `halved` parts all nodes in the middle, so that the
-/// tree is as low as can be; else the sum of areas times spheres decides (Wald 2007, "On fast Construction of
-/// SAH-based Bounding Volume Hierarchies").
+/// Builds a tree over at least one box, with at most `leaf_size` per leaf. With `halved`, every node is split in the
+/// middle, which gives the lowest tree; otherwise the split with the smallest sum of area times spheres is chosen (Wald
+/// 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies").
 pub(super) fn build(spheres: &[impl Boundable], leaf_size: usize, halved: bool) -> Bvh2 {
     let chosen_levels = if halved { 0 } else { CHOSEN_LEVELS };
     let mut order: Vec<u32> = (0..spheres.len() as u32).collect();
@@ -107,13 +107,13 @@ pub(super) fn build(spheres: &[impl Boundable], leaf_size: usize, halved: bool) 
     Bvh2 { nodes, primitive_indices: order, children_are_ordered_after_parents: true, ..Bvh2::default() }
 }
 
-/// What boxes are parted by: where their middle lies along each axis, and their size.
+/// The keys for splitting boxes: the centre along each axis, and the size.
 fn keys(aabb: &Aabb) -> [f32; 4] {
     let center = aabb.center();
     [center.x, center.y, center.z, aabb.diagonal().max_element()]
 }
 
-/// By key, the smallest and the largest.
+/// The smallest and largest value of each key.
 fn key_ranges(spheres: &[impl Boundable], part: &[u32]) -> [[f32; 2]; 4] {
     let mut ranges = [[f32::INFINITY, f32::NEG_INFINITY]; 4];
     for index in part {
@@ -124,7 +124,8 @@ fn key_ranges(spheres: &[impl Boundable], part: &[u32]) -> [[f32; 2]; 4] {
     ranges
 }
 
-/// Puts those of one side first and returns their number; `None` where no split leaves both sides some.
+/// Moves the spheres of one side to the front and returns their number, or `None` if no split leaves spheres on both
+/// sides.
 fn part_where_it_pays(spheres: &[impl Boundable], part: &mut [u32]) -> Option<usize> {
     let ranges = key_ranges(spheres, part);
     let bin_of = |key: f32, [low, high]: [f32; 2]| {
@@ -164,7 +165,7 @@ fn part_where_it_pays(spheres: &[impl Boundable], part: &mut [u32]) -> Option<us
     Some(left)
 }
 
-/// Puts the lower half along the widest key first and returns their number.
+/// Moves the lower half along the widest key to the front and returns its size.
 fn part_in_the_middle(spheres: &[impl Boundable], part: &mut [u32]) -> usize {
     let widths = key_ranges(spheres, part).map(|[low, high]| high - low);
     let widest = (0..4).max_by(|a, b| widths[*a].total_cmp(&widths[*b])).unwrap_or(0);

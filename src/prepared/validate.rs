@@ -1,4 +1,5 @@
-//! Whether a prepared scene is what kernels rely on: every index in range, ties in order, boxes around what they hold.
+//! Checks that a prepared scene has the properties that kernels rely on: indices in range, ties in order, boxes that
+//! enclose their contents.
 
 use super::PreparedScene;
 use super::hierarchy::Hierarchy;
@@ -11,7 +12,7 @@ use crate::render::RenderJob;
 /// Returns from the function with a message unless a condition holds.
 macro_rules! ensure {
     ($condition:expr, $($message:tt)+) => {
-        // A comparison with NaN does not hold.
+        // A comparison with NaN counts as a failure.
         let holds: bool = $condition;
         if !holds {
             return Err(format!($($message)+));
@@ -20,11 +21,10 @@ macro_rules! ensure {
 }
 
 impl<R: Real> PreparedScene<R> {
-    /// Checks all that kernels take for granted of the prepared scene of `job`. In debug builds every prepared scene is
-    /// checked.
+    /// Checks everything that kernels rely on in the prepared scene of `job`. Debug builds check every prepared scene.
     ///
     /// # Errors
-    /// The first thing that is wrong, in words.
+    /// A description of the first violation.
     pub fn validate(&self, job: &RenderJob) -> Result<(), String> {
         self.validate_lists(job)?;
         self.validate_order()?;
@@ -48,12 +48,12 @@ impl<R: Real> PreparedScene<R> {
         self.validate_rows()
     }
 
-    /// How many there are of everything, and that the features say so.
+    /// Checks the lengths of all lists, and that the features agree with them.
     fn validate_lists(&self, job: &RenderJob) -> Result<(), String> {
         let listed = self.opaque.len() + self.two_root.len();
         let count = listed + self.anchored.len();
         ensure!(count < EYE as usize, "{count} spheres have no numbers below {EYE}");
-        // The CPU goes through the list of opaque spheres besides the hierarchy, the GPU through the hierarchy alone.
+        // With a hierarchy, the CPU also loops over the list of opaque spheres, while the GPU uses the hierarchy alone.
         ensure!(
             self.hierarchy.is_none() || self.opaque.is_empty(),
             "{} opaque spheres are beside the hierarchy",
@@ -79,7 +79,7 @@ impl<R: Real> PreparedScene<R> {
         Ok(())
     }
 
-    /// Of two spheres at one distance the first of the list is met, so its order decides.
+    /// Checks the order of the list, which decides between two hits at the same distance.
     fn validate_order(&self) -> Result<(), String> {
         let groups = &self.groups;
         let anchored: Vec<u32> = groups.anchored.iter().map(|anchored| anchored.index).collect();
@@ -108,7 +108,7 @@ impl<R: Real> PreparedScene<R> {
         Ok(())
     }
 
-    /// Shading records beside the spheres that they are of.
+    /// Compares the shading records with their spheres.
     fn validate_rows(&self) -> Result<(), String> {
         let zero = R::default();
         for (number, (row, [x, y, z, radius2])) in
@@ -159,7 +159,7 @@ fn validate_anchored<R: Real>(number: usize, sphere: &AnchoredSphere<R>) -> Resu
     Ok(())
 }
 
-/// Each node is the child of one and within its box; each sphere is in one leaf and within its box.
+/// Checks that each node has one parent and is inside its box, and that each sphere is in one leaf and inside its box.
 fn validate_hierarchy<R: Real>(
     hierarchy: &Hierarchy<R>,
     spheres: &[[R; 4]],
@@ -283,7 +283,7 @@ mod tests {
         assert_eq!(prepared.validate(&moved), Ok(()));
     }
 
-    /// What is done to a prepared scene, and a part of what the check must say.
+    /// How a test damages a prepared scene, and part of the error that the check must report.
     type Damage = (&'static str, fn(&mut PreparedScene<f32>));
 
     fn refuses(job: &RenderJob, damages: &[Damage]) {

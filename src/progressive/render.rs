@@ -20,8 +20,8 @@ pub(super) struct Render {
     job: RenderJob,
     plan: Plan,
     film: Film,
-    /// The samples of the film, and those that the renderer has traced but not added yet.
-    dealt: SampleRanges,
+    /// The samples of the film, and those that the renderer has not added to it yet.
+    requested: SampleRanges,
     cancel: Arc<AtomicBool>,
     choice: BackendChoice,
     /// The backends that have failed.
@@ -58,7 +58,7 @@ impl Render {
             status: Status { run, phase: Phase::Preparing, ..Status::default() },
             job,
             plan,
-            dealt: film.samples().clone(),
+            requested: film.samples().clone(),
             film,
             cancel,
             choice,
@@ -119,7 +119,7 @@ impl Render {
 
     /// Ends the render because no pass is left: all samples are done, or the time is up.
     fn end_of_plan(&mut self) {
-        let is_whole = self.dealt.first_gap(self.plan.range(), 1).is_none();
+        let is_whole = self.requested.first_gap(self.plan.range(), 1).is_none();
         self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
     }
 
@@ -147,7 +147,7 @@ impl Render {
         factory: &Mutex<Factory>,
         is_picture_wanted: bool,
     ) -> Result<(), RenderError> {
-        self.welcome_upcoming(backend);
+        self.welcome_pending(backend);
         let begin = Instant::now();
         let outcome = match backend {
             _ if !self.is_prepared => self.prepare(backend, factory, begin),
@@ -158,8 +158,8 @@ impl Render {
         outcome
     }
 
-    /// Switches to the pending backend if it is ready.
-    fn welcome_upcoming(&mut self, backend: &mut Option<Backend>) {
+    /// Hands over to a backend that has become ready.
+    fn welcome_pending(&mut self, backend: &mut Option<Backend>) {
         let Some(pending) = self.pending.take() else { return };
         let outcome = match pending.outcome.try_recv() {
             Ok(outcome) => outcome,
@@ -175,7 +175,7 @@ impl Render {
                     && let Err(error) = self.collect(old.as_mut())
                 {
                     self.status.say(vec![error.to_string()]);
-                    self.dealt = self.film.samples().clone();
+                    self.requested = self.film.samples().clone();
                 }
                 self.status.backend = Some(ready.renderer.info());
                 self.status.say(ready.renderer.take_messages());
@@ -210,8 +210,8 @@ impl Render {
             self.film = self.job.new_film();
             self.note_film();
         }
-        // Samples that had not reached the film are lost and rendered again.
-        self.dealt = self.film.samples().clone();
+        // What was not in the film is lost, and is rendered again.
+        self.requested = self.film.samples().clone();
         self.failed.push(self.choice.clone());
         match BackendChoice::fallback(&self.failed) {
             Some(fallback) => {
@@ -270,11 +270,11 @@ impl Render {
     /// The next samples; `None` if none are missing or no time is left for them.
     fn next_pass(&self) -> Option<std::ops::Range<u64>> {
         let time_left = match self.plan.stop.time_limit() {
-            // Time limits apply only after the first pass: a picture without samples is useless.
-            Some(limit) if self.dealt.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
+            // A picture without a sample is of no use to anyone.
+            Some(limit) if self.requested.count() > 0 => Some(limit.saturating_sub(self.status.elapsed)),
             _ => None,
         };
-        self.sizer.next(&self.dealt, self.plan.range(), time_left)
+        self.sizer.next(&self.requested, self.plan.range(), time_left)
     }
 
     fn pass(
@@ -303,7 +303,7 @@ impl Render {
         self.status.trace += took;
         self.note_added(renderer, held, &outcome);
         outcome?;
-        self.dealt.insert(range)?;
+        self.requested.insert(range)?;
         self.sizer.measured(added, took, self.plan.pass_target);
         // A renderer can change during use (it lost an adapter or gave up threads) and then reports it here.
         self.status.backend = Some(renderer.info());
@@ -319,7 +319,7 @@ impl Render {
 
     /// Adds the renderer's outstanding samples to the film.
     pub fn collect(&mut self, renderer: &mut dyn Renderer) -> Result<(), RenderError> {
-        if self.dealt != *self.film.samples() {
+        if self.requested != *self.film.samples() {
             let begin = Instant::now();
             let held = self.film.sample_count();
             let outcome = guarded(self.choice.name(), || renderer.collect(&mut self.film));
@@ -327,10 +327,10 @@ impl Render {
             self.note_added(renderer, held, &outcome);
             outcome?;
         }
-        if self.dealt != *self.film.samples() {
+        if self.requested != *self.film.samples() {
             let reason = format!(
                 "of {} samples per pixel that it was to trace the film has {}",
-                self.dealt.count(),
+                self.requested.count(),
                 self.film.sample_count()
             );
             return Err(RenderError::Backend { backend: self.choice.name(), reason });

@@ -12,7 +12,7 @@ pub enum Phase {
     /// No render was started, or it was abandoned.
     #[default]
     Idle,
-    /// The prepared scene, hierarchy and kernels are being built.
+    /// The prepared scene, its hierarchy and kernels are being built.
     Preparing,
     /// Samples are being added.
     Tracing,

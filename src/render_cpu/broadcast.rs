@@ -1,32 +1,32 @@
-//! A job's prepared scene as packets read them: what every lane needs, spread out in memory, so that an instruction takes it
-//! from there.
+//! A job's prepared scene as packets read it: values that every lane needs are broadcast in memory, so that an
+//! instruction can use them as a memory operand.
 
 use super::lanes::{MAX_LANES, Wide};
 use super::sphere::BroadcastSphere;
 use crate::kernel::{CameraTable, RECORD_COLUMNS, Real};
 use crate::prepared::PreparedScene;
 
-/// PreparedScene, and the parts of them that are read in every step.
+/// A prepared scene, with broadcast copies of the parts that are read in every step.
 #[derive(Clone, Debug)]
 pub struct BroadcastScene<R> {
-    /// All of them.
+    /// The prepared scene itself.
     pub prepared: PreparedScene<R>,
-    /// `PreparedScene::opaque`.
+    /// `PreparedScene::opaque`, broadcast.
     pub opaque: Vec<BroadcastSphere<R>>,
-    /// `PreparedScene::two_root`, unless there is a hierarchy over them.
+    /// `PreparedScene::two_root`, broadcast; empty if a hierarchy holds these spheres.
     pub two_root: Vec<BroadcastSphere<R>>,
-    /// `PreparedScene::camera`.
+    /// `PreparedScene::camera`, broadcast.
     pub camera: CameraTable<Wide<R>>,
-    /// `PreparedScene::sky_middle`.
+    /// `PreparedScene::sky_middle`, broadcast.
     pub sky_middle: [Wide<R>; 3],
-    /// `PreparedScene::sky_slope`.
+    /// `PreparedScene::sky_slope`, broadcast.
     pub sky_slope: [Wide<R>; 3],
     /// The first of `PreparedScene::records` by column, for kernels that hold a column in a register.
     pub columns: Box<[Wide<R>; RECORD_COLUMNS]>,
 }
 
 impl<R: Real> BroadcastScene<R> {
-    /// Spreads what is to be spread.
+    /// Broadcasts the parts of `prepared` that every step reads.
     pub fn new(prepared: PreparedScene<R>) -> Self {
         let numbered = |spheres: &[[R; 4]], first: usize| {
             let broadcast =

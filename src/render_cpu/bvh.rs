@@ -7,21 +7,21 @@ use super::sphere::{Nearest, Rays, Spheres, near_root, nearest_root};
 use crate::kernel::{BOX_MARGIN, BOX_WIDENING, COUNT_MASK, LEAST_COMPONENT, Node, Real, STACK_SIZE};
 use crate::prepared::hierarchy::Hierarchy;
 
-/// Nodes to be visited, one a level at most. It outlives the traversals: clearing it each time would show in the run
-/// time.
+/// Nodes still to be visited, at most one per level. The stack outlives each traversal, because clearing it every time
+/// would show in the run time.
 pub type Stack = [u32; STACK_SIZE];
 
-/// A stack to start with.
+/// A stack for the first traversal.
 pub const EMPTY_STACK: Stack = [0; STACK_SIZE];
 
-/// Rays prepared for boxes: per axis `1/d`, and the origin moved outwards by the rounding there can be.
+/// Rays prepared for box tests: `1/d` per axis, and the origin moved outwards by the largest possible rounding error.
 pub struct Slabs<L: Lanes> {
     inverse: V3<L::F>,
     low: V3<L::F>,
     high: V3<L::F>,
 }
 
-/// Prepares rays for boxes whose coordinates are at most as large as `extent`.
+/// Prepares rays for boxes whose coordinates are at most `extent` in absolute value.
 #[inline(always)]
 pub fn slabs_of<L: Lanes>(l: L, rays: &Rays<L>, extent: L::Real) -> Slabs<L> {
     let o = rays.origin;
@@ -36,7 +36,7 @@ pub fn slabs_of<L: Lanes>(l: L, rays: &Rays<L>, extent: L::Real) -> Slabs<L> {
     Slabs { inverse, low: (o + margin).times(inverse), high: (o - margin).times(inverse) }
 }
 
-/// `1/d`, finite also where `d` is 0.
+/// `1/d`, finite even where `d` is 0.
 #[inline(always)]
 fn inverse_of<L: Lanes>(l: L, d: L::F) -> L::F {
     let least = l.constant(LEAST_COMPONENT);
@@ -44,7 +44,7 @@ fn inverse_of<L: Lanes>(l: L, d: L::F) -> L::F {
     L::copysign(l.constant(1.0) / size, d)
 }
 
-/// Which rays meet the box before distance `limit`.
+/// Returns the lanes whose ray meets the box before distance `limit`.
 #[inline(always)]
 pub fn meets_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit: L::F) -> L::M {
     let (low, high) = (splat3(l, node.low), splat3(l, node.high));
@@ -54,12 +54,11 @@ pub fn meets_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit: 
     let (z0, z1) = (at(low.z, slabs.inverse.z, slabs.low.z), at(high.z, slabs.inverse.z, slabs.high.z));
     let enter = L::max(L::max(L::min(x0, x1), L::min(y0, y1)), L::max(L::min(z0, z1), l.constant(0.0)));
     let leave = L::min(L::min(L::max(x0, x1), L::max(y0, y1)), L::min(L::max(z0, z1), limit));
-    // Rounding of the distances themselves.
+    // The factor covers the rounding of the distances themselves.
     !L::lt(leave * l.constant(BOX_WIDENING), enter)
 }
 
-/// Takes the nearest hits among the spheres of a hierarchy into `nearest`. `active` lanes are those whose result
-/// matters.
+/// Updates `nearest` with the nearest hits among the spheres of a hierarchy. Results matter only for `active` lanes.
 #[inline(always)]
 pub fn traverse<L: Lanes>(
     l: L,
@@ -92,7 +91,7 @@ pub fn traverse<L: Lanes>(
             for (offset, &[x, y, z, radius2]) in spheres[first..first + count as usize].iter().enumerate() {
                 let number = (first + offset) as u32;
                 let sphere = |radius2| Spheres::splat(l, [x, y, z, radius2], l.splat_u(number));
-                // Rays that leave one of two spheres of the same place must not meet the far side of the other.
+                // Of two spheres at the same place, a ray that leaves one must not meet the far side of the other.
                 let key = if radius2 < L::Real::default() {
                     near_root(l, rays, &sphere(radius2.negated()))
                 } else {

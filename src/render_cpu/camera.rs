@@ -5,15 +5,15 @@
 use super::lanes::{Lanes, V3, Wide, load3, mul_add3};
 use crate::kernel::CameraTable;
 
-/// Where a ray starts and where it goes; the direction's length is not 1.
+/// Where a ray starts and its direction, which is not normalised.
 pub struct CameraRays<L: Lanes> {
-    /// On the lens.
+    /// A point on the lens.
     pub origin: V3<L::F>,
-    /// Through the pixel.
+    /// Passes through the pixel's sample position.
     pub direction: V3<L::F>,
 }
 
-/// A pixel coordinate on the plane at distance 1, left or upper edge.
+/// Position of a pixel's left or upper edge on the plane at distance 1.
 #[inline(always)]
 pub fn screen<L: Lanes>(l: L, camera: &CameraTable<Wide<L::Real>>, x: L::F, y: L::F) -> [L::F; 2] {
     [
@@ -22,7 +22,7 @@ pub fn screen<L: Lanes>(l: L, camera: &CameraTable<Wide<L::Real>>, x: L::F, y: L
     ]
 }
 
-/// Rays from the eye through the point `jitter` (in `[0, 1)` each) of the pixel at `screen`.
+/// Rays from the eye through the point `jitter` (each component in `[0, 1)`) of the pixel at `screen`.
 #[inline(always)]
 pub fn pinhole_ray<L: Lanes>(
     l: L,
@@ -35,7 +35,7 @@ pub fn pinhole_ray<L: Lanes>(
     CameraRays { origin: load3(l, &camera.eye), direction: through(l, camera, sx, sy) }
 }
 
-/// The same from the point `on_lens` of the unit disk.
+/// Like [`pinhole_ray`], but from the point `on_lens` of the unit disk.
 #[inline(always)]
 pub fn lens_ray<L: Lanes>(
     l: L,

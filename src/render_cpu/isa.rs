@@ -1,29 +1,29 @@
-//! Instruction levels, and the lane counts that each offers.
+//! Instruction set levels and the lane counts that each supports.
 
 use fearless_simd::Level;
 use std::fmt;
 
-/// A set of instructions that kernels are compiled for. The binary holds all of its processor family; which
-/// one runs is decided when it starts.
+/// An instruction set that kernels are compiled for. The binary contains all levels of its processor family and picks
+/// one at startup.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Isa {
-    /// What every processor of the target has; scalar code.
+    /// Scalar code that runs on every processor of the target.
     Baseline,
-    /// x86-64 with SSE4.2: 4 lanes, multiply and add rounded apart.
+    /// x86-64 with SSE4.2: 4 lanes; multiply and add round separately.
     Sse42,
     /// x86-64 with AVX2 and FMA: 8 lanes.
     Avx2,
-    /// x86-64 with AVX-512 (as of Ice Lake): 16 lanes.
+    /// x86-64 with AVX-512 (Ice Lake and later): 16 lanes.
     Avx512,
     /// 64-bit Arm: 4 lanes.
     Neon,
 }
 
 impl Isa {
-    /// All of them, of every processor family.
+    /// Every level of every processor family.
     pub const ALL: [Isa; 5] = [Isa::Baseline, Isa::Sse42, Isa::Avx2, Isa::Avx512, Isa::Neon];
 
-    /// The name used on the command line.
+    /// The level's name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Isa::Baseline => "baseline",
@@ -34,7 +34,7 @@ impl Isa {
         }
     }
 
-    /// Those that this processor has, from the least to the most capable.
+    /// The levels that this processor supports, from least to most capable.
     pub fn available() -> Vec<Isa> {
         let mut levels = vec![Isa::Baseline];
         let level = Level::new();
@@ -55,7 +55,7 @@ impl Isa {
         levels
     }
 
-    /// Lane counts that this level has kernels for: 1, those that fit its registers, and twice those.
+    /// Lane counts that have kernels at this level: 1, those that fit a register, and twice those.
     pub fn lane_counts(self) -> &'static [usize] {
         match self {
             Isa::Baseline => &[1],
@@ -64,7 +64,7 @@ impl Isa {
         }
     }
 
-    /// The lane count that one register holds: the fastest.
+    /// The number of lanes in one register, which is the fastest count.
     pub fn native_lanes(self) -> usize {
         match self {
             Isa::Baseline => 1,

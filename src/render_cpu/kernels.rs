@@ -1,8 +1,8 @@
-//! The path loop at every level and lane count, and the choice among them.
+//! The path loop at every level and lane count, and the choice among the variants.
 //!
-//! Each instance costs compile time, so there are few: at a level's own lane count the loop is specialised for
-//! what scenes commonly need, at the other lane counts and for the reference there is the general one. All of
-//! them render the same bits, which tests hold them to.
+//! Each variant costs compile time, so there are few. At a level's native lane count the loop is specialised for what
+//! scenes commonly need. Other lane counts and the reference have only the general variant. All variants render the
+//! same bits; tests check this.
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
@@ -12,19 +12,20 @@ use super::work::{TileStats, Work};
 use crate::kernel::parts;
 use fearless_simd::{Level, Simd};
 
-/// Traces a tile.
+/// A function that traces one tile.
 pub type Kernel<R> = Box<dyn Fn(&BroadcastScene<R>, &mut Work) -> TileStats + Send + Sync>;
 
-/// Opaque spheres and a pinhole.
+/// Opaque spheres and a pinhole camera.
 const OPAQUE: u32 = parts::NONE;
-/// Glass besides: the three spheres.
+/// The same with glass, for the three spheres.
 const GLASS: u32 = parts::GLASS;
-/// All that finished pictures need: the book's last.
+/// Everything that finished pictures need, such as the book's final render.
 const FINISHED: u32 = parts::GLASS | parts::LENS | parts::EXTREMES | parts::HIERARCHY;
-/// Everything.
+/// Every part.
 const GENERAL: u32 = parts::ALL;
 
-/// The parts of the least kernel that has those `needed`, at a level's own lane count; the general one at the others.
+/// Returns the parts of the smallest kernel that has those `needed` at a level's native lane count, or of the general
+/// kernel at any other lane count.
 pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
     let variants: &[u32] = match (isa, lanes == isa.native_lanes()) {
         (Isa::Sse42 | Isa::Neon, true) => &[GLASS],
@@ -34,8 +35,8 @@ pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
     variants.iter().copied().find(|variant| within(needed, *variant)).unwrap_or(GENERAL)
 }
 
-/// A kernel of a level and lane count that has at least the parts `needed`.
-/// `None` if the processor lacks the level or the level has no such lane count.
+/// Returns a kernel of a level and lane count that has at least the parts `needed`, or `None` if the processor lacks
+/// the level or the level does not support the lane count.
 pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     let level = Level::new();
     let offered = offered(isa, lanes, needed);
@@ -93,7 +94,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     }
 }
 
-/// The reference's kernel.
+/// Returns the reference's kernel.
 pub fn reference_kernel() -> Kernel<f64> {
     Box::new(|prepared, work| trace::<_, GENERAL>(Reference, prepared, work))
 }

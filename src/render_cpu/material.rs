@@ -1,8 +1,8 @@
-//! What a surface does with a ray. (Book 1, sections 9 to 11.)
+//! How a surface scatters a ray. (Book 1, sections 9 to 11.)
 //!
-//! Every material sends a ray on along `along d + across n + spread u`: `d` the direction it came in, `n` the unit
-//! normal on the side it came from, `u` a uniform unit vector. Only the three factors differ, so a packet of
-//! mixed materials takes one path through this code.
+//! Every material scatters a ray into the direction `along d + across n + spread u`, where `d` is the incoming
+//! direction, `n` the unit normal on the incoming side and `u` a uniform unit vector. Materials differ only in the
+//! three factors, so a packet of mixed materials takes one path through this code.
 //!
 //! Twin: shaders/material.wgsl
 
@@ -10,20 +10,20 @@ use super::lanes::{Lanes, V3, dot, mul_add3, neg_mul_add3};
 use crate::kernel::LoadShading;
 use crate::stages::DielectricLaws;
 
-/// A material as a shading record has it.
+/// A material as stored in a shading record.
 #[derive(Clone, Copy)]
 pub struct Surface<L: Lanes> {
-    /// Length of the unit vector's part; with a minus sign (also on 0) the direction is a reflection.
+    /// Length of the unit vector's part; a negative sign (also on 0) marks a reflection.
     pub weight: L::F,
     /// Refraction index; 0 if not glass.
     pub refraction_index: L::F,
     /// 1 / refraction index; 0 if not glass.
     pub inverse_index: L::F,
-    /// Schlick's share at normal incidence.
+    /// Schlick's reflectance at normal incidence.
     pub f0: L::F,
 }
 
-/// The materials of shading records.
+/// Extracts the materials of shading records.
 #[inline(always)]
 pub fn surface_of<L: Lanes>(
     record: &impl LoadShading<L::Real, Number = L::F, Vector = V3<L::F>>,
@@ -36,27 +36,27 @@ pub fn surface_of<L: Lanes>(
     }
 }
 
-/// Where light goes on.
+/// The result of scattering.
 pub struct Scatter<L: Lanes> {
-    /// Not of length 1.
+    /// The scattered direction, not normalised.
     pub direction: V3<L::F>,
     /// Whether it passes through the surface.
     pub refracts: L::M,
     /// Whether the surface is a metal.
     pub is_metal: L::M,
-    /// Sine in the refracted direction over that of incidence, where it refracts.
+    /// Sine of the refracted angle over sine of the incident angle, where the ray refracts.
     pub ratio: L::F,
 }
 
-/// How a ray meets a surface.
+/// The angle at which a ray meets a surface.
 pub struct Incidence<L: Lanes> {
-    /// Cosine with the normal, in `[0, 1]`.
+    /// Cosine of the angle to the normal, in `[0, 1]`.
     pub cosine: L::F,
-    /// Squared sine.
+    /// Squared sine of that angle.
     pub sine2: L::F,
 }
 
-/// From the cosine of direction and outward normal, which rounding can make larger than 1.
+/// Computes the incidence from the cosine between direction and outward normal, which rounding can push above 1.
 #[inline(always)]
 pub fn incidence_of<L: Lanes>(l: L, outward_cosine: L::F) -> Incidence<L> {
     let one = l.constant(1.0);
@@ -64,16 +64,16 @@ pub fn incidence_of<L: Lanes>(l: L, outward_cosine: L::F) -> Incidence<L> {
     Incidence { cosine, sine2: L::neg_mul_add(cosine, cosine, one) }
 }
 
-/// From the squared sine, which rounding can make larger than 1.
+/// Computes the incidence from the squared sine, which rounding can push above 1.
 #[inline(always)]
 pub fn incidence_of_sine2<L: Lanes>(l: L, sine2: L::F) -> Incidence<L> {
     let sine2 = L::min(l.constant(1.0), sine2);
     Incidence { cosine: L::sqrt(l.constant(1.0) - sine2), sine2 }
 }
 
-/// Scatters at a surface that is a mirror, a metal or Lambertian, or, if `GLASS`, a dielectric.
+/// Scatters at a mirror, metal or Lambertian surface, or at a dielectric if `GLASS` is set.
 ///
-/// `front` says that the ray comes from outside; `coin` is uniform in `[0, 1)`.
+/// `front` is true where the ray comes from outside; `coin` is uniform in `[0, 1)`.
 #[inline(always)]
 pub fn scatter<L: Lanes, const GLASS: bool>(
     l: L,
@@ -97,7 +97,7 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
     if GLASS {
         let is_glass = L::lt(zero, surface.refraction_index);
         ratio = L::select(front, surface.inverse_index, surface.refraction_index);
-        // Squared sine of the refracted ray's angle: above 1 Snell's law has no solution.
+        // Squared sine of the refraction angle: above 1, Snell's law has no solution.
         let refracted_sine2 = ratio * ratio * sine2;
         let mut kept = is_glass;
         if laws != DielectricLaws::RefractOnly {
@@ -116,15 +116,15 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
     Scatter { direction: mul_add3::<L>(unit, L::abs(surface.weight), smooth), refracts, is_metal, ratio }
 }
 
-/// The refracted direction from the part of the incoming one `across` the normal, which loses nothing where the other
-/// form takes a difference of large numbers. Not of length 1.
+/// The refracted direction, not normalised, from the part of the incoming direction `across` the normal. This form
+/// keeps its precision where the usual form subtracts large numbers.
 #[inline(always)]
 pub fn refracted<L: Lanes>(l: L, across: V3<L::F>, normal: V3<L::F>, ratio: L::F, sine2: L::F) -> V3<L::F> {
     let inner_cosine = L::sqrt(L::abs(l.constant(1.0) - ratio * ratio * sine2));
     neg_mul_add3::<L>(normal, inner_cosine, across.scale(ratio))
 }
 
-/// Schlick's approximation of the reflected share. (Section 11.4.)
+/// Schlick's approximation of the reflectance. (Section 11.4.)
 #[inline(always)]
 pub fn reflectance<L: Lanes>(l: L, cosine: L::F, f0: L::F) -> L::F {
     let one = l.constant(1.0);
@@ -133,7 +133,7 @@ pub fn reflectance<L: Lanes>(l: L, cosine: L::F, f0: L::F) -> L::F {
     L::mul_add(one - f0, x2 * x2 * x, f0)
 }
 
-/// A uniform direction on the side of `normal`: the first diffuse stage's rule. (Section 9.1.)
+/// A uniform direction on the side of `normal`, as in the first diffuse stage. (Section 9.1.)
 #[inline(always)]
 pub fn hemisphere<L: Lanes>(l: L, normal: V3<L::F>, unit: V3<L::F>) -> V3<L::F> {
     unit.scale(L::copysign(l.constant(1.0), dot::<L>(unit, normal)))

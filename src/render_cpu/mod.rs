@@ -1,4 +1,4 @@
-//! The CPU backends: SIMD packets, scalar, and the `f64` reference, from one width-generic source.
+//! The CPU backends: SIMD packets, scalar code and the `f64` reference, all from one width-generic source.
 
 pub mod broadcast;
 pub mod bvh;
@@ -30,57 +30,57 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tiles::{Tile, tile_side, tiles};
-use work::{DealtBlock, TileStats, Work, dealing_order};
+use work::{RefillBlock, TileStats, Work, refill_order};
 
-/// By how much threads that give way are nicer: each step is a tenth of the time, where there is not enough.
+/// The nice value added to low-priority threads. Under contention each step costs about a tenth of the time.
 #[cfg(target_os = "linux")]
 const NICENESS: i32 = 10;
 
-/// What a CPU backend is to use; `None` leaves the choice to it.
+/// Options of a CPU backend; `None` lets the backend choose.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CpuOptions {
-    /// Instruction level; by default the most capable that the processor has.
+    /// Instruction level; by default the most capable one that the processor supports.
     pub isa: Option<Isa>,
-    /// Lanes; by default those of one register. 1 is scalar.
+    /// Number of lanes; by default one register's. 1 is scalar.
     pub lanes: Option<usize>,
-    /// Threads; by default one a core.
+    /// Number of threads; by default one per core.
     pub threads: Option<usize>,
-    /// Whether the threads give way to whatever else wants to run, such as a window. On Linux.
+    /// Whether the threads yield to other work, such as a window. Linux only.
     pub low_priority: bool,
-    /// Panics in the middle of a tile, after so many others (fault injection).
+    /// Panics in the middle of a tile, after this many other tiles (fault injection).
     pub panics_after: Option<u64>,
 }
 
-/// Options that this machine cannot meet.
+/// Options that this machine cannot satisfy.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum CpuError {
-    /// The processor lacks the level.
+    /// The processor does not support the level.
     #[error("this processor has no {isa}; it has {}", list(available))]
     Isa {
-        /// Asked for.
+        /// The requested level.
         isa: Isa,
-        /// What there is.
+        /// The levels that the processor supports.
         available: Vec<Isa>,
     },
-    /// The level has no kernel with so many lanes.
+    /// The level has no kernel for this lane count.
     #[error("{lanes} lanes cannot be had at level {isa}; it has {}", list(available))]
     Lanes {
-        /// Asked for.
+        /// The requested lane count.
         lanes: usize,
-        /// The level.
+        /// The level without such a kernel.
         isa: Isa,
-        /// What there is.
+        /// The lane counts that the level supports.
         available: Vec<usize>,
     },
-    /// Threads could not be started.
+    /// The threads could not be started.
     #[error(
         "cannot start {threads} thread{}: {reason}; choose fewer with --threads, or allow more (ulimit -u, ulimit -v)",
         if *threads == 1 { "" } else { "s" }
     )]
     Threads {
-        /// Asked for; 0 is one a core.
+        /// The requested number; 0 means one per core.
         threads: usize,
-        /// What the system said.
+        /// The system's error message.
         reason: String,
     },
 }
@@ -89,51 +89,51 @@ fn list<T: std::fmt::Display>(items: &[T]) -> String {
     items.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// A job's prepared scene and its kernel, in one of the two precisions.
+/// A job's prepared scene and kernel in one of the two precisions.
 enum Prepared {
     Single(Box<BroadcastScene<f32>>, Kernel<f32>),
     Double(Box<BroadcastScene<f64>>, Kernel<f64>),
 }
 
-/// Renders on the CPU.
+/// The renderer on the CPU.
 pub struct CpuRenderer {
-    /// Level and lanes; `None` for the reference.
+    /// Level and lane count; `None` for the reference.
     packets: Option<(Isa, usize)>,
     threads: rayon::ThreadPool,
     job: Option<RenderJob>,
     prepared: Option<Prepared>,
     occupancy: TileOccupancy,
     messages: Vec<String>,
-    /// Tiles before one in which the tracer panics (fault injection).
+    /// Tiles left before one in which the tracer panics (fault injection).
     tiles_to_panic: Option<AtomicU64>,
 }
 
-/// What is to be traced in a pass, and how.
+/// What a pass traces, and how.
 #[derive(Clone, Copy)]
 struct Pass<'a> {
     side: u32,
     range: &'a Range<u64>,
     cancel: &'a AtomicBool,
-    /// By tile, the blocks that are taken away from the film, in place of adding all.
+    /// If set, the pass subtracts blocks from the film instead of adding all: the number of blocks by tile.
     taken_away: Option<&'a [u64]>,
 }
 
-/// What became of a tile.
+/// The outcome of tracing a tile.
 struct TracedTile {
     stats: TileStats,
     /// Blocks whose sums are in the film.
     finished: u64,
-    /// Blocks there are.
+    /// Blocks that the tile has.
     expected: u64,
-    /// What the tracer's panic said, if it did.
+    /// The message of the tracer's panic, if it panicked.
     panic: Option<String>,
 }
 
 impl CpuRenderer {
-    /// A renderer in `f32` with these options.
+    /// Creates a renderer in `f32` with these options.
     ///
     /// # Errors
-    /// [`CpuError`] with what can be had instead.
+    /// [`CpuError`], with what is available instead.
     pub fn new(options: CpuOptions) -> Result<Self, CpuError> {
         let available = Isa::available();
         let best = available.iter().copied().max().unwrap_or(Isa::Baseline);
@@ -149,10 +149,10 @@ impl CpuRenderer {
         Ok(CpuRenderer { tiles_to_panic: options.panics_after.map(AtomicU64::new), ..renderer })
     }
 
-    /// The reference: scalar, `f64`, `threads` threads (`None`: one a core).
+    /// Creates the reference renderer: scalar, `f64`, with `threads` threads (`None`: one per core).
     ///
     /// # Errors
-    /// [`CpuError::Threads`].
+    /// [`CpuError::Threads`] if the threads cannot be started.
     pub fn reference(threads: Option<usize>) -> Result<Self, CpuError> {
         CpuRenderer::with_packets(None, threads, false)
     }
@@ -189,9 +189,9 @@ impl CpuRenderer {
     }
 }
 
-/// Lowers the priority of this thread. Where that cannot be, it is as it was.
+/// Lowers the priority of this thread. If the system refuses, the priority stays unchanged.
 fn give_way() {
-    // On Linux this is the thread's, not the process's.
+    // On Linux this changes the thread's priority, not the process's.
     #[cfg(target_os = "linux")]
     let _ = rustix::process::nice(NICENESS);
 }
@@ -305,7 +305,7 @@ impl Renderer for CpuRenderer {
 }
 
 impl CpuRenderer {
-    /// As [`CpuRenderer::trace`], with what is prepared.
+    /// Like [`CpuRenderer::trace`], with the prepared scene at hand.
     fn trace_prepared(&self, pass: Pass, film: &mut Film) -> Vec<TracedTile> {
         match &self.prepared {
             Some(Prepared::Single(prepared, kernel)) => self.trace(prepared, kernel, pass, film),
@@ -314,7 +314,7 @@ impl CpuRenderer {
         }
     }
 
-    /// Adds a pass to the film's sums. Returns what became of each tile, row by row.
+    /// Adds a pass to the film's sums. Returns the outcome of each tile, row by row.
     fn trace<R: Real>(
         &self,
         prepared: &BroadcastScene<R>,
@@ -323,8 +323,8 @@ impl CpuRenderer {
         film: &mut Film,
     ) -> Vec<TracedTile> {
         let settings = &prepared.prepared.settings;
-        let blocks = DealtBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
-        let order = dealing_order(pass.side);
+        let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
+        let order = refill_order(pass.side);
         let tiles = tiles(film.halves_mut(), settings.width, pass.side);
         let trace_tile = |(index, tile): (usize, Tile)| {
             let mut work = Work::new(&blocks, &order, tile.corner, tile.height, tile.rows);
@@ -338,7 +338,7 @@ impl CpuRenderer {
             if pass.cancel.load(Ordering::Relaxed) {
                 return traced;
             }
-            // What `work` holds after a panic is whole: the sums that it counts are in the film.
+            // After a panic `work` is still consistent: the sums that it counts are in the film.
             match catch_unwind(AssertUnwindSafe(|| kernel(prepared, &mut work))) {
                 Ok(stats) => traced.stats = stats,
                 Err(payload) => traced.panic = Some(panic_text(payload.as_ref()).to_owned()),
@@ -353,8 +353,8 @@ impl CpuRenderer {
         self.tiles_to_panic.as_ref().is_some_and(|left| left.fetch_sub(1, Ordering::Relaxed) == 0)
     }
 
-    /// Takes away from the film what a pass has added that cannot be finished. A sample is a pure function, so that
-    /// tracing it again tells what to take away; a pass that succeeds pays nothing for that.
+    /// Removes from the film what an incomplete pass has added. A sample is a pure function, so tracing it again
+    /// gives the values to subtract. A pass that succeeds pays nothing for this.
     fn undone(&self, pass: Pass, traced: &[TracedTile], film: &mut Film, reason: String) -> RenderError {
         let backend = self.info().name;
         let added: Vec<u64> = traced.iter().map(|tile| tile.finished).collect();
@@ -379,7 +379,7 @@ impl CpuRenderer {
     }
 }
 
-/// The first tile that has not all its samples, and why, in words; `None` if the pass is whole.
+/// Describes the first tile that lacks samples, and why; `None` if the pass is complete.
 fn what_is_missing(traced: &[TracedTile], side: u32, width: u32) -> Option<String> {
     let index = traced.iter().position(|tile| tile.panic.is_some() || tile.finished != tile.expected)?;
     let TracedTile { finished, expected, panic, .. } = &traced[index];
@@ -424,7 +424,7 @@ mod tests {
         let mut renderer = CpuRenderer::new(CpuOptions::default()).expect("available");
         film(&mut renderer, &first);
         assert_ne!(renderer.hierarchy_time(), Duration::ZERO);
-        // From within an opaque ball nothing else is seen: there is nothing to build.
+        // Inside an opaque ball nothing else is visible, so there is nothing to build.
         for (camera, is_kept) in [(moved, true), (inside, true), (moved, false), (*first.camera(), true)] {
             let job = first.seen_by(camera, *first.settings()).expect("valid");
             let again = film(&mut renderer, &job);

@@ -1,12 +1,12 @@
-//! One path, ray by ray, by the same code that renders it: what the pixel inspector shows and what tells two
-//! backends apart.
+//! Records one path ray by ray, using the rendering code itself. The pixel inspector shows these records, and a
+//! comparison of two backends uses them to find where they differ.
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
 use super::lanes::{Lanes, Scalar, V3, Wide};
 use super::path::SinglePath;
 use super::sphere::NONE;
-use super::work::{DealtBlock, Work};
+use super::work::{RefillBlock, Work};
 use crate::film::PixelSum;
 use crate::kernel::Real;
 use crate::prepared::PreparedScene;
@@ -14,8 +14,8 @@ use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use crate::render::RenderJob;
 use fearless_simd::{Level, Simd};
 
-/// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as `isa` traces it; `None`: in
-/// `f64`.
+/// Records sample `index` of pixel (`x`, `y`), which must be inside the picture, as `isa` traces it, or in `f64` if
+/// `isa` is `None`.
 pub fn record_path(job: &RenderJob, pixel: [u32; 2], index: u64, isa: Option<Isa>) -> PathRecord {
     match isa {
         Some(isa) => recorder(isa)(&BroadcastScene::new(PreparedScene::new(job)), pixel, index),
@@ -23,7 +23,7 @@ pub fn record_path(job: &RenderJob, pixel: [u32; 2], index: u64, isa: Option<Isa
     }
 }
 
-/// Records many paths of one job after the other, or from several threads.
+/// Records many paths of one job, in turn or from several threads.
 pub struct PathRecorder {
     job: RenderJob,
     prepared: BroadcastScene<f32>,
@@ -31,28 +31,28 @@ pub struct PathRecorder {
 }
 
 impl PathRecorder {
-    /// A recorder of what `isa` traces. From one of an earlier job it takes what is still of use.
+    /// Creates a recorder for paths as `isa` traces them. It reuses what it can of the `earlier` job's recorder.
     pub fn new(job: &RenderJob, isa: Isa, earlier: Option<PathRecorder>) -> Self {
         let old = earlier.map(|earlier| (earlier.prepared.prepared, earlier.job));
         let prepared = BroadcastScene::new(PreparedScene::renewed(old, job));
         PathRecorder { prepared, recorder: recorder(isa), job: job.clone() }
     }
 
-    /// What is recorded.
+    /// The job whose paths are recorded.
     pub fn job(&self) -> &RenderJob {
         &self.job
     }
 
-    /// Sample `index` of a pixel, which must lie in the picture.
+    /// Records sample `index` of a pixel, which must be inside the picture.
     pub fn record(&self, pixel: [u32; 2], index: u64) -> PathRecord {
         (self.recorder)(&self.prepared, pixel, index)
     }
 }
 
-/// Records one path.
+/// A function that records one path.
 type Recorder = Box<dyn Fn(&BroadcastScene<f32>, [u32; 2], u64) -> PathRecord + Send + Sync>;
 
-/// A recorder that computes the same bits as the kernels of `isa`.
+/// Returns a recorder that computes the same bits as the kernels of `isa`.
 fn recorder(isa: Isa) -> Recorder {
     let level = Level::new();
     #[cfg(target_arch = "x86_64")]
@@ -70,7 +70,7 @@ fn recorder(isa: Isa) -> Recorder {
     }
 }
 
-/// Records a path with one lane.
+/// Records a path using one lane.
 #[inline(always)]
 pub(super) fn record<L: Lanes>(
     l: L,
@@ -79,7 +79,7 @@ pub(super) fn record<L: Lanes>(
     index: u64,
 ) -> PathRecord {
     let prepared = &broadcast.prepared;
-    let blocks = DealtBlock::of_range(index..index + 1, &prepared.settings, 1);
+    let blocks = RefillBlock::of_range(index..index + 1, &prepared.settings, 1);
     let mut sums = vec![PixelSum::default(); prepared.settings.half_count()];
     let rows = sums.iter_mut().map(std::slice::from_mut).collect();
     let mut work = Work::new(&blocks, &[0], pixel, 1, rows);
@@ -105,7 +105,7 @@ pub(super) fn record<L: Lanes>(
         }
         rays.push(ray);
         if !goes_on {
-            // An absorbed path's last turn adds nothing.
+            // The last step of an absorbed path adds nothing.
             path.finish(l, broadcast, &mut work);
             break;
         }

@@ -1,4 +1,4 @@
-//! The numbers of a sample, lane by lane: [`crate::sampling`] in packets.
+//! The numbers of a sample, lane by lane: [`crate::sampling`] for packets.
 //!
 //! Twin: shaders/rng.wgsl
 
@@ -6,7 +6,7 @@ use super::lanes::Lanes;
 use crate::render::{RenderSettings, SamplerKind};
 use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK};
 
-/// A bijection of 32 bits.
+/// Hashes 32 bits to 32 bits; a bijection.
 #[inline(always)]
 pub fn mix32<L: Lanes>(l: L, x: L::U) -> L::U {
     let x = (x ^ L::shr(x, 16)) * l.splat_u(0x7FEB_352D);
@@ -14,7 +14,7 @@ pub fn mix32<L: Lanes>(l: L, x: L::U) -> L::U {
     x ^ L::shr(x, 16)
 }
 
-/// Four numbers from four.
+/// Hashes four numbers to four numbers.
 #[inline(always)]
 pub fn pcg4d<L: Lanes>(l: L, v: [L::U; 4]) -> [L::U; 4] {
     let (a, c) = (l.splat_u(1_664_525), l.splat_u(1_013_904_223));
@@ -35,7 +35,7 @@ fn stir<L: Lanes>([x, y, z, w]: [L::U; 4]) -> [L::U; 4] {
     [x, y, z, w + y * z]
 }
 
-/// Owen's scrambling of reversed bits.
+/// Owen scrambling on reversed bits.
 #[inline(always)]
 pub fn laine_karras<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
     let x = x ^ (x * l.splat_u(0x3D20_ADEA));
@@ -45,7 +45,7 @@ pub fn laine_karras<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
     x ^ (x * l.splat_u(0x53A2_2864))
 }
 
-/// The second Sobol coordinate from the first.
+/// Computes the second Sobol coordinate from the first.
 #[inline(always)]
 pub fn pascal<L: Lanes>(l: L, u: L::U) -> L::U {
     let u = u ^ L::shl(u, 16);
@@ -55,22 +55,22 @@ pub fn pascal<L: Lanes>(l: L, u: L::U) -> L::U {
     u ^ L::shl(u & l.splat_u(0x5555_5555), 1)
 }
 
-/// A pair of Sobol coordinates: that of the reversed sample index `counter` in the block of dimensions that
-/// `stream`, the pixel's key and the golden ratio for each bounce, names.
+/// A pair of Sobol coordinates. `counter` is the reversed sample index; `stream` selects the block of dimensions and is
+/// the pixel's key plus the golden ratio for each bounce.
 #[inline(always)]
 pub fn sobol_pair<L: Lanes>(l: L, counter: L::U, stream: L::U) -> [L::U; 2] {
     let u = laine_karras(l, counter, mix32(l, stream));
     [u, pascal(l, u)]
 }
 
-/// `stream` moved on to the second pair of dimensions of the same ray, for a point in the pixel beside one on the
-/// lens.
+/// The stream of the second pair of dimensions of the same ray, which supplies the point in the pixel when the first
+/// pair is used for the lens.
 #[inline(always)]
 pub fn lens_stream_of<L: Lanes>(l: L, stream: L::U) -> L::U {
     stream + l.splat_u(LENS_BLOCK.wrapping_mul(GOLDEN_RATIO))
 }
 
-/// Two pairs of numbers of a path's next ray, the second of which matters `with_lens` alone. `counter` tells the sample, and
+/// Two pairs of numbers for a path's next ray; the second pair matters only `with_lens`. `counter` selects the sample,
 /// `stream` the pixel, half and ray: see [`crate::sampling::stream_stride`].
 #[inline(always)]
 pub fn numbers<L: Lanes>(

@@ -1,4 +1,4 @@
-//! Rays against spheres. (Book 1, section 5; the forms are described in docs/numerics.md.)
+//! Ray-sphere intersection. (Book 1, section 5; docs/numerics.md describes the formulas.)
 //!
 //! Twin: shaders/sphere.wgsl
 
@@ -6,40 +6,39 @@ use super::lanes::{Lanes, V3, Wide, WideU, dot, load3, mul_add3, neg_mul_add3, s
 use crate::kernel::{AnchoredSphere, Roots};
 pub use crate::kernel::{EYE, NONE};
 
-/// Rays on their way. Directions have length 1.
+/// Rays being traced. Directions have length 1.
 #[derive(Clone, Copy)]
 pub struct Rays<L: Lanes> {
-    /// Where they start.
+    /// Ray origins.
     pub origin: V3<L::F>,
-    /// Where they go; unit vectors.
+    /// Unit directions.
     pub direction: V3<L::F>,
-    /// The sphere that they leave outwards, which they cannot meet again, or [`NONE`]; [`EYE`] for rays from an eye
-    /// on a surface.
+    /// The sphere that the ray leaves outwards and cannot meet again, or [`NONE`]; [`EYE`] for rays that start at an
+    /// eye on a surface.
     pub left: L::U,
-    /// The sphere that they enter, which they meet again at the end of a chord, or [`NONE`].
+    /// The sphere that the ray enters and meets again at the end of a chord, or [`NONE`].
     pub inside: L::U,
 }
 
-/// A sphere a lane, as the tests for roots need it.
+/// One sphere per lane, in the form that the root functions need.
 #[derive(Clone, Copy)]
 pub struct Spheres<L: Lanes> {
     /// Centre.
     pub center: V3<L::F>,
     /// Squared radius.
     pub radius2: L::F,
-    /// Number.
+    /// The sphere's number.
     pub number: L::U,
 }
 
 impl<L: Lanes> Spheres<L> {
-    /// One sphere for all lanes: centre and squared radius.
+    /// Broadcasts one sphere, given as centre and squared radius, to all lanes.
     #[inline(always)]
     pub fn splat(l: L, [x, y, z, radius2]: [L::Real; 4], number: L::U) -> Self {
         Spheres { center: splat3(l, [x, y, z]), radius2: l.splat(radius2), number }
     }
 
-    /// The same, spread out in memory: an instruction can take it from there, where it would have to be spread
-    /// first.
+    /// Loads a broadcast sphere. An instruction can use it as a memory operand, without a separate broadcast.
     #[inline(always)]
     pub fn load(l: L, sphere: &BroadcastSphere<L::Real>) -> Self {
         Spheres {
@@ -50,7 +49,7 @@ impl<L: Lanes> Spheres<L> {
     }
 }
 
-/// A sphere in memory, as often as a packet has lanes.
+/// A sphere broadcast in memory, with one copy per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct BroadcastSphere<R> {
     center: [Wide<R>; 3],
@@ -59,7 +58,7 @@ pub struct BroadcastSphere<R> {
 }
 
 impl<R: Copy> BroadcastSphere<R> {
-    /// Spreads centre and squared radius.
+    /// Broadcasts centre and squared radius.
     pub fn new([x, y, z, radius2]: [R; 4], number: u32) -> Self {
         BroadcastSphere {
             center: [x, y, z].map(Wide::splat),
@@ -69,31 +68,31 @@ impl<R: Copy> BroadcastSphere<R> {
     }
 }
 
-/// The nearest hits so far.
+/// The nearest hits found so far.
 #[derive(Clone, Copy)]
 pub struct Nearest<L: Lanes> {
-    /// Distance, as [`Lanes::key`].
+    /// Distance, encoded as [`Lanes::key`].
     pub key: L::Key,
-    /// Which sphere, or [`NONE`].
+    /// The sphere's number, or [`NONE`].
     pub sphere: L::U,
 }
 
 impl<L: Lanes> Nearest<L> {
-    /// Nothing hit.
+    /// The state before the search: no hits.
     #[inline(always)]
     pub fn nothing(l: L) -> Self {
         Nearest { key: L::key(l.constant(f64::NEG_INFINITY)), sphere: l.splat_u(NONE) }
     }
 
-    /// Takes `key` where it is nearer. Of two spheres at one distance the first taken stays.
+    /// Takes `key` where it is nearer. Of two spheres at the same distance, the one taken first stays.
     #[inline(always)]
     pub fn take(&mut self, key: L::Key, sphere: L::U) {
         self.sphere = L::select_u(L::lt_key(key, self.key), sphere, self.sphere);
         self.key = L::min_key(self.key, key);
     }
 
-    /// Takes `key` where it is nearer, in any order of the search: of two spheres at one distance that of the lower
-    /// rank stays. `ranks` tells those of the spheres from number 0 on; `active` lanes are those that matter.
+    /// Takes `key` where it is nearer, for searches in any order: of two spheres at the same distance, the one of lower
+    /// rank stays. `ranks` holds the ranks of the spheres from number 0 on. Results matter only for `active` lanes.
     #[inline(always)]
     pub fn take_in_any_order(&mut self, l: L, key: L::Key, sphere: u32, ranks: &[u32], active: L::M) {
         let tied = L::bits(L::eq_key(key, self.key) & active);
@@ -103,7 +102,7 @@ impl<L: Lanes> Nearest<L> {
         }
     }
 
-    /// Gives the lanes `tied` the sphere of the lower rank. Spheres hardly ever tie.
+    /// Gives the lanes `tied` the sphere of lower rank. Ties are rare.
     #[inline(always)]
     fn settle(&mut self, l: L, tied: u32, sphere: u32, ranks: &[u32]) {
         let mut held = WideU::default();
@@ -117,16 +116,17 @@ impl<L: Lanes> Nearest<L> {
         self.sphere = l.load_u(&held);
     }
 
-    /// How far the hits are; infinity where there is none.
+    /// Distances of the hits; infinity where there is none.
     #[inline(always)]
     pub fn distance(&self) -> L::F {
         -L::from_key(self.key)
     }
 }
 
-/// The negated distance to the chord's middle, and half the chord, by the perpendicular form: with `g = o - C`,
-/// `l = g - (d.g) d` is the way from the centre to the ray, and `sqrt(r^2 - l.l)` half the chord (NaN for a miss).
-/// The book's `h^2 - a c` cancels for a sphere that is small beside its distance.
+/// Computes the negated distance to the middle of the chord, and half the chord's length (NaN for a miss), by the
+/// perpendicular form: with `g = o - C`, the vector from the centre to the ray is `l = g - (d.g) d`, and half the chord
+/// is `sqrt(r^2 - l.l)`. The book's `h^2 - a c` suffers cancellation for a sphere that is small relative to its
+/// distance.
 ///
 /// Source: Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019.
 #[inline(always)]
@@ -147,20 +147,21 @@ pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key 
     l.exclude(L::eq_u(rays.left, sphere.number), L::key(h + s))
 }
 
-/// Distance to a sphere from within or without.
+/// Distance to a sphere from inside or outside.
 #[inline(always)]
 pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
     let (h, s) = chord(rays, sphere);
     let leaves = L::eq_u(rays.left, sphere.number);
     let enters = L::eq_u(rays.inside, sphere.number);
     let near = l.exclude(enters, L::key(h + s));
-    // From its own surface inwards a ray runs the chord 2h. Negated last: a chord of length 0 is a hit, -0.
+    // A ray that enters the sphere from its surface travels the chord 2h. The negation comes last, so that a chord of
+    // length 0 is a hit at -0.
     let far = L::key(-(L::select(enters, L::abs(h), s) - h));
     l.exclude(leaves, L::min_key(near, far))
 }
 
-/// Distance to a sphere that is seen from a point of its surface. Everything is measured from the anchor, so that no
-/// number is as large as the radius; as the curvature goes to 0 this is the distance to a plane.
+/// Distance to an anchored sphere. Everything is measured from the anchor, so no number is as large as the radius. As
+/// the curvature goes to 0, this becomes the distance to a plane.
 #[inline(always)]
 pub fn anchored_root<L: Lanes>(
     l: L,
@@ -185,7 +186,7 @@ pub fn anchored_root<L: Lanes>(
     if sphere.is_under_eye() {
         leaves = leaves | (L::eq_u(rays.left, l.splat_u(EYE)) & L::lt(m_along, zero));
     }
-    // From its own surface inwards a ray runs the chord 2b.
+    // A ray that enters the sphere from its surface travels the chord 2b.
     let own_chord = (b + L::abs(b)) / k;
     match sphere.roots() {
         Roots::Nearer => {
@@ -206,7 +207,7 @@ pub fn anchored_root<L: Lanes>(
     }
 }
 
-/// The book's own quadratic, without memory of the surface left: the nearer root that is beyond `t_min`.
+/// The book's own quadratic, which does not track the surface that a ray leaves: the nearer root beyond `t_min`.
 /// (Sections 5.1, 6.2 and 9.3.)
 #[inline(always)]
 pub fn book_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>, t_min: L::F) -> L::Key {
@@ -221,15 +222,15 @@ pub fn book_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>, t_min: L::
 
 /// A point on a surface.
 pub struct SurfacePoint<L: Lanes> {
-    /// Where, moved onto the sphere.
+    /// The position, moved onto the sphere.
     pub position: V3<L::F>,
-    /// Unit normal, away from the centre.
+    /// Unit normal, pointing away from the centre.
     pub outward: V3<L::F>,
 }
 
-/// The point at distance `t` on a sphere: `center` is its centre, `curvature` the inverse of `radius`.
+/// The point at distance `t` on a sphere with centre `center`; `curvature` is the inverse of `radius`.
 ///
-/// The point is moved onto the sphere along the normal, whose length one Newton step makes 1.
+/// The point is moved onto the sphere along the normal, which one Newton step normalises.
 #[inline(always)]
 pub fn surface_point<L: Lanes>(
     l: L,
@@ -244,15 +245,15 @@ pub fn surface_point<L: Lanes>(
     SurfacePoint { position: mul_add3::<L>(outward, radius, center), outward }
 }
 
-/// The same by the book's own arithmetic: the point stays where rounding leaves it. (Section 6.2.)
+/// Like [`surface_point`], with the book's own arithmetic: rounding may leave the point off the surface. (Section 6.2.)
 #[inline(always)]
 pub fn book_point<L: Lanes>(rays: &Rays<L>, t: L::F, center: V3<L::F>, curvature: L::F) -> SurfacePoint<L> {
     let position = mul_add3::<L>(rays.direction, t, rays.origin);
     SurfacePoint { position, outward: (position - center).scale(curvature) }
 }
 
-/// The same on a sphere so far away that `t` is rounded by a part of its radius: the way from the centre to the ray,
-/// and half the chord from there.
+/// Like [`surface_point`], for a sphere so far away that the rounding of `t` is a sizeable part of its radius. The
+/// point is found from the vector between the centre and the ray, and half the chord from there.
 #[inline(always)]
 pub fn speck_surface_point<L: Lanes>(
     l: L,
@@ -271,7 +272,7 @@ pub fn speck_surface_point<L: Lanes>(
     SurfacePoint { position: mul_add3::<L>(outward, radius, center), outward }
 }
 
-/// The same on an anchored sphere.
+/// Like [`surface_point`], on an anchored sphere.
 #[inline(always)]
 pub fn anchored_surface_point<L: Lanes>(
     l: L,

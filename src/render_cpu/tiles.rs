@@ -1,28 +1,28 @@
-//! A film cut into tiles for the threads.
+//! Splits a film into tiles for the threads.
 
 use super::work::TileRows;
 use crate::film::PixelSum;
 
-/// Side of a tile where the picture has enough of them.
+/// Side of a tile in pixels, if the picture has enough of them.
 const SIDE: u32 = 64;
 
-/// Smallest side: below it, lanes wait at the end of a tile for longer than they work.
+/// Smallest side in pixels: in smaller tiles, lanes wait for the end of the tile longer than they work.
 const SIDE_MIN: u32 = 8;
 
-/// Tiles that there should be for each thread, so that none is left waiting for long.
+/// Number of tiles to aim for per thread, so that no thread waits for long.
 const TILES_A_THREAD: u32 = 4;
 
-/// A tile of the film: where it lies, and its rows of each half.
+/// A tile of the film: its position, and its rows in each half.
 pub struct Tile<'film> {
     /// Column and row of the upper left pixel.
     pub corner: [u32; 2],
-    /// Rows of a half.
+    /// Number of rows in one half.
     pub height: u32,
-    /// Rows of the halves, one after the other.
+    /// The rows of all halves, one half after the other.
     pub rows: TileRows<'film>,
 }
 
-/// The side of the tiles for a picture and so many threads, a power of two.
+/// The side of the tiles for a picture and a number of threads, a power of two.
 pub fn tile_side(width: u32, height: u32, threads: usize) -> u32 {
     let count = |side: u32| width.div_ceil(side) * height.div_ceil(side);
     let wanted = TILES_A_THREAD.saturating_mul(threads as u32);
@@ -33,7 +33,7 @@ pub fn tile_side(width: u32, height: u32, threads: usize) -> u32 {
     side
 }
 
-/// Cuts the halves of a film of `width` pixels across into tiles, row by row.
+/// Splits the halves of a film `width` pixels wide into tiles, row by row.
 pub fn tiles(halves: &mut [Vec<PixelSum>], width: u32, side: u32) -> Vec<Tile<'_>> {
     let mut tiles: Vec<Tile> = Vec::new();
     let (across, half_count) = (width.div_ceil(side) as usize, halves.len());

@@ -1,26 +1,26 @@
-//! What a tile has to do, dealt to lanes: blocks of samples of its pixels.
+//! The work of a tile: blocks of samples of its pixels, from which lanes are refilled.
 
 use super::lanes::WideU;
 use crate::film::PixelSum;
 use crate::render::RenderSettings;
 use crate::sampling::{HalfKey, SampleBlock};
 
-/// Rows of the film within a tile: those of the first half, then those of the second.
+/// The film's rows within a tile: those of the first half, then those of the second.
 pub type TileRows<'film> = Vec<&'film mut [PixelSum]>;
 
-/// Figures of a tile.
+/// Statistics of a tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TileStats {
-    /// Rays that were traced: lanes that did so, over all intersections.
+    /// Rays traced: the number of busy lanes, summed over all intersections.
     pub rays: u64,
-    /// Lanes there were, over all intersections.
+    /// Available lanes, summed over all intersections.
     pub offered_lanes: u64,
-    /// Samples that were not finite.
+    /// Samples rejected because they were not finite.
     pub rejected: u64,
 }
 
 impl TileStats {
-    /// Adds another tile's figures.
+    /// Adds another tile's statistics.
     pub fn plus(self, other: TileStats) -> TileStats {
         TileStats {
             rays: self.rays + other.rays,
@@ -30,11 +30,11 @@ impl TileStats {
     }
 }
 
-/// A block of samples as the lanes count through it.
+/// A block of samples as lanes count through it.
 #[derive(Clone, Copy, Debug)]
-pub struct DealtBlock {
+pub struct RefillBlock {
     half: u32,
-    /// What the sampler's keys in this half are made from.
+    /// The part of the sampler's keys that depends on the half.
     half_key: HalfKey,
     counter: u32,
     step: u32,
@@ -42,14 +42,14 @@ pub struct DealtBlock {
     end: u32,
 }
 
-impl DealtBlock {
-    /// The blocks that samples `range` consist of.
-    pub fn of_range(range: std::ops::Range<u64>, settings: &RenderSettings, limit: u32) -> Vec<DealtBlock> {
+impl RefillBlock {
+    /// Splits the sample range `range` into blocks.
+    pub fn of_range(range: std::ops::Range<u64>, settings: &RenderSettings, limit: u32) -> Vec<RefillBlock> {
         SampleBlock::split(range, settings.half_count() as u32, limit)
             .into_iter()
             .map(|block| {
                 let (counter, step) = block.counter(settings);
-                DealtBlock {
+                RefillBlock {
                     half: block.half,
                     half_key: HalfKey::new(settings, block.half),
                     counter,
@@ -61,22 +61,22 @@ impl DealtBlock {
     }
 }
 
-/// What the lanes of a packet are at, as numbers in memory: they are dealt one by one and read together.
+/// Refill state of a packet's lanes: stored per lane, loaded as a vector.
 #[derive(Clone)]
 pub struct LaneBlocks {
     /// The sampler's counter at the block's first sample.
     pub start: WideU,
-    /// What the counter grows by.
+    /// The increment of the counter.
     pub step: WideU,
     /// The counter after the block's last sample.
     pub end: WideU,
-    /// The sampler's stream of numbers for the camera's ray.
+    /// The sampler's stream for the camera ray.
     pub key: WideU,
     /// `x | y << 16`.
     pub pixel: WideU,
-    /// What the block has added up to, RGB.
+    /// Sums of the block so far, RGB.
     pub sums: [WideU; 3],
-    /// Where they go: `row << 8 | column` of the tile's rows, or [`NOWHERE`].
+    /// Destination of the sums: `row << 8 | column` of the tile's rows, or [`NOWHERE`].
     slot: WideU,
 }
 
@@ -92,9 +92,9 @@ impl Default for LaneBlocks {
     }
 }
 
-/// The pixels of a square tile with `side` pixels (at most 256) in the order in which they are dealt,
-/// `y << 8 | x`: squares of four by four, so that a packet's first rays lie close together.
-pub fn dealing_order(side: u32) -> Vec<u16> {
+/// The pixels of a square tile with `side` pixels (at most 256) in refill order, as `y << 8 | x`. They are ordered in
+/// squares of four by four, so that a packet's first rays are close together.
+pub fn refill_order(side: u32) -> Vec<u16> {
     const SQUARE: u32 = 4;
     let starts = || (0..side).step_by(SQUARE as usize);
     let within = |start: u32| start..(start + SQUARE).min(side);
@@ -111,10 +111,10 @@ pub fn dealing_order(side: u32) -> Vec<u16> {
 
 /// A tile's pixels, blocks and sums.
 pub struct Work<'film> {
-    blocks: &'film [DealtBlock],
-    /// Pixels in [`dealing_order`]; those beyond the tile are passed over.
+    blocks: &'film [RefillBlock],
+    /// Pixels in [`refill_order`]; those outside the tile are skipped.
     order: &'film [u16],
-    /// Position in the picture of the tile's upper left pixel.
+    /// Position of the tile's upper left pixel in the picture.
     corner: [u32; 2],
     width: u32,
     height: u32,
@@ -122,14 +122,14 @@ pub struct Work<'film> {
     next_block: usize,
     next_place: usize,
     finished: u64,
-    /// So many blocks are taken away from the film, and none is added.
+    /// If set, this many blocks are subtracted from the film, and none is added.
     taken_away: Option<u64>,
 }
 
 impl<'film> Work<'film> {
-    /// Work for a tile of `height` rows in each half.
+    /// Creates the work for a tile with `height` rows in each half.
     pub fn new(
-        blocks: &'film [DealtBlock],
+        blocks: &'film [RefillBlock],
         order: &'film [u16],
         corner: [u32; 2],
         height: u32,
@@ -150,8 +150,8 @@ impl<'film> Work<'film> {
         }
     }
 
-    /// Takes the first `count` blocks away from the film that are finished, in place of adding all: a kernel finishes
-    /// a tile's blocks in the same order each time, with the same sums.
+    /// Subtracts the first `count` finished blocks from the film instead of adding all. A kernel finishes a tile's
+    /// blocks in the same order every time, with the same sums.
     pub fn taking_away(self, count: u64) -> Self {
         Work { taken_away: Some(count), ..self }
     }
@@ -161,20 +161,20 @@ impl<'film> Work<'film> {
         self.finished
     }
 
-    /// Blocks there are, over all pixels.
+    /// Blocks in total, over all pixels.
     pub fn expected(&self) -> u64 {
         self.blocks.len() as u64 * u64::from(self.width) * u64::from(self.height)
     }
 
-    /// Leaves out the last row, so that a kernel panics in the middle of the tile (fault injection).
+    /// Drops the last row, so that a kernel panics in the middle of the tile (fault injection).
     pub fn sabotaged(mut self) -> Self {
         self.rows.pop();
         self
     }
 
-    /// The next block and the place of its pixel in the tile.
+    /// The next block, and its pixel's position in the tile.
     #[inline(always)]
-    fn next(&mut self) -> Option<(&'film DealtBlock, [u32; 2])> {
+    fn next(&mut self) -> Option<(&'film RefillBlock, [u32; 2])> {
         loop {
             let block = self.blocks.get(self.next_block)?;
             let Some(&place) = self.order.get(self.next_place) else {
@@ -190,8 +190,8 @@ impl<'film> Work<'film> {
         }
     }
 
-    /// Takes the sums of the lanes `done` and gives each its next block. Returns the lanes for which there is
-    /// none.
+    /// Collects the sums of the lanes `done` and gives each lane its next block. Returns the lanes for which no block
+    /// is left.
     #[inline(always)]
     pub fn refill(&mut self, done: u32, lanes: &mut LaneBlocks) -> u32 {
         let mut retired = 0;
@@ -242,7 +242,7 @@ mod tests {
     #[test]
     fn every_pixel_is_dealt_once() {
         for side in [1, 3, 8, 64, 256] {
-            let mut order = dealing_order(side);
+            let mut order = refill_order(side);
             order.sort_unstable();
             let expected: Vec<u16> =
                 (0..side).flat_map(|y| (0..side).map(move |x| (y << 8 | x) as u16)).collect();

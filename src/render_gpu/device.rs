@@ -1,4 +1,4 @@
-//! Adapters, the device, and what can go wrong with it.
+//! Adapters, the device, and how they can fail.
 
 use super::options::COMPILING_PATIENCE;
 use super::{Fault, GpuError};
@@ -7,35 +7,35 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// Storage buffers that the path tracer binds.
+/// Number of storage buffers that the path tracer binds.
 const STORAGE_BUFFERS: u32 = 8;
 
-/// Threads that keep a processor busy that does the work of a GPU. Of 1024 and 4096 both were as fast, and a whole picture
-/// slower by a seventh.
+/// Number of threads that keep a software adapter busy. 1024 threads and 4096 were equally fast; a dispatch of the
+/// whole picture was a seventh slower.
 const BUSY_THREADS_OF_SOFTWARE: u64 = 4096;
 
-/// What an adapter is, for lists and reports.
+/// A description of an adapter, for lists and reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterInfo {
-    /// As the driver calls it.
+    /// The adapter's name, as the driver reports it.
     pub name: String,
     /// "discrete GPU", "integrated GPU", "virtual GPU", "software" or "other".
     pub kind: &'static str,
     /// "Vulkan", "Metal", "DX12" or "GL".
     pub backend: String,
-    /// Driver and its version.
+    /// The driver's name and version.
     pub driver: String,
-    /// Whether a processor computes what a GPU should.
+    /// Whether the adapter is a software implementation that runs on the CPU.
     pub is_software: bool,
-    /// Largest storage buffer that a shader can see at once, bytes.
+    /// Size limit of a storage buffer binding, in bytes.
     pub storage_binding_limit: u64,
-    /// Largest buffer, bytes.
+    /// Size limit of a buffer, in bytes.
     pub buffer_limit: u64,
-    /// Whether it can time a dispatch itself.
+    /// Whether the adapter supports timestamp queries, which time a dispatch.
     pub has_timestamps: bool,
-    /// Most threads that run in step.
+    /// Largest number of threads that run in step.
     pub subgroup_size: u32,
-    /// Why the path tracer cannot run on it, if it cannot.
+    /// The reason why the path tracer cannot run on this adapter, if it cannot.
     pub lacks: Option<String>,
 }
 
@@ -68,7 +68,7 @@ impl AdapterInfo {
                 other => format!("{other:?}"),
             },
             driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
-            // GL names every device "other", software too.
+            // GL reports the type "other" for every device, software included.
             is_software: info.device_type == wgpu::DeviceType::Cpu || names_software(&info.name),
             storage_binding_limit: limits.max_storage_buffer_binding_size,
             buffer_limit: limits.max_buffer_size,
@@ -78,25 +78,26 @@ impl AdapterInfo {
         }
     }
 
-    /// By how many threads a limit of the turns of loops is shared: software counts those of all threads that run in
-    /// step. No limit of a GPU is known.
+    /// Number of threads that share a limit on loop turns: software counts the turns of all threads that run in step.
+    /// GPUs have no known limit.
     pub fn threads_in_step(&self) -> u32 {
-        // Some do not tell; a processor has room for 8 in its registers.
+        // Some adapters do not report a subgroup size; 8 threads fit a processor's registers.
         if self.is_software { self.subgroup_size.clamp(8, 64) } else { 1 }
     }
 
-    /// Threads that keep it busy: a dispatch has as many if it can, then as many samples as its time allows. More threads
-    /// of fewer samples each are slower, since those that run in step wait for the longest.
+    /// Number of threads that keep the adapter busy. A dispatch uses this many if it can, and then as many samples as
+    /// fit its time. More threads with fewer samples each are slower, because threads that run in step wait for the
+    /// longest.
     pub fn busy_threads(&self) -> u64 {
         if self.is_software { BUSY_THREADS_OF_SOFTWARE } else { u64::MAX }
     }
 
-    /// Whether it is chosen when none is named: a GPU that the path tracer can run on.
+    /// Whether the adapter may be chosen by default: a GPU that the path tracer can run on.
     pub fn is_fit(&self) -> bool {
         !self.is_software && self.lacks.is_none()
     }
 
-    /// Smaller is chosen first.
+    /// The sort key for adapters: the smallest comes first.
     fn rank(&self) -> (bool, bool, u8, u8) {
         let kind = match self.kind {
             "discrete GPU" => 0,
@@ -108,7 +109,7 @@ impl AdapterInfo {
     }
 }
 
-/// As `NVIDIA H200 (discrete GPU, Vulkan, driver 580.1)`.
+/// Formats the adapter like `NVIDIA H200 (discrete GPU, Vulkan, driver 580.1)`.
 impl fmt::Display for AdapterInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let kind = if self.is_software { "software" } else { self.kind };
@@ -121,8 +122,8 @@ fn names_software(name: &str) -> bool {
     ["llvmpipe", "softpipe", "swiftshader", "swrast", "basic render"].iter().any(|s| name.contains(s))
 }
 
-/// Adapters, best first. GL is looked at only where nothing better has what is asked for: it would name the same
-/// hardware again, and its libraries print complaints of their own.
+/// All adapters, best first. GL is enumerated only if no other backend has a usable adapter that is `wanted`: it would
+/// list the same hardware again, and its libraries print warnings of their own.
 fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, wgpu::Adapter)> {
     let mut adapters = adapters_of(wgpu::Backends::PRIMARY);
     if !adapters.iter().any(|(info, _)| info.lacks.is_none() && wanted(info)) {
@@ -135,7 +136,7 @@ fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, wgpu
 fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends,
-        // Debug builds would load a driver's validation layers, which slow everything down.
+        // Without this, debug builds would load the driver's validation layers, which slow everything down.
         flags: wgpu::InstanceFlags::empty(),
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
@@ -143,12 +144,12 @@ fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
     found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect()
 }
 
-/// All adapters of this machine, that which is chosen by itself first. Software stands behind hardware.
+/// All adapters of this machine, the default one first. Software adapters come after hardware.
 pub fn adapters() -> Vec<AdapterInfo> {
     all_adapters(|_| true).into_iter().map(|(info, _)| info).collect()
 }
 
-/// The first failure of a device: what comes after it is its consequence.
+/// The first failure of a device; later failures are its consequences.
 #[derive(Debug, Default)]
 pub struct Faults {
     first: Mutex<Option<String>>,
@@ -159,7 +160,7 @@ impl Faults {
         self.first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
     }
 
-    /// `Err` with the first failure, if there was one.
+    /// Returns `Err` with the first failure, if there was one.
     pub fn check(&self) -> Result<(), String> {
         match &*self.first.lock().unwrap_or_else(PoisonError::into_inner) {
             Some(what) => Err(what.clone()),
@@ -168,16 +169,16 @@ impl Faults {
     }
 }
 
-/// How the bindings of the shaders are grouped.
+/// The layouts of the shaders' bind groups.
 #[derive(Clone, Debug)]
 pub struct Layouts {
     /// Group 0: the job.
     pub job: wgpu::BindGroupLayout,
     /// Group 1: the dispatch.
     pub dispatch: wgpu::BindGroupLayout,
-    /// Group 2: words in and out.
+    /// Group 2: input and output words.
     pub words: wgpu::BindGroupLayout,
-    /// All of them.
+    /// The pipeline layout of all three groups.
     pub pipeline: wgpu::PipelineLayout,
 }
 
@@ -216,50 +217,50 @@ impl Layouts {
     }
 }
 
-/// An open device; clones are the same one.
+/// An open device; clones share it.
 #[derive(Clone, Debug)]
 pub struct Gpu {
-    /// The adapter it is of.
+    /// The adapter that the device belongs to.
     pub adapter: AdapterInfo,
-    /// The device.
+    /// The wgpu device.
     pub device: wgpu::Device,
-    /// Its queue.
+    /// The device's queue.
     pub queue: wgpu::Queue,
-    /// Its bindings.
+    /// The bind group layouts.
     pub layouts: Layouts,
-    /// Its failures.
+    /// The device's failures.
     pub faults: Arc<Faults>,
-    /// How long it is waited for.
+    /// How long to wait for the device before giving it up.
     patience: Duration,
     silence: Arc<Mutex<Silence>>,
 }
 
-/// How long a device has not answered.
+/// Tracks how long a device has not responded.
 #[derive(Debug, Default)]
 struct Silence {
-    /// What was waited since its last answer.
+    /// Time spent waiting since its last response.
     waited: Duration,
     /// Whether the driver may be compiling.
     compiles: bool,
-    /// When an injected fault ends in which it does not answer.
+    /// End of an injected fault during which the device does not respond.
     simulated_until: Option<Instant>,
 }
 
-/// How often whoever waits for the device looks whether its answer is still wanted.
+/// How often a wait for the device checks whether the result is still wanted.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// How long a device does not answer in an injected fault.
+/// How long the device does not respond during an injected fault.
 const INJECTED_SILENCE: Duration = Duration::from_secs(10);
 
-/// Buffers of the largest size that an injected fault asks for: no device has so much memory.
+/// Number of buffers of the largest size that an injected fault allocates: no device has that much memory.
 const INJECTED_BUFFERS: usize = 4096;
 
 impl Gpu {
-    /// Opens the first adapter whose name, backend or driver contains `wanted` (in any case), or the first of
-    /// all. A software adapter must be allowed.
+    /// Opens the first adapter whose name, backend or driver contains `wanted` (ignoring case), or the best adapter if
+    /// `wanted` is `None`. Software adapters are opened only if `allow_software` is set.
     ///
     /// # Errors
-    /// [`GpuError`] with the adapters that there are.
+    /// [`GpuError`], with the available adapters.
     pub fn open(wanted: Option<&str>, allow_software: bool, patience: Duration) -> Result<Self, GpuError> {
         let matches = |info: &AdapterInfo| {
             let text = info.to_string().to_lowercase();
@@ -311,7 +312,7 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Runs `create` and returns what it made, or what the device had against it.
+    /// Runs `create` and returns its result, or the device's error.
     pub fn guarded<T>(&self, create: impl FnOnce() -> T) -> Result<T, String> {
         let filters =
             [wgpu::ErrorFilter::Internal, wgpu::ErrorFilter::OutOfMemory, wgpu::ErrorFilter::Validation];
@@ -328,7 +329,7 @@ impl Gpu {
         }
     }
 
-    /// A buffer of zeros.
+    /// Creates a buffer filled with zeros.
     pub fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> Result<wgpu::Buffer, String> {
         let size = size.max(16).next_multiple_of(16);
         self.guarded(|| {
@@ -342,7 +343,7 @@ impl Gpu {
         .map_err(|reason| format!("no buffer of {size} bytes for {label}: {reason}"))
     }
 
-    /// A buffer with `data` in it.
+    /// Creates a buffer with the contents `data`.
     pub fn filled(
         &self,
         label: &str,
@@ -354,7 +355,7 @@ impl Gpu {
         Ok(buffer)
     }
 
-    /// Bindings `0 ..` to whole buffers.
+    /// Creates a bind group that binds whole buffers to the bindings `0 ..`.
     pub fn bind(&self, layout: &wgpu::BindGroupLayout, buffers: &[&wgpu::Buffer]) -> wgpu::BindGroup {
         let entries: Vec<_> = buffers
             .iter()
@@ -364,15 +365,15 @@ impl Gpu {
         self.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
     }
 
-    /// Breaks the device, as an injected fault.
+    /// Breaks the device, as an injected fault does.
     pub fn break_by(&self, fault: Fault) {
         match fault {
             Fault::Lost => self.device.destroy(),
             Fault::OutOfMemory => self.use_up_memory(),
             Fault::Hang => self.silence().simulated_until = Some(Instant::now() + INJECTED_SILENCE),
-            // It is the dispatch's.
+            // The dispatch code injects these faults.
             Fault::Short | Fault::AlwaysShort => {}
-            // More than the buffer has room for.
+            // Copies more than the buffer can hold.
             Fault::Invalid => {
                 let small = self.device.create_buffer(&wgpu::BufferDescriptor {
                     label: Some("injection"),
@@ -385,7 +386,7 @@ impl Gpu {
         }
     }
 
-    /// Asks for buffers until one is refused.
+    /// Allocates buffers until an allocation fails.
     fn use_up_memory(&self) {
         let size = self.adapter.buffer_limit / 16 * 16;
         let mut taken = Vec::new();
@@ -403,7 +404,7 @@ impl Gpu {
         self.silence.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next answer may take longer: a kernel runs for the first time.
+    /// Allows the next response more time, because a kernel runs for the first time.
     pub fn expect_compiling(&self) {
         self.silence().compiles = true;
     }
@@ -411,12 +412,12 @@ impl Gpu {
     /// Waits until a submission is done.
     ///
     /// # Errors
-    /// What failed, also if the device has not answered for too long.
+    /// The device's failure, also if it has not responded for too long.
     pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<(), String> {
         self.wait_unless(submission, None).map(drop)
     }
 
-    /// Waits until a submission is done, which it returns, or `cancel` is set.
+    /// Waits until a submission is done and returns true, or returns false once `cancel` is set.
     ///
     /// # Errors
     /// As [`Gpu::wait`].
@@ -450,7 +451,7 @@ impl Gpu {
         }
     }
 
-    /// Waits for a moment.
+    /// Waits briefly.
     fn poll(&self, submission: &wgpu::SubmissionIndex) -> Result<wgpu::PollStatus, wgpu::PollError> {
         let simulated_until = self.silence().simulated_until;
         if simulated_until.is_some_and(|until| Instant::now() < until) {

@@ -1,5 +1,5 @@
-//! Dispatches: cut from a range of samples, sent off ahead of the device, gone on with until all their samples are
-//! there, timed, and sized by what they took.
+//! Dispatches. They are cut from a range of samples, queued ahead of the device, resumed until all their samples are
+//! finished, timed, and sized by the measured time.
 
 use super::device::Gpu;
 use super::layout::{ASIDE_STRIDE, GpuBlock, GpuDispatch, WORKGROUP_SIZE, tile_size};
@@ -19,29 +19,29 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Dispatches under way, from one pass to the next: while the host deals with one, the device has another.
+/// Number of dispatches in flight across passes: while the host processes one, the device runs the other.
 const QUEUE_DEPTH: usize = 2;
 
 /// Most workgroups along one axis of a dispatch; WebGPU allows 65,535.
 const GROUPS_ACROSS: u32 = 32_768;
 
-/// Most threads of a dispatch: so many can put their paths aside, 64 bytes each.
+/// Most threads in a dispatch; each can put its path aside, in [`ASIDE_SIZE`] bytes.
 const THREAD_LIMIT: u64 = 1 << 20;
 
 /// Bytes in which a thread puts its path aside.
 const ASIDE_SIZE: u64 = 4 * ASIDE_STRIDE as u64;
 
-/// By so many bits less a dispatch does each time that samples were missing.
+/// Each time samples are missing, dispatches shrink by this many bits.
 const CAUTION_SHIFT: u32 = 3;
 
-/// How often samples that are missing are traced again.
+/// How often missing samples are traced again.
 pub(super) const CAUTION_LIMIT: u32 = 3;
 
-/// Why a pass is not whole.
+/// Why a pass is incomplete.
 pub(super) enum Broken {
-    /// The device failed, or nobody wants it any more.
+    /// The device failed, or the pass was cancelled.
     Ended(RenderError),
-    /// Samples are missing though the device reported no fault: in words, how many and where.
+    /// Samples are missing although the device reported no fault. Describes how many and where.
     Short(String),
 }
 
@@ -51,7 +51,7 @@ impl From<RenderError> for Broken {
     }
 }
 
-/// A dispatch with all that it binds.
+/// A dispatch with everything that it binds.
 struct Work {
     kernel: Features,
     pipeline: wgpu::ComputePipeline,
@@ -62,31 +62,31 @@ struct Work {
     counters: wgpu::Buffer,
     blocks: Arc<[GpuBlock]>,
     order: GpuDispatch,
-    /// Threads times samples, by which the budget counts.
+    /// Threads times samples, the unit of the budget.
     paths: u64,
-    /// Samples of all pixels in it.
+    /// Samples in the dispatch, over all pixels.
     samples: u64,
 }
 
-/// A submission that is not known to be done.
+/// A submission that may not be done yet.
 struct UnderWay {
     slot: usize,
     submission: wgpu::SubmissionIndex,
     submitted: Instant,
     work: Work,
-    /// Samples that earlier rounds have finished.
+    /// Samples finished by earlier rounds of this dispatch.
     finished: u64,
-    /// Whether its film is still wanted.
+    /// Whether its film is still needed.
     is_wanted: bool,
 }
 
-/// What one dispatch at a time has.
+/// The buffers of one dispatch in flight.
 struct Slot {
     receipt: Receipt,
     aside: wgpu::Buffer,
-    /// Group 2: where paths are put aside.
+    /// Group 2: the buffer for paths that are put aside.
     group: wgpu::BindGroup,
-    /// Whether paths lie there that nobody wants.
+    /// Whether the buffer contains paths that are no longer needed.
     is_littered: bool,
 }
 
@@ -99,29 +99,29 @@ impl Slot {
     }
 }
 
-/// What is under way, and what was learnt from what is done.
+/// The dispatches in flight, and what was learnt from completed ones.
 pub(super) struct Dispatches {
     slots: Vec<Slot>,
     under_way: VecDeque<UnderWay>,
     last_done: Instant,
-    /// By kernel, so that another view of a scene goes on at full speed.
+    /// By kernel, so that switching to another view of a scene and back keeps the full speed.
     budgets: HashMap<Features, Budget>,
     target: Duration,
-    /// Turns of a thread, as the adapter counts them.
+    /// Limit on a thread's loop turns, as the adapter counts them.
     turn_limit: u32,
     /// How often samples were missing.
     pub(super) caution: u32,
-    /// Which samples are missing of those that are wanted.
+    /// Description of the missing samples, if needed samples are missing.
     shortfall: Option<String>,
     /// Dispatches so far.
     pub(super) count: u64,
-    /// What those that are done took.
+    /// Total time of the completed dispatches.
     pub(super) time: Duration,
 }
 
 impl Dispatches {
     /// # Errors
-    /// If the device has no memory.
+    /// If the device runs out of memory.
     pub(super) fn new(gpu: &Gpu, target: Duration, turn_limit: Option<u32>) -> Result<Self, String> {
         Ok(Dispatches {
             slots: (0..QUEUE_DEPTH).map(|_| Slot::new(gpu, ASIDE_SIZE)).collect::<Result<_, _>>()?,
@@ -137,17 +137,17 @@ impl Dispatches {
         })
     }
 
-    /// By what they are timed.
+    /// Name of the clock that times dispatches.
     pub(super) fn timer(&self) -> &'static str {
         if self.is_timed_by_device() { "timestamp queries" } else { "wall clock" }
     }
 
-    /// Whether the device's own clock tells what dispatches take.
+    /// Whether the device's own clock times dispatches.
     pub(super) fn is_timed_by_device(&self) -> bool {
         self.slots.iter().all(|slot| slot.receipt.has_clock())
     }
 
-    /// Whether a kernel was never run.
+    /// Whether a kernel has never run.
     pub(super) fn is_new(&self, kernel: &Features) -> bool {
         !self.budgets.contains_key(kernel)
     }
@@ -156,25 +156,25 @@ impl Dispatches {
         self.budgets.entry(*kernel).or_insert_with(|| Budget::new(self.target))
     }
 
-    /// Turns of a thread in one dispatch.
+    /// Limit on a thread's loop turns in one dispatch.
     fn turn_limit(&self, kernel: &Features) -> u32 {
         let shift = if kernel.aside { CAUTION_SHIFT * self.caution } else { 0 };
         (self.turn_limit >> shift).max(1)
     }
 
-    /// Samples of a pixel that fit one dispatch however long their paths are, so that none need be put aside; `None` where
-    /// that is not known, or not even one does.
+    /// Samples per pixel that are sure to fit one dispatch however long their paths are, so that none are put aside.
+    /// `None` if that is unknown or not even one sample is sure to fit.
     pub(super) fn whole_samples(&self, kernel: &Features, prepared: &PreparedScene<f32>) -> Option<u64> {
-        // A path may have a turn without a ray at its end, and there is one before the first.
+        // A path may take one turn without a ray at its end, and one turn precedes the first path.
         let turns = u64::from(prepared.settings.max_depth) * (1 + turns_over_lists(kernel, prepared)) + 1;
         let samples = u64::from(self.turn_limit - 1) / turns;
         (!kernel.hierarchy && samples > 0).then_some(samples)
     }
 
-    /// Has room for the paths of a picture of so many threads, or of as many as a dispatch may have.
+    /// Allocates storage for the paths of a picture with `threads` threads, up to the limit of a dispatch.
     ///
     /// # Errors
-    /// If the device has no memory.
+    /// If the device runs out of memory.
     pub(super) fn make_room(&mut self, gpu: &Gpu, threads: u64, binding_limit: u64) -> Result<(), String> {
         let size = threads.min(THREAD_LIMIT).min(binding_limit / ASIDE_SIZE) * ASIDE_SIZE;
         for slot in &mut self.slots {
@@ -187,19 +187,19 @@ impl Dispatches {
         Ok(())
     }
 
-    /// Most tiles of a dispatch.
+    /// Most tiles in a dispatch.
     fn tile_limit(&self) -> u64 {
         let sizes = self.slots.iter().map(|slot| slot.aside.size());
         (sizes.min().unwrap_or_default() / (ASIDE_SIZE * u64::from(WORKGROUP_SIZE))).max(1)
     }
 
-    /// Nobody wants the film of what is under way.
+    /// Marks the film of all dispatches in flight as no longer needed.
     pub(super) fn abandon(&mut self) {
         self.shortfall = None;
         self.under_way.iter_mut().for_each(|under_way| under_way.is_wanted = false);
     }
 
-    /// Sends a dispatch off, in a slot that is free.
+    /// Submits a dispatch, using a free slot.
     fn submit(&mut self, gpu: &Gpu, slot: usize, work: Work, finished: u64) -> Result<(), String> {
         let Slot { receipt, aside, group, is_littered } = &mut self.slots[slot];
         gpu.queue.write_buffer(&work.blocks_buffer, 0, bytemuck::cast_slice(&work.blocks));
@@ -231,7 +231,7 @@ impl Dispatches {
         gpu.faults.check()
     }
 
-    /// Waits for the oldest dispatch and learns from it. Where threads have put paths aside, it is sent off again.
+    /// Waits for the oldest dispatch and learns from its time. If threads have put paths aside, submits it again.
     fn finish(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Broken> {
         let Some(oldest) = self.under_way.front() else { return Ok(()) };
         if !gpu.wait_unless(&oldest.submission, cancel).map_err(failed)? {
@@ -263,7 +263,7 @@ impl Dispatches {
         self.check_whole()
     }
 
-    /// `Err` as long as samples are missing that are wanted.
+    /// Returns `Err` while needed samples are missing.
     fn check_whole(&self) -> Result<(), Broken> {
         self.shortfall.clone().map_or(Ok(()), |shortfall| Err(Broken::Short(shortfall)))
     }
@@ -274,7 +274,7 @@ impl Dispatches {
         self.budget(&work.kernel).learn(paths, took);
     }
 
-    /// Waits for all that is under way.
+    /// Waits for all dispatches in flight.
     pub(super) fn drain(&mut self, gpu: &Gpu, cancel: Option<&AtomicBool>) -> Result<(), Broken> {
         while !self.under_way.is_empty() {
             self.finish(gpu, cancel)?;
@@ -282,7 +282,7 @@ impl Dispatches {
         self.check_whole()
     }
 
-    /// A slot that has nothing under way, for which it may wait.
+    /// Returns a slot without a dispatch in flight; waits for one if necessary.
     fn free_slot(&mut self, gpu: &Gpu, cancel: &AtomicBool) -> Result<usize, Broken> {
         loop {
             let is_free = |slot: &usize| self.under_way.iter().all(|under_way| under_way.slot != *slot);
@@ -307,7 +307,7 @@ impl Work {
     }
 }
 
-/// What is wrong where rays cannot be traced to their end.
+/// The error message for rays that cannot be traced to their end.
 pub(super) fn stuck(pixels: u32) -> String {
     format!(
         "{pixels} pixels have a ray that meets more of the scene than a loop of this driver can go through \
@@ -316,8 +316,8 @@ pub(super) fn stuck(pixels: u32) -> String {
 }
 
 impl GpuRenderer {
-    /// Sends off the dispatches of `range`; the last may be under way at the end. A film that was sent for is
-    /// added to `film` as soon as the device has other work.
+    /// Submits the dispatches of `range`; the last may still be in flight on return. A film that was sent for is added
+    /// to `film` as soon as the device has other work.
     pub(super) fn trace_range(
         &mut self,
         loaded: &mut Loaded,
@@ -394,7 +394,7 @@ impl GpuRenderer {
         Ok(stats)
     }
 
-    /// Sends a new dispatch off, unless an injected fault is due.
+    /// Submits a new dispatch, unless an injected fault is due.
     fn send_off(&mut self, slot: usize, mut work: Work) -> Result<(), String> {
         let fault = self.inject(InjectionPoint::Dispatch, self.dispatches.count);
         if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
@@ -403,7 +403,7 @@ impl GpuRenderer {
         self.dispatches.submit(&self.gpu, slot, work, 0)
     }
 
-    /// Sends for the film, once it is whole.
+    /// Sends for the film once it is complete.
     pub(super) fn send_for_film(&mut self, loaded: &mut Loaded) -> Result<(), Broken> {
         if !loaded.film.is_leaving() {
             self.inject(InjectionPoint::Fetch, self.fetches);
@@ -414,10 +414,10 @@ impl GpuRenderer {
         Ok(self.gpu.faults.check().map_err(failed)?)
     }
 
-    /// Adds all that was traced to the film.
+    /// Adds everything traced so far to the film.
     pub(super) fn collect_all(&mut self, loaded: &mut Loaded, film: &mut Film) -> Result<Stats, Broken> {
         let mut stats = Stats::default();
-        // What is on its way already comes first.
+        // A film already on its way comes first.
         while loaded.film.holds_samples() {
             self.send_for_film(loaded)?;
             stats.add(&loaded.film.arrive(&self.gpu, film)?);
@@ -425,10 +425,10 @@ impl GpuRenderer {
         Ok(stats)
     }
 
-    /// Traces again what is on the device and `range`, because samples were missing: less in each dispatch.
+    /// Traces the samples on the device and `range` again because samples were missing, in smaller dispatches.
     ///
     /// # Errors
-    /// If samples are missing still; the film is then as it was.
+    /// If samples are still missing; the film is then unchanged.
     pub(super) fn trace_again(
         &mut self,
         loaded: &mut Loaded,
@@ -438,7 +438,7 @@ impl GpuRenderer {
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
         let mut missing = loaded.film.held();
-        // It may have been noted before.
+        // The range may have been recorded before.
         if missing.overlap(&range).is_none() {
             missing.insert(range)?;
         }
@@ -466,7 +466,7 @@ impl GpuRenderer {
     }
 }
 
-/// Pixels of tiles, counted row by row of a picture of `area` pixels across and down.
+/// Number of pixels in `tiles`, which are numbered row by row in a picture of the given size.
 fn pixels_within([width, height]: [u32; 2], tile: [u32; 2], tiles: Range<u32>) -> u64 {
     let across = width.div_ceil(tile[0]);
     let pixels = |number: u32| {
@@ -476,13 +476,13 @@ fn pixels_within([width, height]: [u32; 2], tile: [u32; 2], tiles: Range<u32>) -
     tiles.map(pixels).sum()
 }
 
-/// So many of what is left that no dispatch is left with a few: at most `affordable`, at least one.
+/// Splits what is left into equal parts of at most `affordable` and at least one, so that no small dispatch remains.
 fn evenly(left: u32, affordable: u64) -> u32 {
     let left = u64::from(left);
     left.div_ceil(left.div_ceil(affordable.max(1))) as u32
 }
 
-/// Workgroups along x and y that are together at least `count`.
+/// Workgroups along x and y whose product is at least `count`.
 pub(super) fn groups(count: u32) -> [u32; 2] {
     if count <= GROUPS_ACROSS { [count, 1] } else { [GROUPS_ACROSS, count.div_ceil(GROUPS_ACROSS)] }
 }

@@ -1,5 +1,5 @@
-//! The film on the device. It stays there from pass to pass; when someone wants it, it is copied to staging
-//! buffers and cleared, and goes home while the device traces on.
+//! The film on the device. It stays there from pass to pass. On request it is copied to staging buffers and cleared;
+//! the copy is transferred to the host while the device continues tracing.
 
 use super::device::Gpu;
 use super::failed;
@@ -12,31 +12,31 @@ use std::ops::Range;
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
 
-/// Bytes of a pixel's sums.
+/// Size of a pixel's sums in bytes.
 const PIXEL_SIZE: u64 = size_of::<GpuPixelSum>() as u64;
 
-/// Words of 64 bits that a pixel has, one a channel.
+/// 64-bit words per pixel, one per channel.
 const PIXEL_WORDS: usize = 3;
 
-/// Pixels that a thread adds at a time.
+/// Pixels that a host thread adds at a time.
 const PIXELS_AT_ONCE: usize = 4096;
 
-/// Bringing the film home when nobody asks may take at most one part in this of the time.
+/// Unrequested transfers of the film may take at most one part in this many of the time.
 const ARRIVAL_SHARE: u32 = 20;
 
-/// Rows of the film that fit one buffer.
+/// The rows of the film that one buffer holds.
 pub struct Slab {
-    /// First of its rows.
+    /// The first picture row in the buffer.
     pub first_row: u32,
-    /// Rows.
+    /// Number of rows in the buffer.
     pub row_count: u32,
-    /// Group 1: what a dispatch binds to trace these rows.
+    /// Group 1: the bindings of a dispatch that traces these rows.
     pub group: wgpu::BindGroup,
     sums: wgpu::Buffer,
     staging: wgpu::Buffer,
 }
 
-/// Samples that are on their way from the device.
+/// Samples that are being transferred from the device.
 struct Leaving {
     samples: SampleRanges,
     trace: Duration,
@@ -44,14 +44,14 @@ struct Leaving {
     mapped: Receiver<Result<(), wgpu::BufferAsyncError>>,
 }
 
-/// A film's buffers, and which samples are in them.
+/// The buffers of a film, and which samples they contain.
 pub struct FilmBuffers {
     shape: (u32, u32, usize, u64),
-    /// From the top.
+    /// The slabs, from the top of the picture down.
     pub slabs: Vec<Slab>,
-    /// What a dispatch is to do: a [`GpuDispatch`].
+    /// Parameters of a dispatch: a [`GpuDispatch`].
     pub order: wgpu::Buffer,
-    /// Blocks of samples of a dispatch.
+    /// The blocks of samples of a dispatch.
     pub blocks: wgpu::Buffer,
     counters: wgpu::Buffer,
     counters_staging: wgpu::Buffer,
@@ -62,7 +62,7 @@ pub struct FilmBuffers {
     arrival_took: Duration,
     /// How often sums were added to a film.
     pub arrivals: u64,
-    /// What that took the host, all together.
+    /// Total time that the host spent adding sums.
     pub arrivals_took: Duration,
 }
 
@@ -71,16 +71,16 @@ fn shape(settings: &RenderSettings, limit: u64) -> (u32, u32, usize, u64) {
 }
 
 impl FilmBuffers {
-    /// Empty buffers for films of these settings, none larger than `limit` bytes.
+    /// Allocates empty buffers for films with these settings, each at most `limit` bytes.
     ///
     /// # Errors
-    /// If not even a row of tiles fits, or the device has no memory.
+    /// If not even one row of tiles fits, or the device runs out of memory.
     pub fn new(gpu: &Gpu, settings: &RenderSettings, limit: u64) -> Result<Self, String> {
         let RenderSettings { width, height, .. } = *settings;
         let row_size = u64::from(width) * settings.half_count() as u64 * PIXEL_SIZE;
         let tile_height = tile_size(width, height)[1];
         let fitting = (limit / row_size).min(u64::from(height)) as u32;
-        // Whole tiles, but for the last.
+        // All slabs but the last consist of whole tiles.
         let slab_rows = if fitting == height { fitting } else { fitting / tile_height * tile_height };
         if slab_rows == 0 {
             return Err(format!(
@@ -127,12 +127,12 @@ impl FilmBuffers {
         })
     }
 
-    /// Whether these buffers are those of such a film.
+    /// Whether these buffers fit a film with these settings and this limit.
     pub fn fit(&self, settings: &RenderSettings, limit: u64) -> bool {
         self.shape == shape(settings, limit)
     }
 
-    /// The sums of the only slab, for [`super::GpuRenderer::resolve`].
+    /// The sums, if there is only one slab, for [`super::GpuRenderer::resolve`].
     pub fn sums_of_whole(&self) -> Option<&wgpu::Buffer> {
         match self.slabs.as_slice() {
             [only] => Some(&only.sums),
@@ -140,7 +140,7 @@ impl FilmBuffers {
         }
     }
 
-    /// Refuses samples that are in `film` or on the device.
+    /// Returns an error if any of these samples are in `film` or on the device.
     pub fn check_new(&self, range: &Range<u64>, film: &Film) -> Result<(), RenderError> {
         let leaving = self.leaving.as_ref().map(|leaving| &leaving.samples);
         for held in [film.samples(), &self.traced].into_iter().chain(leaving) {
@@ -151,47 +151,47 @@ impl FilmBuffers {
         Ok(())
     }
 
-    /// Notes that the sums will hold `range` once what was submitted is done.
+    /// Records that the sums will contain `range` once the submitted work is done.
     ///
     /// # Errors
-    /// If they have some of it.
+    /// If the sums already contain some of it.
     pub fn note(&mut self, range: Range<u64>, trace: Duration) -> Result<(), RenderError> {
         self.traced.insert(range)?;
         self.trace += trace;
         Ok(())
     }
 
-    /// Whether samples are on the device, on their way or not.
+    /// Whether any samples are on the device or being transferred.
     pub fn holds_samples(&self) -> bool {
         self.leaving.is_some() || self.traced.count() > 0
     }
 
-    /// The samples that are on the device.
+    /// The samples on the device, including those being transferred.
     pub fn held(&self) -> SampleRanges {
         let mut held = self.traced.clone();
         for range in self.leaving.iter().flat_map(|leaving| leaving.samples.iter()) {
-            // None of them was traced twice: [`FilmBuffers::check_new`].
+            // No sample is traced twice: [`FilmBuffers::check_new`] ensures it.
             let _ = held.insert(range);
         }
         held
     }
 
-    /// What dispatches count: [`GpuCounters`].
+    /// The counters of dispatches: [`GpuCounters`].
     pub fn counters(&self) -> &wgpu::Buffer {
         &self.counters
     }
 
-    /// Whether samples are on their way.
+    /// Whether samples are being transferred.
     pub fn is_leaving(&self) -> bool {
         self.leaving.is_some()
     }
 
-    /// Whether the film has been away for so long that fetching it costs little.
+    /// Whether the last transfer is so long ago that another costs little.
     pub fn is_due(&self) -> bool {
         self.arrived_at.elapsed() >= self.arrival_took * ARRIVAL_SHARE
     }
 
-    /// Throws away what was traced. What is under way is cleared behind it.
+    /// Discards everything traced. Sums of work in flight are cleared after that work.
     pub fn forget(&mut self, gpu: &Gpu) {
         if self.leaving.take().is_some() {
             self.stagings().for_each(wgpu::Buffer::unmap);
@@ -203,7 +203,7 @@ impl FilmBuffers {
         gpu.queue.submit([encoder.finish()]);
     }
 
-    /// Sends the sums off as they will be once what was submitted is done, and begins with empty ones.
+    /// Starts the transfer of the sums as they will be after the submitted work, and clears them for the next samples.
     pub fn leave(&mut self, gpu: &Gpu) {
         if self.leaving.is_some() || self.traced.count() == 0 {
             return;
@@ -218,17 +218,17 @@ impl FilmBuffers {
         let (sender, mapped) = mpsc::channel();
         for staging in self.stagings() {
             let sender = sender.clone();
-            // Whoever has forgotten the samples does not listen.
+            // If the samples have been discarded, nobody receives the result.
             staging.map_async(wgpu::MapMode::Read, .., move |result| drop(sender.send(result)));
         }
         let samples = std::mem::take(&mut self.traced);
         self.leaving = Some(Leaving { samples, trace: std::mem::take(&mut self.trace), submission, mapped });
     }
 
-    /// Waits for what is on its way and adds it to the film.
+    /// Waits for the transfer in progress and adds its samples to the film.
     ///
     /// # Errors
-    /// What the device said; the film is as it was.
+    /// The device's error; the film is unchanged.
     pub fn arrive(&mut self, gpu: &Gpu, film: &mut Film) -> Result<Stats, RenderError> {
         let Some(leaving) = self.leaving.take() else { return Ok(Stats::default()) };
         gpu.wait(&leaving.submission).map_err(failed)?;
@@ -252,7 +252,7 @@ impl FilmBuffers {
             return Err(failed("reading results: there are fewer than pixels".to_owned()));
         }
 
-        // All is here: from now on nothing can fail.
+        // All data has arrived: nothing can fail from here on.
         for (slab, sums) in self.slabs.iter().zip(sums) {
             add_rows(film, slab.first_row, sums);
         }
@@ -295,11 +295,11 @@ fn view(staging: &wgpu::Buffer) -> Result<wgpu::BufferView, RenderError> {
     staging.get_mapped_range(..).map_err(|error| failed(format!("reading results: {error}")))
 }
 
-/// Adds a slab's sums, half by half, to the film's rows `first_row ..`.
+/// Adds a slab's sums, half by half, to the film, starting at row `first_row`.
 fn add_rows(film: &mut Film, first_row: u32, sums: &[u64]) {
     let start = first_row as usize * film.width() as usize;
     let halves = film.halves_mut();
-    // Buffers are rounded up to 16 bytes.
+    // Buffer sizes are rounded up to 16 bytes.
     let words = sums.len() / halves.len() / PIXEL_WORDS * PIXEL_WORDS;
     for (half, sums) in halves.iter_mut().zip(sums.chunks_exact(words)) {
         let pixels = &mut half[start..start + words / PIXEL_WORDS];
@@ -325,13 +325,14 @@ mod tests {
     use std::mem::offset_of;
     use std::sync::atomic::AtomicBool;
 
-    /// On any adapter; without one a test says so, and fails where `WEEKENDER_REQUIRE_GPU=1`.
+    /// A renderer on any adapter. Without an adapter a test prints a note, or fails if `WEEKENDER_REQUIRE_GPU=1` is
+    /// set.
     fn renderer() -> Option<GpuRenderer> {
         let adapter = std::env::var("WEEKENDER_TEST_ADAPTER").ok();
         match GpuRenderer::new(GpuOptions { adapter, allow_software: true, ..GpuOptions::default() }) {
             Ok(renderer) => Some(renderer),
             Err(GpuError::None) if std::env::var("WEEKENDER_REQUIRE_GPU").as_deref() != Ok("1") => {
-                // Past the harness, which keeps what a test prints to itself while it passes.
+                // Bypasses the test harness, which captures what a passing test prints.
                 std::io::stderr().write_all(b"NOT TESTED: there is no graphics adapter\n").unwrap();
                 None
             }
@@ -344,7 +345,7 @@ mod tests {
         RenderJob::new(field(300).0, BOOK_CAMERA, settings, Rules::FINISHED).unwrap()
     }
 
-    /// Sets two words of the device's counters, the lower first.
+    /// Sets a pair of words of the device's counters, the low word first.
     fn set(gpu: &GpuRenderer, offset: usize, words: [u32; 2]) {
         let counters = &gpu.loaded.as_ref().unwrap().film.counters;
         gpu.gpu.queue.write_buffer(counters, offset as u64, bytemuck::cast_slice(&words));
@@ -363,7 +364,7 @@ mod tests {
         gpu.prepare(&job, &AtomicBool::new(false)).unwrap();
         let (plain, _) = traced(&mut gpu, &job, 0..4);
         assert!(plain.rays > 40 * 24 * 4 && plain.rays < 40 * 24 * 4 * 6, "{plain:?}");
-        // Counters that overflow with the next ray, and one that has done so before.
+        // Counters that are about to overflow, and one that has overflowed before.
         for words in [[u32::MAX, 0], [u32::MAX - 1000, 2], [0, 1]] {
             set(&gpu, offset_of!(GpuCounters, rays), words);
             let before = u64::from(words[0]) | u64::from(words[1]) << 32;
@@ -375,7 +376,7 @@ mod tests {
     fn rejected_samples_are_counted_on_the_device() {
         let Some(mut gpu) = renderer() else { return };
         let job = job();
-        // With one ray a path there is the sky, and black.
+        // With one ray per path, the picture shows the sky and black.
         let settings = RenderSettings { max_depth: 1, ..*job.settings() };
         let sky = job.seen_by(*job.camera(), settings).unwrap();
         let mut seen = 0;
@@ -385,14 +386,14 @@ mod tests {
             seen += (0..40 * 24).filter(|pixel| clean.pixel_sum(*pixel).0 != [0; 3]).count() as u64;
         }
         assert!(seen > 200 && seen < 2 * 40 * 24, "{seen} samples meet the sky");
-        // A sky that no scene may have, which goes to the device with the next job of the scene.
+        // A sky that no valid scene has, uploaded with the scene's next job.
         gpu.prepare(&job, &AtomicBool::new(false)).unwrap();
         gpu.loaded.as_mut().unwrap().scene.prepared.sky_middle[1] = f32::INFINITY;
         let (stats, film) = traced(&mut gpu, &sky, 0..2);
         assert_eq!(film.rejected(), seen);
         assert_eq!(stats.rejected, film.rejected());
         assert!((0..40 * 24).all(|pixel| film.pixel_sum(pixel).0 == [0; 3]), "nothing of them is added");
-        // And beyond 32 bits.
+        // The same beyond 32 bits.
         set(&gpu, offset_of!(GpuCounters, rejected), [u32::MAX, 0]);
         let (again, _) = traced(&mut gpu, &sky, 0..2);
         assert_eq!(again.rejected, stats.rejected + u64::from(u32::MAX));

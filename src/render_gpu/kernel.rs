@@ -1,5 +1,5 @@
-//! Kernels: a shader specialised by pipeline overrides to what a job needs, compiled once for each set of features, on a
-//! thread of its own.
+//! Kernels: a shader specialised to a job by pipeline overrides. Each set of features is compiled once, on a background
+//! thread, and stays in the cache.
 
 use super::device::Gpu;
 use super::failed;
@@ -12,19 +12,19 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How often whoever waits for a kernel looks whether it is still wanted.
+/// How often a wait for a kernel checks whether the kernel is still wanted.
 const LOOK: Duration = Duration::from_millis(2);
 
 /// A compiled kernel.
 #[derive(Clone, Debug)]
 pub struct Kernel {
-    /// The pipeline.
+    /// The compute pipeline.
     pub pipeline: wgpu::ComputePipeline,
-    /// What compiling it took.
+    /// Time spent compiling it.
     pub compile_time: Duration,
 }
 
-/// Entry point, features, probe.
+/// Entry point, features and number of the probe.
 type Key = (EntryPoint, Features, u32);
 
 type Modules = Arc<Mutex<HashMap<EntryPoint, wgpu::ShaderModule>>>;
@@ -34,7 +34,7 @@ enum Slot {
     Done(Result<Kernel, String>),
 }
 
-/// All kernels of a device.
+/// All kernels of a device, finished or being compiled.
 #[derive(Default)]
 pub struct Kernels {
     modules: Modules,
@@ -42,7 +42,7 @@ pub struct Kernels {
 }
 
 impl Kernels {
-    /// Has a kernel compiled, if it is not, and does not wait for it.
+    /// Starts compiling a kernel unless that has been done, without waiting for it.
     pub fn begin(&mut self, gpu: &Gpu, entry_point: EntryPoint, features: &Features, probe: u32) {
         self.slot(gpu, (entry_point, *features, probe));
     }
@@ -52,11 +52,11 @@ impl Kernels {
         self.slots.entry(key).or_insert_with(|| start(gpu.clone(), key, Arc::clone(modules)))
     }
 
-    /// A kernel, compiled when it is asked for first. `probe` matters to [`EntryPoint::Probe`] alone.
+    /// Returns a kernel, compiling it on first use. `probe` matters only for [`EntryPoint::Probe`].
     ///
     /// # Errors
-    /// [`RenderError::Backend`] with what the device said. [`RenderError::Cancelled`] if it is no longer wanted:
-    /// its compilation goes on for whoever asks next.
+    /// [`RenderError::Backend`] with the device's error. [`RenderError::Cancelled`] if the kernel is no longer wanted:
+    /// it continues to compile, and the finished kernel stays in the cache.
     pub fn get(
         &mut self,
         gpu: &Gpu,
@@ -86,12 +86,12 @@ impl Kernels {
     }
 }
 
-/// Compiles beside whoever asked, or at once if the system gives no thread.
+/// Compiles on a background thread, or at once if no thread can be started.
 fn start(gpu: Gpu, key: Key, modules: Modules) -> Slot {
     let (sender, kernel) = mpsc::channel();
     let compile = {
         let (gpu, modules) = (gpu.clone(), Arc::clone(&modules));
-        // A renderer that is gone needs no kernel.
+        // If the renderer has been dropped, nobody receives the kernel.
         move || drop(sender.send(compiled(&gpu, key, &modules)))
     };
     match std::thread::Builder::new().name("compile".to_owned()).spawn(compile) {

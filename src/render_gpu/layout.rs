@@ -1,4 +1,4 @@
-//! How the device's records are filled. They are declared in [`crate::kernel::records`].
+//! Fills the device's records, which are declared in [`crate::kernel::records`].
 
 pub use crate::kernel::{
     ASIDE_STRIDE, GpuBlock, GpuCounters, GpuCwbvhNode, GpuDispatch, GpuDispatchCounters, GpuJob, GpuPixelSum,
@@ -10,7 +10,7 @@ use crate::prepared::cwbvh::CwBvhNode;
 use crate::render::RenderSettings;
 
 impl GpuJob {
-    /// What the shaders know of a job whose hierarchy has `node_count` nodes.
+    /// The parameters of a job whose hierarchy has `node_count` nodes.
     pub fn new(prepared: &PreparedScene<f32>, node_count: u32) -> Self {
         let RenderSettings { width, height, max_depth, seed, .. } = prepared.settings;
         let mut few_spheres = [[0.0; 4]; UNIFORM_SPHERES];
@@ -41,7 +41,7 @@ impl GpuJob {
     }
 }
 
-/// Pixels across and down that a workgroup has: square, unless the picture is too narrow or low for that.
+/// Width and height of a workgroup's tile in pixels: square, unless the picture is too narrow or too low.
 pub fn tile_size(width: u32, height: u32) -> [u32; 2] {
     let mut tile_width = 8;
     while tile_width < WORKGROUP_SIZE && height * tile_width <= WORKGROUP_SIZE / 2 {

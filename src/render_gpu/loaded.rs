@@ -1,4 +1,4 @@
-//! A job on the device: prepared scene and hierarchy in buffers, the kernel, the film.
+//! A job on the device: the prepared scene and its hierarchy in buffers, the kernel, and the film.
 
 use super::film_buffers::FilmBuffers;
 use super::kernel::Kernel;
@@ -14,7 +14,7 @@ use crate::render::{RenderError, RenderJob};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// A job on the device.
+/// A job loaded to the device.
 pub(super) struct Loaded {
     pub(super) job: RenderJob,
     pub(super) scene: SceneOnDevice,
@@ -23,22 +23,22 @@ pub(super) struct Loaded {
     pub(super) film: FilmBuffers,
 }
 
-/// A scene in buffers, seen by a camera.
+/// A scene in buffers, prepared for a camera.
 pub(super) struct SceneOnDevice {
     pub(super) prepared: PreparedScene<f32>,
-    /// By number, the sphere's index in the scene.
+    /// The index in the scene of each sphere, by number.
     pub(super) scene_index: Vec<u32>,
-    /// Nodes of the hierarchy.
+    /// Number of nodes in the hierarchy.
     node_count: u32,
     job_buffer: wgpu::Buffer,
     anchored_buffer: wgpu::Buffer,
     rows_buffer: wgpu::Buffer,
-    /// Group 0: the job's buffer and the scene's.
+    /// Group 0: the buffers of job and scene.
     pub(super) group: wgpu::BindGroup,
 }
 
 impl GpuRenderer {
-    /// Builds what `job` needs, unless that is there.
+    /// Loads what `job` needs and is not loaded yet.
     pub(super) fn get_ready(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
         if self.loaded.as_ref().is_none_or(|loaded| loaded.job != *job) {
             let old = self.loaded.take();
@@ -69,7 +69,7 @@ impl GpuRenderer {
                 scene
             }
             other => {
-                // Both need not fit into the device.
+                // The device may not have room for both.
                 drop(other);
                 self.scene_on_device(job)?
             }
@@ -90,7 +90,7 @@ impl GpuRenderer {
         Ok(Loaded { job: job.clone(), scene, features, kernel, film })
     }
 
-    /// Where spheres are anchored depends on the eye.
+    /// The anchors of spheres depend on the position of the eye.
     fn renew_anchored(&self, scene: &SceneOnDevice) {
         let prepared = &scene.prepared;
         let anchored = words_of(&prepared.anchored);
@@ -102,7 +102,7 @@ impl GpuRenderer {
         queue.write_buffer(&scene.rows_buffer, offset, bytemuck::cast_slice(&records));
     }
 
-    /// Builds prepared scene and hierarchy, while the kernel is compiled, and copies them to the device.
+    /// Builds the prepared scene and its hierarchy while the kernel compiles, and uploads them to the device.
     fn scene_on_device(&mut self, job: &RenderJob) -> Result<SceneOnDevice, RenderError> {
         let prepared = PreparedScene::<f32>::new(job);
         self.kernels.begin(&self.gpu, EntryPoint::PathTrace, &self.features(&prepared), 0);
@@ -120,7 +120,7 @@ impl GpuRenderer {
         Features { aside: self.dispatches.whole_samples(&features, prepared).is_none(), ..features }
     }
 
-    /// Refuses lists that are longer than a driver's loops.
+    /// Rejects lists that are longer than the driver's loops allow.
     fn check_lists(&self, features: &Features, prepared: &PreparedScene<f32>) -> Result<(), String> {
         let turns = turns_over_lists(features, prepared);
         if self.gpu.adapter.threads_in_step() > 1 && turns >= u64::from(TURN_LIMIT) {
@@ -132,7 +132,7 @@ impl GpuRenderer {
         Ok(())
     }
 
-    /// Has room for the paths that the threads of a picture may put aside.
+    /// Allocates storage for the paths that the threads of a picture may put aside.
     fn make_room(&mut self, job: &RenderJob) -> Result<(), String> {
         let (width, height) = (job.settings().width, job.settings().height);
         let [tile_width, tile_height] = tile_size(width, height);
@@ -141,12 +141,12 @@ impl GpuRenderer {
         self.dispatches.make_room(&self.gpu, tiles * u64::from(WORKGROUP_SIZE), limit)
     }
 
-    /// Most bytes that a shader can see of one buffer.
+    /// Size limit of a buffer binding in a shader, in bytes.
     fn binding_limit(&self) -> u64 {
         self.gpu.adapter.storage_binding_limit.min(self.gpu.adapter.buffer_limit)
     }
 
-    /// Most bytes of a film in one buffer.
+    /// Size limit of a film in one buffer, in bytes.
     pub(super) fn film_limit(&self) -> u64 {
         let limit = self.binding_limit();
         self.options.film_limit.map_or(limit, |wanted| wanted.min(limit))
@@ -171,7 +171,7 @@ impl GpuRenderer {
             gpu.filled("job", bytemuck::cast_slice(&words_of(&[job])), wgpu::BufferUsages::UNIFORM)?;
         let buffers = [
             storage("spheres", bytemuck::cast_slice(&scene.spheres))?,
-            // At least one element of each, as the shader's types ask for.
+            // The shader's types require at least one element of each.
             storage("anchored spheres", bytemuck::cast_slice(&anchored))?,
             storage("records", bytemuck::cast_slice(&scene.records))?,
             storage("nodes", bytemuck::cast_slice(&at_least_one(scene.nodes)))?,
@@ -190,17 +190,17 @@ impl GpuRenderer {
         })
     }
 
-    /// Empty buffers for a film of `job`: those of the old job where they fit.
+    /// Empty buffers for a film of `job`; reuses the old ones if they fit.
     fn film_buffers(&self, job: &RenderJob, old: Option<FilmBuffers>) -> Result<FilmBuffers, String> {
         let limit = self.film_limit();
         match old {
             Some(mut film) if film.fit(job.settings(), limit) => {
-                // What is under way was abandoned.
+                // Work in flight was abandoned.
                 film.forget(&self.gpu);
                 Ok(film)
             }
             other => {
-                // Both need not fit into the device.
+                // The device may not have room for both.
                 drop(other);
                 FilmBuffers::new(&self.gpu, job.settings(), limit)
             }

@@ -1,8 +1,8 @@
-//! The GPU backend: a path tracer in one compute kernel, the twin of the CPU's.
+//! The GPU backend: a path tracer in one compute kernel, the twin of the CPU's tracer.
 //!
-//! `shaders/` holds the functions, in files of the same names as in `src/render_cpu/`; this module opens an
-//! adapter, specialises the kernel to the job, deals it dispatches of measured size and adds what it summed up
-//! to the film. Sample indices, numbers and fixed point are the CPU's to the bit.
+//! `shaders/` contains the functions, in files with the same names as in `src/render_cpu/`. This module opens an
+//! adapter, specialises the kernel to the job, sizes dispatches by measured time and adds the resulting sums to the
+//! film. Sample indices, random numbers and fixed-point sums match the CPU's to the bit.
 
 mod device;
 mod dispatches;
@@ -36,16 +36,16 @@ use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// Renders on a GPU.
+/// The renderer on a GPU.
 pub struct GpuRenderer {
     gpu: Gpu,
     options: GpuOptions,
     kernels: Kernels,
     dispatches: Dispatches,
     loaded: Option<Loaded>,
-    /// How often a job was prepared.
+    /// Number of jobs prepared.
     preparations: u64,
-    /// How often a film was sent for.
+    /// Number of times a film was sent for.
     fetches: u64,
     report: GpuReport,
     messages: Vec<String>,
@@ -59,7 +59,7 @@ impl GpuRenderer {
     /// Opens an adapter.
     ///
     /// # Errors
-    /// [`GpuError`], with the adapters that there are.
+    /// [`GpuError`], with the available adapters.
     pub fn new(options: GpuOptions) -> Result<Self, GpuError> {
         let gpu = Gpu::open(options.adapter.as_deref(), options.allow_software, options.patience)?;
         let dispatches = Dispatches::new(&gpu, options.dispatch_target, options.turn_limit)
@@ -86,12 +86,12 @@ impl GpuRenderer {
         })
     }
 
-    /// The adapter.
+    /// The adapter in use.
     pub fn adapter(&self) -> &AdapterInfo {
         &self.gpu.adapter
     }
 
-    /// What was compiled and measured so far.
+    /// A report of what was compiled and measured so far.
     pub fn report(&self) -> GpuReport {
         let Dispatches { count, time, .. } = self.dispatches;
         let film = self.loaded.as_ref().map(|loaded| &loaded.film);
@@ -104,7 +104,7 @@ impl GpuRenderer {
         }
     }
 
-    /// Runs `work` on what is prepared, if anything is.
+    /// Runs `work` on the prepared job, if there is one.
     fn with_present<T: Default>(
         &mut self,
         work: impl FnOnce(&mut Self, &mut Loaded) -> Result<T, RenderError>,
@@ -115,7 +115,7 @@ impl GpuRenderer {
         result
     }
 
-    /// Runs `work` on the job. Where it fails, what was traced is forgotten.
+    /// Prepares the job and runs `work` on it. If that fails, traced samples are discarded.
     fn with_loaded<T>(
         &mut self,
         job: &RenderJob,
@@ -134,13 +134,13 @@ impl GpuRenderer {
         result
     }
 
-    /// Throws away what was traced and is not in a film.
+    /// Discards traced samples that are not in a film.
     fn forget(&mut self, loaded: &mut Loaded) {
         self.dispatches.abandon();
         loaded.film.forget(&self.gpu);
     }
 
-    /// The fault that is injected at this point, the `count`th of its kind; a broken device is broken.
+    /// Injects the fault that is due at the `count`th event of this kind, if any, by breaking the device.
     fn inject(&self, point: InjectionPoint, count: u64) -> Option<Fault> {
         let is_due = |injection: &FaultInjection| {
             let lasts = injection.fault == Fault::AlwaysShort;
@@ -251,7 +251,7 @@ impl Renderer for GpuRenderer {
 
     fn fetch(&mut self) -> Result<(), RenderError> {
         self.with_present(|this, loaded| match this.send_for_film(loaded) {
-            // The next call finds what is missing.
+            // The next call will detect missing samples.
             Ok(()) | Err(Broken::Short(_)) => Ok(()),
             Err(Broken::Ended(error)) => Err(error),
         })

@@ -1,92 +1,92 @@
-//! How to open and use an adapter, why there is none, and what was done with it.
+//! Options for opening and using an adapter, errors if none can be used, and the renderer's report.
 
 use std::time::Duration;
 use thiserror::Error;
 
-/// What a dispatch should take when nobody waits for it.
+/// Target time of a dispatch in batch rendering.
 pub const BATCH_TARGET: Duration = Duration::from_millis(50);
 
-/// What a dispatch should take while someone interacts.
+/// Target time of a dispatch while someone interacts.
 pub const INTERACTIVE_TARGET: Duration = Duration::from_millis(8);
 
-/// Longer than any dispatch takes: a device that has not answered by then hangs.
+/// How long to wait for a device before it counts as hung. No dispatch takes this long.
 pub const PATIENCE: Duration = Duration::from_secs(8);
 
-/// The first dispatch of a kernel can wait for the driver to compile it, and gets so many times as long.
+/// Factor for the wait at a kernel's first dispatch, when the driver may have to compile it.
 pub const COMPILING_PATIENCE: u32 = 6;
 
-/// The hierarchy over a scene of many spheres. Both find the same hits.
+/// The kind of hierarchy for scenes of many spheres. Both kinds find the same hits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HierarchyKind {
-    /// Two children a node: that of the prepared scene, which the CPU has too.
+    /// Two children per node: the hierarchy of the prepared scene, which the CPU uses, too.
     Bvh2,
-    /// Eight children a node, with compressed boxes.
+    /// Eight children per node, with compressed boxes.
     #[default]
     Cwbvh,
 }
 
-/// What can go wrong with a device in the middle of a render.
+/// A way in which a device can fail in the middle of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It is gone: unplugged, reset, or its driver was.
+    /// The device is lost: it was unplugged or reset, or its driver was.
     Lost,
-    /// It has no memory left.
+    /// The device is out of memory.
     OutOfMemory,
-    /// It was asked for something invalid: a mistake of this program or of the driver.
+    /// The device received an invalid request, because of an error in this program or in the driver.
     Invalid,
-    /// It does not answer for 10 s.
+    /// The device does not respond for 10 s.
     Hang,
-    /// It reports a dispatch as done and has left out all of it. Only at [`InjectionPoint::Dispatch`].
+    /// The device reports a dispatch as done but has skipped all of it. Only at [`InjectionPoint::Dispatch`].
     Short,
-    /// So it does from then on.
+    /// Like [`Fault::Short`], for every dispatch from then on.
     AlwaysShort,
 }
 
-/// Where an injected fault can strike.
+/// Where a fault can be injected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InjectionPoint {
     /// Before a job is prepared.
     Prepare,
-    /// Before a dispatch is sent off.
+    /// Before a dispatch is submitted.
     #[default]
     Dispatch,
     /// Before a film is sent for.
     Fetch,
 }
 
-/// A fault that is brought about on purpose, to see that a render survives it.
+/// A fault that is injected on purpose, to test that a render survives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultInjection {
-    /// What goes wrong.
+    /// The kind of fault.
     pub fault: Fault,
-    /// Where.
+    /// The point where it is injected.
     pub point: InjectionPoint,
-    /// After how many of these.
+    /// How many events of that kind precede it.
     pub after: u64,
 }
 
-/// How to open an adapter and use it.
+/// Options for opening and using an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GpuOptions {
-    /// Part of an adapter's name, backend or driver; by default the best there is.
+    /// Part of an adapter's name, backend or driver; by default the best adapter is used.
     pub adapter: Option<String>,
-    /// Whether a software adapter will do.
+    /// Whether a software adapter is acceptable.
     pub allow_software: bool,
-    /// What a dispatch should take.
+    /// Target time of a dispatch.
     pub dispatch_target: Duration,
-    /// Whether kernels carry only what the job needs; else all, to measure what that gains.
+    /// Whether kernels contain only what the job needs. Turned off to measure the gain.
     pub specialise: bool,
-    /// The hierarchy that scenes of many spheres get.
+    /// The kind of hierarchy for scenes of many spheres.
     pub hierarchy: HierarchyKind,
-    /// Samples of a pixel in one dispatch, instead of as many as the target allows: to measure.
+    /// Samples per pixel in a dispatch, for measurements; by default as many as the target time allows.
     pub samples_per_dispatch: Option<u64>,
-    /// Turns of loops after which a thread puts its path aside, instead of as many as are safe: to test.
+    /// Loop turns after which a thread puts its path aside, for tests; by default as many as are safe.
     pub turn_limit: Option<u32>,
-    /// Most bytes of a film on the device at once; by default what the adapter can bind.
+    /// Most bytes of a film on the device at once; by default the adapter's binding limit.
     pub film_limit: Option<u64>,
-    /// How long the device is waited for before it is given up.
+    /// How long to wait for the device before giving it up.
     pub patience: Duration,
-    /// Breaks the device (fault injection).
+    /// A fault to inject.
     pub injection: Option<FaultInjection>,
 }
 
@@ -108,7 +108,7 @@ impl Default for GpuOptions {
 }
 
 impl GpuOptions {
-    /// The adapter that `wanted` names, software too: whoever names it wants it. `None`: the best there is.
+    /// Options for the adapter named `wanted`, which may be a software adapter; `None` means the best adapter.
     pub fn of_adapter(wanted: Option<&str>) -> Self {
         GpuOptions {
             adapter: wanted.map(str::to_owned),
@@ -118,61 +118,61 @@ impl GpuOptions {
     }
 }
 
-/// Why there is no GPU to render on.
+/// Why no GPU is available for rendering.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum GpuError {
-    /// No adapter at all.
+    /// The machine has no adapter.
     #[error("no graphics adapter was found; install its Vulkan driver, or render on the CPU")]
     None,
-    /// None of that name.
+    /// No adapter matches the name.
     #[error("no adapter matches \"{wanted}\"; there are: {}", available.join("; "))]
     NoMatch {
-        /// Asked for.
+        /// The requested name.
         wanted: String,
-        /// What there is.
+        /// The available adapters.
         available: Vec<String>,
     },
-    /// Only software.
+    /// Only software adapters were found.
     #[error("there is no GPU, only software adapters: {}; ask for one by name, or render on the CPU, which is faster", available.join("; "))]
     Software {
-        /// What there is.
+        /// The available adapters.
         available: Vec<String>,
     },
-    /// Not able to run the kernel.
+    /// The adapter cannot run the kernel.
     #[error("{adapter} has {lacks}; choose another adapter, or render on the CPU")]
     Lacks {
-        /// The adapter.
+        /// Name of the adapter.
         adapter: String,
-        /// What it lacks.
+        /// The missing capability.
         lacks: String,
     },
-    /// It would not open.
+    /// The adapter could not be opened.
     #[error("{adapter} could not be opened: {reason}; choose another adapter, or render on the CPU")]
     Device {
-        /// The adapter.
+        /// Name of the adapter.
         adapter: String,
-        /// What it said.
+        /// The driver's error message.
         reason: String,
     },
 }
 
-/// What the renderer did since it was made, for reports.
+/// What the renderer has done since it was created, for reports.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GpuReport {
-    /// What the kernel in use contains.
+    /// Description of the kernel in use.
     pub features: String,
-    /// What compiling it took.
+    /// Time spent compiling that kernel.
     pub compile_time: Duration,
-    /// What building the hierarchy took.
+    /// Time spent building the hierarchy.
     pub hierarchy_time: Duration,
-    /// Dispatches so far.
+    /// Number of dispatches so far.
     pub dispatches: u64,
-    /// What they took together.
+    /// Total time of the dispatches.
     pub dispatch_time: Duration,
-    /// By what that was measured: "timestamp queries" or "wall clock".
+    /// The clock that measured them: "timestamp queries" or "wall clock".
     pub timer: &'static str,
-    /// How often the film at hand was brought home.
+    /// How often the current film was transferred to the host.
     pub films: u64,
-    /// What adding its sums took the host, all together.
+    /// Total time that the host spent adding its sums.
     pub film_time: Duration,
 }

@@ -1,4 +1,4 @@
-//! From the device to memory.
+//! Reads results from the device.
 
 use super::device::Gpu;
 use super::layout::{GpuCounters, GpuDispatchCounters};
@@ -6,10 +6,10 @@ use std::mem::offset_of;
 use std::sync::mpsc::{self, Receiver};
 use std::time::Duration;
 
-/// The first `count` words of `from`, once all that was submitted is done.
+/// Reads the first `count` words of `from` after all submitted work is done.
 ///
 /// # Errors
-/// What the device said.
+/// The device's error.
 pub fn words(gpu: &Gpu, from: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, String> {
     let size = count as u64 * 4;
     let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
@@ -24,11 +24,11 @@ pub fn words(gpu: &Gpu, from: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, S
     Ok(words)
 }
 
-/// Asks for the first `length` bytes of a staging buffer, which come once what was submitted is done.
+/// Requests the first `length` bytes of a staging buffer, which become available once the submitted work is done.
 fn asked(staging: &wgpu::Buffer, length: u64) -> Mapping {
     let (sender, receiver) = mpsc::channel();
     staging.map_async(wgpu::MapMode::Read, 0..length, move |result| {
-        // The receiver is gone only after an error that is reported already.
+        // The receiver is gone only after an error that has already been reported.
         let _ = sender.send(result);
     });
     receiver
@@ -36,7 +36,7 @@ fn asked(staging: &wgpu::Buffer, length: u64) -> Mapping {
 
 type Mapping = Receiver<Result<(), wgpu::BufferAsyncError>>;
 
-/// Shows the first `length` bytes of a staging buffer that was asked for and has come.
+/// Maps the first `length` bytes of a staging buffer that was requested and is available.
 fn shown(
     staging: &wgpu::Buffer,
     length: u64,
@@ -55,17 +55,17 @@ fn shown(
     Ok(())
 }
 
-/// What a dispatch says when it is done. One can be under way for each receipt.
+/// The results of a completed dispatch. Each receipt serves one dispatch in flight at a time.
 #[derive(Debug)]
 pub struct Receipt {
-    /// `None` where the device has no clock.
+    /// `None` if the device has no clock.
     clock: Option<Clock>,
-    /// Two times, then the dispatch's counters.
+    /// Two timestamps, then the dispatch's counters.
     staging: wgpu::Buffer,
     mapping: Option<Mapping>,
 }
 
-/// Two timestamps around a dispatch.
+/// A pair of timestamps around a dispatch.
 #[derive(Debug)]
 struct Clock {
     queries: wgpu::QuerySet,
@@ -73,12 +73,12 @@ struct Clock {
     period_ns: f32,
 }
 
-/// What a dispatch took by the device's clock, and what it counted.
+/// The time of a dispatch by the device's clock, and its counters.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Told {
-    /// `None` without a clock.
+    /// Time on the device; `None` without a clock.
     pub took: Option<Duration>,
-    /// Its counters.
+    /// The dispatch's counters.
     pub counters: GpuDispatchCounters,
 }
 
@@ -89,37 +89,37 @@ impl Told {
     }
 }
 
-/// Bytes of two timestamps.
+/// Size of two timestamps in bytes.
 const TIMES_SIZE: u64 = 16;
 
-/// Bytes of a dispatch's counters.
+/// Size of a dispatch's counters in bytes.
 const COUNTERS_SIZE: u64 = size_of::<GpuDispatchCounters>() as u64;
 
-/// Where they stand among the counters.
+/// Offset of a dispatch's counters in [`GpuCounters`].
 const COUNTERS_OFFSET: u64 = offset_of!(GpuCounters, dispatch) as u64;
 
 impl Receipt {
-    /// Of this device.
+    /// Creates a receipt for this device.
     ///
     /// # Errors
-    /// If it has no memory.
+    /// If the device runs out of memory.
     pub fn new(gpu: &Gpu) -> Result<Receipt, String> {
         let read = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         let staging = gpu.buffer("receipt", TIMES_SIZE + COUNTERS_SIZE, read)?;
         Ok(Receipt { clock: Clock::new(gpu), staging, mapping: None })
     }
 
-    /// Whether the device's own clock tells what dispatches take.
+    /// Whether the device's own clock times dispatches.
     pub fn has_clock(&self) -> bool {
         self.clock.is_some()
     }
 
-    /// Before the pass: its counters begin at 0.
+    /// Call before the pass: resets the dispatch's counters to 0.
     pub fn begin(&self, encoder: &mut wgpu::CommandEncoder, counters: &wgpu::Buffer) {
         encoder.clear_buffer(counters, COUNTERS_OFFSET, Some(COUNTERS_SIZE));
     }
 
-    /// For the pass that is to be timed.
+    /// Timestamp writes for the pass to be timed.
     pub fn writes(&self) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         self.clock.as_ref().map(|clock| wgpu::ComputePassTimestampWrites {
             query_set: &clock.queries,
@@ -128,7 +128,7 @@ impl Receipt {
         })
     }
 
-    /// After the pass.
+    /// Call after the pass: copies timestamps and counters to the staging buffer.
     pub fn end(&self, encoder: &mut wgpu::CommandEncoder, counters: &wgpu::Buffer) {
         if let Some(clock) = &self.clock {
             encoder.resolve_query_set(&clock.queries, 0..2, &clock.resolved, 0);
@@ -137,15 +137,15 @@ impl Receipt {
         encoder.copy_buffer_to_buffer(counters, COUNTERS_OFFSET, &self.staging, TIMES_SIZE, COUNTERS_SIZE);
     }
 
-    /// After the submission.
+    /// Call after the submission: requests the staging buffer.
     pub fn ask(&mut self) {
         self.mapping = Some(asked(&self.staging, TIMES_SIZE + COUNTERS_SIZE));
     }
 
-    /// What a dispatch that is done says.
+    /// Reads the results of a completed dispatch.
     ///
     /// # Errors
-    /// What the device said.
+    /// The device's error.
     pub fn read(&mut self) -> Result<Told, String> {
         let mapping = self.mapping.take().ok_or("nothing was submitted")?;
         let mut told = Told::default();
@@ -163,7 +163,7 @@ impl Receipt {
 }
 
 impl Clock {
-    /// `None` where the device has no timestamps.
+    /// Returns `None` if the device has no timestamps.
     fn new(gpu: &Gpu) -> Option<Clock> {
         if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
             return None;

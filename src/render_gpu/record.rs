@@ -1,4 +1,4 @@
-//! A path as the device wrote it down.
+//! Reads a path that the device recorded.
 //!
 //! Twin: shaders/record.wgsl
 
@@ -7,22 +7,22 @@ use crate::kernel::{ASIDE_STRIDE, NONE, RECORD_HEADER, RECORD_STRIDE};
 use crate::record::{PathRecord, RecordedHit, RecordedRay};
 use glam::DVec3;
 
-/// Words before those in which the path is put aside.
+/// Number of words before those in which the path is put aside.
 pub fn first_aside(max_depth: u32) -> usize {
     RECORD_HEADER + RECORD_STRIDE * max_depth as usize
 }
 
-/// Words that the path at `pixel` needs, with what the shader must know in them.
+/// The words for recording the path at `pixel`, including the shader's input.
 pub fn words_for([x, y]: [u32; 2], max_depth: u32) -> Vec<u32> {
     let mut words = vec![0; first_aside(max_depth) + ASIDE_STRIDE as usize];
     words[..2].copy_from_slice(&[x, y]);
     words
 }
 
-/// Whether the path was put aside. Its words are then made ready for the shader to go on with it; `None` if it has not
-/// got on since `rays` were recorded.
+/// Returns whether the path was put aside. If so, prepares the words for the shader to continue the path. Returns
+/// `None` if the path has not advanced since `rays` were recorded.
 pub fn is_aside(words: &mut [u32], [x, y]: [u32; 2], max_depth: u32, rays: &mut u32) -> Option<bool> {
-    // The word that is 0 where nothing was put aside.
+    // This word is 0 if nothing was put aside.
     const STATE: usize = 11;
     if words.get(first_aside(max_depth) + STATE).is_none_or(|state| *state == 0) {
         return Some(false);
@@ -36,8 +36,8 @@ pub fn is_aside(words: &mut [u32], [x, y]: [u32; 2], max_depth: u32, rays: &mut 
     Some(true)
 }
 
-/// The path that the words tell. `scene_index` turns a sphere's number into its index in the scene; positions are
-/// measured from `origin`.
+/// Decodes the path from the words. `scene_index` maps a sphere's number to its index in the scene; positions are
+/// relative to `origin`.
 pub fn from_words(words: &[u32], scene_index: &[u32], origin: DVec3) -> PathRecord {
     let (header, rays) = words.split_at(RECORD_HEADER.min(words.len()));
     let count = header.first().map_or(0, |count| *count as usize);

@@ -1,4 +1,4 @@
-//! A scene's spheres, rows and hierarchy in the order in which the kernel reads them.
+//! A scene's spheres, shading records and hierarchy, in the order in which the kernel reads them.
 
 use super::HierarchyKind;
 use super::layout::GpuCwbvhNode;
@@ -7,25 +7,25 @@ use crate::prepared::PreparedScene;
 use crate::prepared::cwbvh::Cwbvh;
 use crate::render::RenderJob;
 
-/// What goes into the buffers of a scene.
+/// The contents of a scene's buffers.
 pub struct SceneData {
-    /// Centre and squared radius.
+    /// Centre and squared radius of each sphere.
     pub spheres: Vec<[f32; 4]>,
-    /// By sphere, the huge ones last.
+    /// The shading record of each sphere, huge ones last.
     pub records: Vec<[f32; RECORD_COLUMNS]>,
-    /// By sphere, its index in the scene.
+    /// The index in the scene of each sphere.
     pub scene_index: Vec<u32>,
-    /// The hierarchy's nodes, and behind them each sphere's place in the list.
+    /// The hierarchy's nodes, followed by each sphere's place in the list.
     pub nodes: Vec<[u32; 4]>,
-    /// Nodes among them.
+    /// Number of nodes.
     pub node_count: u32,
 }
 
 impl SceneData {
-    /// With a hierarchy of the kind asked for, where the prepared scene has one.
+    /// Collects the data of a scene, with a hierarchy of the given kind if the prepared scene has one.
     ///
     /// # Errors
-    /// Where a traversal has no room for its levels.
+    /// If the hierarchy has more levels than a traversal supports.
     pub fn new(job: &RenderJob, prepared: &PreparedScene<f32>, kind: HierarchyKind) -> Result<Self, String> {
         let mut data = SceneData {
             spheres: prepared.opaque.iter().chain(&prepared.two_root).copied().collect(),
@@ -52,7 +52,7 @@ impl SceneData {
         Ok(data)
     }
 
-    /// Builds it, puts spheres and rows in the order of its leaves, and returns its depth.
+    /// Builds the compressed hierarchy, puts spheres and records in the order of its leaves, and returns its depth.
     fn take_cwbvh(&mut self, job: &RenderJob, prepared: &PreparedScene<f32>, ranks: &[u32]) -> usize {
         let built = Cwbvh::build(prepared.spheres_of_hierarchy(job), prepared.origin);
         self.spheres = built.order.iter().map(|i| self.spheres[*i as usize]).collect();

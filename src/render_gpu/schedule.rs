@@ -1,4 +1,4 @@
-//! How much a dispatch does: blocks of samples and tiles of the picture, by measured time.
+//! Sizes dispatches in blocks of samples and tiles of the picture, by measured time.
 
 use super::layout::GpuBlock;
 use crate::render::RenderSettings;
@@ -7,16 +7,16 @@ use std::collections::VecDeque;
 use std::ops::Range;
 use std::time::Duration;
 
-/// Paths of the first dispatch: few enough for the slowest adapter.
+/// Paths in the first dispatch: few enough for the slowest adapter.
 const FIRST_PATHS: f64 = 4096.0;
 
-/// A dispatch has at most so many times the paths of the one before.
+/// Largest growth in paths from one dispatch to the next, as a factor.
 const GROWTH_LIMIT: f64 = 4.0;
 
-/// Most blocks of a dispatch: what their buffer holds.
+/// Most blocks in a dispatch, which is the capacity of their buffer.
 pub const BLOCK_LIMIT: usize = 1024;
 
-/// Paths that a dispatch should have, learnt from the ones before.
+/// The number of paths that a dispatch should have, learnt from earlier dispatches.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     paths: f64,
@@ -24,22 +24,22 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Starts small. `target` is what a dispatch should take.
+    /// Starts with a small budget. `target` is the target time of a dispatch.
     pub fn new(target: Duration) -> Self {
         Budget { paths: FIRST_PATHS, target }
     }
 
-    /// Paths of the next dispatch.
+    /// Number of paths for the next dispatch.
     pub fn paths(&self) -> u64 {
         self.paths as u64
     }
 
-    /// Learns from a dispatch: halves when it took twice what it should, else moves towards the target, a
-    /// little at a time.
+    /// Learns from a dispatch: halves the budget if the dispatch took more than twice the target, otherwise moves it
+    /// gradually towards the target.
     pub fn learn(&mut self, paths: u64, took: Duration) {
         let ratio = self.target.as_secs_f64() / took.as_secs_f64().max(1e-9);
         let fitting = paths as f64 * ratio;
-        // A dispatch far below the budget says how long it takes to start one, not how much one can do.
+        // A dispatch far below the budget measures the cost of starting one, not the device's throughput.
         let least = if 2.0 * (paths as f64) < self.paths { self.paths } else { self.paths / 2.0 };
         self.paths = if ratio < 0.5 {
             self.paths.min(paths as f64) / 2.0
@@ -50,7 +50,7 @@ impl Budget {
     }
 }
 
-/// Samples that are still to be traced, as blocks.
+/// Samples that remain to be traced, as blocks.
 #[derive(Debug)]
 pub struct Blocks {
     settings: RenderSettings,
@@ -58,13 +58,14 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// All samples of `range`; `limit` is the most that a sum in 32 bits holds.
+    /// All samples of `range`; `limit` is the most that a 32-bit sum can hold.
     pub fn of_range(range: Range<u64>, settings: &RenderSettings, limit: u32) -> Self {
         let left = SampleBlock::split(range, settings.half_count() as u32, limit).into();
         Blocks { settings: *settings, left }
     }
 
-    /// The next blocks, together at most `samples` (at least one sample), and their number of samples.
+    /// Takes the next blocks, together at most `samples` samples but at least one, and returns them with their sample
+    /// count.
     pub fn take(&mut self, samples: u64) -> (Vec<GpuBlock>, u64) {
         let (mut taken, mut total) = (Vec::new(), 0);
         while taken.len() < BLOCK_LIMIT {
@@ -75,7 +76,7 @@ impl Blocks {
                     self.left.push_front(block);
                     break;
                 }
-                // The block's first part; what is left are parts twice as large each time.
+                // Takes the first part of the block; the rest is split into parts that double in size.
                 let part = 1_u32 << room.ilog2();
                 let mut end = block.count;
                 while end > part {
@@ -112,7 +113,7 @@ mod tests {
         }
     }
 
-    /// Reversed indices within a half.
+    /// Reversed sample indices within a half.
     fn indices(blocks: &[GpuBlock]) -> Vec<(u32, u32)> {
         let mut all = Vec::new();
         for block in blocks {

@@ -1,26 +1,26 @@
-//! The shaders' text: what Rust declares, then the files in the order in which they use each other.
+//! The text of the shaders: the declarations from Rust, then the files in order of use.
 
 use crate::kernel::{self, tags};
 
-/// An entry point and what it is for.
+/// An entry point of the shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EntryPoint {
     /// Traces samples.
     PathTrace,
-    /// Makes a picture of the film.
+    /// Converts the film to a picture.
     Resolve,
-    /// Runs small functions for tests.
+    /// Runs small functions, for tests.
     Probe,
-    /// Traces one sample of one pixel and writes it down.
+    /// Traces one sample of one pixel and records it.
     PathRecord,
 }
 
 impl EntryPoint {
-    /// All of them.
+    /// All entry points.
     pub const ALL: [EntryPoint; 4] =
         [EntryPoint::PathTrace, EntryPoint::Resolve, EntryPoint::Probe, EntryPoint::PathRecord];
 
-    /// Its name in the shader.
+    /// The entry point's name in the shader.
     pub fn name(self) -> &'static str {
         match self {
             EntryPoint::PathTrace => "path_trace",
@@ -40,7 +40,7 @@ impl EntryPoint {
     }
 }
 
-/// The functions and bindings that all entry points share.
+/// The files with functions and bindings that all entry points share.
 const SHARED: [&str; 11] = [
     include_str!("../../shaders/lanes.wgsl"),
     include_str!("../../shaders/rng.wgsl"),
@@ -55,7 +55,7 @@ const SHARED: [&str; 11] = [
     include_str!("../../shaders/record.wgsl"),
 ];
 
-/// The small functions that the probe can run.
+/// The small functions that the probe can run for tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Probe {
     /// `pcg4d`.
@@ -99,13 +99,13 @@ tags::tags!(Probe {
     FourHits = "PROBE_FOUR_HITS",
 });
 
-/// What is declared in Rust, as WGSL.
+/// The declarations from Rust, as WGSL.
 pub fn prelude() -> String {
     let own = "override PROBE: u32 = 0u;\noverride RECORD: bool = false;\n";
     [kernel::wgsl(), tags::values::<Probe>(), own.to_owned()].join("\n")
 }
 
-/// The whole text of a shader.
+/// The complete text of a shader.
 pub fn source(entry_point: EntryPoint) -> String {
     let mut text = prelude();
     for part in SHARED.into_iter().chain([entry_point.text()]) {

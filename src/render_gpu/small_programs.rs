@@ -1,4 +1,4 @@
-//! What the device runs besides tracing: the film as a picture, small functions for tests, one recorded path.
+//! Programs other than tracing: converting the film to a picture, small functions for tests, and recording one path.
 
 use super::dispatches::{self, groups};
 use super::film_buffers::FilmBuffers;
@@ -16,10 +16,10 @@ use crate::stages::Transfer;
 use std::sync::atomic::AtomicBool;
 
 impl GpuRenderer {
-    /// A film of this job as a picture, made on the device: one word a pixel, red in the lowest byte.
+    /// Converts a film of this job to a picture on the device: one word per pixel, red in the lowest byte.
     ///
     /// # Errors
-    /// [`RenderError::Backend`], also where the film does not fit one buffer.
+    /// [`RenderError::Backend`], also if the film does not fit one buffer.
     pub fn resolve(
         &mut self,
         job: &RenderJob,
@@ -48,8 +48,8 @@ impl GpuRenderer {
         })
     }
 
-    /// Runs a small function of the shaders on many inputs of [`PROBE_STRIDE`] words each, and returns as many
-    /// words of output: for tests. The functions and their words are listed in shaders/probe.wgsl.
+    /// Runs a small shader function on many inputs of [`PROBE_STRIDE`] words each and returns as many words of output,
+    /// for tests. shaders/probe.wgsl lists the functions and their words.
     ///
     /// # Errors
     /// [`RenderError::Backend`].
@@ -62,8 +62,7 @@ impl GpuRenderer {
         })
     }
 
-    /// Records sample `index` of pixel (`x`, `y`), which must lie in the picture, as the kernel of `job` traces
-    /// it.
+    /// Records sample `index` of pixel (`x`, `y`), which must be inside the picture, as the kernel of `job` traces it.
     ///
     /// # Errors
     /// [`RenderError::Backend`].
@@ -104,7 +103,7 @@ impl GpuRenderer {
         })
     }
 
-    /// A film besides that which is being traced.
+    /// Buffers for a film, separate from the one being traced.
     fn own_film(&self, loaded: &Loaded) -> Result<FilmBuffers, RenderError> {
         FilmBuffers::new(&self.gpu, loaded.job.settings(), self.film_limit()).map_err(failed)
     }
@@ -118,7 +117,7 @@ impl GpuRenderer {
         self.kernels.get(&self.gpu, entry_point, features, probe, &go_on())
     }
 
-    /// Runs a kernel on `words` and returns what it made of them.
+    /// Runs a kernel on `words` and returns the resulting words.
     fn run(
         &self,
         loaded: &Loaded,
@@ -147,7 +146,7 @@ impl GpuRenderer {
     }
 }
 
-/// These programs are short, and waited for.
+/// A flag that never cancels: these programs are short.
 fn go_on() -> AtomicBool {
     AtomicBool::new(false)
 }

@@ -1,8 +1,7 @@
-//! Where the numbers of a sample come from, in plain scalar code: the oracle that every lane width and the GPU
-//! are held against.
+//! The source of a sample's numbers, in plain scalar code: the oracle for all lane widths and the GPU.
 //!
-//! Each number is a pure function of (sampler, seed, pixel, sample index, bounce). No state walks along a path,
-//! so a sample does not depend on what was traced before it.
+//! Each number is a pure function of (sampler, seed, pixel, sample index, bounce). No state is carried along a path, so
+//! a sample does not depend on what was traced before it.
 
 mod hash;
 mod sobol;
@@ -14,15 +13,15 @@ pub use warp::{sin_cos_turns, sine_coefficients, unit_disk, unit_sphere};
 
 use crate::render::{RenderSettings, SamplerKind};
 
-/// Four numbers for one ray of a path, in units of `2^-32`. The first two choose a direction or a point in the
-/// pixel (on the lens, if there is one); a dielectric tosses its coin with the first, since it needs no
-/// direction. The last two are the point in the pixel when there is a lens.
+/// Four numbers for one ray of a path, in units of `2^-32`. The first two select a direction, a point in the pixel, or
+/// a point on the lens if there is one. A dielectric uses the first to choose between reflection and refraction, since
+/// it needs no direction. With a lens, the last two select the point in the pixel.
 ///
-/// `pixel` is `x | y << 16`, `bounce` 0 for the ray from the camera.
+/// `pixel` is `x | y << 16`; `bounce` is 0 for the camera ray.
 pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -> [u32; 4] {
     match settings.sampler {
-        // The index as it is. The hash carries differences upwards and folds them down once: samples whose numbers
-        // differ in the uppermost bits alone, as reversed ones do, would not be independent.
+        // The index is hashed without reversing it. The hash carries differences upwards and folds them down only once,
+        // so samples whose numbers differ only in the highest bits, as reversed ones do, would not be independent.
         SamplerKind::Independent => pcg4d([pixel, index, bounce, settings.seed]),
         SamplerKind::Sobol => {
             let half_count = settings.half_count() as u32;
@@ -38,27 +37,27 @@ pub fn numbers(settings: &RenderSettings, pixel: u32, index: u32, bounce: u32) -
     }
 }
 
-/// What tells the Sobol scramblings of pixels, halves and seeds apart.
+/// The key that separates the Sobol scramblings of pixels, halves and seeds.
 pub fn pixel_key(seed: u32, half: u32, pixel: u32) -> u32 {
     key_in_half(half_key(seed, half), pixel)
 }
 
-/// The part of [`pixel_key`] that pixels share.
+/// The part of [`pixel_key`] that all pixels share.
 fn half_key(seed: u32, half: u32) -> u32 {
     mix32(seed.wrapping_add(half.wrapping_mul(GOLDEN_RATIO)))
 }
 
-/// [`pixel_key`] from that part.
+/// Completes [`pixel_key`] from the shared part.
 fn key_in_half(half_key: u32, pixel: u32) -> u32 {
     mix32(half_key ^ pixel)
 }
 
-/// The part that pixels share of what tells a sampler's streams of numbers apart.
+/// The part of a sampler's stream keys that all pixels share.
 #[derive(Clone, Copy, Debug)]
 pub struct HalfKey(Option<u32>);
 
 impl HalfKey {
-    /// Of a half of the film.
+    /// The shared part for one half of the film.
     pub fn new(settings: &RenderSettings, half: u32) -> Self {
         match settings.sampler {
             SamplerKind::Independent => HalfKey(None),
@@ -66,15 +65,15 @@ impl HalfKey {
         }
     }
 
-    /// The stream of numbers for the camera's rays of a pixel: [`pixel_key`] for Sobol's, 0 where the pixel itself is
-    /// hashed.
+    /// The stream of a pixel's camera rays: [`pixel_key`] for the Sobol sampler, 0 for the sampler that hashes the
+    /// pixel itself.
     #[inline(always)]
     pub fn of_pixel(self, pixel: u32) -> u32 {
         self.0.map_or(0, |half_key| key_in_half(half_key, pixel))
     }
 }
 
-/// By how much a path's stream of numbers grows from ray to ray.
+/// The difference between the streams of consecutive rays of a path.
 #[inline(always)]
 pub fn stream_stride(sampler: SamplerKind) -> u32 {
     match sampler {
@@ -83,18 +82,18 @@ pub fn stream_stride(sampler: SamplerKind) -> u32 {
     }
 }
 
-/// The float in `[0, 1)` of a 32-bit number: its upper 24 bits, so that it is exact and never 1.
+/// Converts a 32-bit number to a float in `[0, 1)`, using its upper 24 bits so that the result is exact and never 1.
 pub fn unit_float(u: u32) -> f32 {
     (u >> 8) as f32 * (1.0 / 16_777_216.0)
 }
 
-/// `count` samples `first ..` of one half, `first` a multiple of `count`, a power of two. A kernel walks through
-/// them, those of Sobol's in bit-reversed order, at the cost of one addition a sample.
+/// The `count` samples from `first` on in one half, where `count` is a power of two and `first` a multiple of it. A
+/// kernel steps through them with one addition per sample; Sobol samples come in bit-reversed order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SampleBlock {
-    /// Half of the film.
+    /// Index of the half of the film.
     pub half: u32,
-    /// First index within the half.
+    /// Index of the first sample within the half.
     pub first: u32,
     /// Number of samples, a power of two.
     pub count: u32,
@@ -119,8 +118,8 @@ impl SampleBlock {
         blocks
     }
 
-    /// The sampler's counter of the first sample, and what to add to it for each next: for independent samples the
-    /// index, for Sobol's the reversed index within the half.
+    /// The sampler's counter for the first sample, and its increment per sample. The counter is the index for
+    /// independent samples and the reversed index within the half for Sobol samples.
     pub fn counter(&self, settings: &RenderSettings) -> (u32, u32) {
         let half_count = settings.half_count() as u32;
         match settings.sampler {

@@ -1,4 +1,4 @@
-//! From numbers in the unit square to directions and points on a lens.
+//! Maps numbers in the unit square to directions and to points on a lens.
 
 /// Coefficients of `sin(2 pi x) / x` in powers of `x^2`, for `|x| <= 1/4`. Minimax in relative error (Remez in
 /// 40 digits): 5.3e-9, a tenth of what `f32` resolves.
@@ -18,23 +18,23 @@ fn sine_of_quarter(x: f32) -> f32 {
     (c0 + y * (c1 + y * (c2 + y * (c3 + y * c4)))) * x
 }
 
-/// Sine and cosine of an angle in turns, `0 <= u < 1`. The graphics API leaves the precision of its own sine
-/// open by 2^-11, so CPU and GPU share this polynomial.
+/// Sine and cosine of an angle in turns, `0 <= u < 1`. Graphics APIs only guarantee their own sine to 2^-11, so CPU and
+/// GPU share this polynomial.
 pub fn sin_cos_turns(u: f32) -> (f32, f32) {
     let x = u - 0.5;
     let q = x.abs() - 0.25;
     (-sine_of_quarter(0.25 - q.abs()).copysign(x), sine_of_quarter(q))
 }
 
-/// A uniform point on the unit sphere. Its pole is the vertical, as is that of most that scatters light, the ground,
-/// and of the sky: even numbers then make even heights, which counts for most of Sobol's points.
+/// A uniform point on the unit sphere. Its pole is vertical, like that of the sky and of the ground, which scatters
+/// most of the light. Evenly spaced numbers then give evenly spaced heights, which matters most for Sobol points.
 pub fn unit_sphere(u0: f32, u1: f32) -> [f32; 3] {
     let (sine, cosine) = sin_cos_turns(u1);
     let rho = 2.0 * (u0 * (1.0 - u0)).sqrt();
     [rho * cosine, 1.0 - 2.0 * u0, rho * sine]
 }
 
-/// A uniform point in the unit disk, by polar coordinates.
+/// A uniform point in the unit disk, in polar coordinates.
 pub fn unit_disk(u0: f32, u1: f32) -> [f32; 2] {
     let (sine, cosine) = sin_cos_turns(u1);
     let radius = u0.sqrt();

@@ -1,7 +1,7 @@
 //! Describes in words how two jobs differ.
 
 use crate::recipe::file;
-use crate::render::RenderJob;
+use crate::render::{RenderJob, RenderSettings};
 
 /// Checks whether two recipes, given as text, describe the same samples.
 ///
@@ -21,13 +21,11 @@ fn job(text: &str) -> Result<RenderJob, String> {
 /// The first difference between two jobs, in words that a user can act on; `None` if their samples are the same.
 pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
     let (a, b) = (first.settings(), other.settings());
-    let half_words = |is_on: bool| if is_on { "on" } else { "off" };
-    let values = [
-        ("size", format!("{}x{}", a.width, a.height), format!("{}x{}", b.width, b.height)),
-        ("depth", a.max_depth.to_string(), b.max_depth.to_string()),
-        ("sampler", a.sampler.name().to_owned(), b.sampler.name().to_owned()),
-        ("seed", a.seed.to_string(), b.seed.to_string()),
-        ("estimate-error", half_words(a.estimate_error).into(), half_words(b.estimate_error).into()),
+    let size = ("size", format!("{}x{}", a.width, a.height), format!("{}x{}", b.width, b.height));
+    let settings = RenderSettings::NAMED
+        .iter()
+        .map(|named| (named.flag, (named.value)(a).to_string(), (named.value)(b).to_string()));
+    let others = [
         ("camera", format!("{:?}", first.camera()), format!("{:?}", other.camera())),
         ("rules of the stage", format!("{:?}", first.rules()), format!("{:?}", other.rules())),
         (
@@ -36,7 +34,8 @@ pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
             other.scene().spheres.len().to_string(),
         ),
     ];
-    if let Some((what, mine, theirs)) = values.into_iter().find(|(_, mine, theirs)| mine != theirs) {
+    let mut values = std::iter::once(size).chain(settings).chain(others);
+    if let Some((what, mine, theirs)) = values.find(|(_, mine, theirs)| mine != theirs) {
         return Some(format!("{what} is {mine} here, {theirs} there"));
     }
     (first != other).then(|| "the spheres, materials or sky differ".to_owned())

@@ -1,36 +1,35 @@
-//! The camera: where it stands, where it looks, and its lens. (Book 1, sections 12 and 13.)
+//! The camera: its position, direction and lens. (Book 1, sections 12 and 13.)
 
 use super::SceneError;
 use super::error::{finite, finite_vector, position};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
-/// Vertical field of view, degrees.
+/// Limits on the vertical field of view, degrees.
 pub const VFOV_LIMITS_DEGREES: [f64; 2] = [0.01, 179.0];
 
-/// Defocus angles are from 0 to below this, degrees.
+/// Upper limit on the defocus angle, exclusive, in degrees; the lower limit is 0.
 pub const DEFOCUS_LIMIT_DEGREES: f64 = 179.0;
 
-/// Focus distances, scene units. The upper end holds every distance between two points within the limits of
-/// a position.
+/// Limits on the focus distance, scene units. The upper limit covers the distance between any two valid positions.
 const FOCUS_LIMITS: RangeInclusive<f64> = 1e-18..=1e19;
 
-/// A thin-lens camera as the user sees it.
+/// A thin-lens camera in the user's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// The eye, scene units.
+    /// Position of the eye, scene units.
     pub look_from: DVec3,
-    /// A point in the middle of the picture, scene units.
+    /// The point that the camera looks at, in the middle of the picture; scene units.
     pub look_at: DVec3,
-    /// What is up in the picture. Its length does not matter. Parallel to the view, the axis least aligned
-    /// with the view takes its place.
+    /// The up direction, of any length. If it is parallel to the view, the axis least aligned with the view replaces
+    /// it.
     pub vup: DVec3,
-    /// Angle from the picture's lower to its upper edge, degrees, in [`VFOV_LIMITS_DEGREES`].
+    /// Angle from the lower to the upper edge of the picture, degrees, within [`VFOV_LIMITS_DEGREES`].
     pub vfov_degrees: f64,
-    /// Apex angle of the cone from the focus point to the lens, degrees, `0..179`; 0 is a pinhole.
+    /// Apex angle of the cone from the focus point to the lens, degrees, `0..179`; 0 means a pinhole.
     pub defocus_angle_degrees: f64,
-    /// Distance from the eye to the plane that is sharp, scene units, more than 0.
-    /// `None`: the distance from `look_from` to `look_at`.
+    /// Distance from the eye to the plane in focus, scene units, greater than 0. `None` means the distance from
+    /// `look_from` to `look_at`.
     pub focus_distance: Option<f64>,
 }
 
@@ -41,19 +40,19 @@ impl Default for Camera {
     }
 }
 
-/// An orthonormal frame: `u` right, `v` up, `w` backwards (against the view).
+/// An orthonormal frame: `u` points right, `v` up and `w` backwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraBasis {
-    /// Right in the picture.
+    /// Points right in the picture.
     pub u: DVec3,
-    /// Up in the picture.
+    /// Points up in the picture.
     pub v: DVec3,
-    /// Against the view.
+    /// Points backwards, against the viewing direction.
     pub w: DVec3,
 }
 
 impl Camera {
-    /// The book's first camera: at the origin, looking along -z, 90 degrees high.
+    /// The book's first camera: at the origin, looking along -z, with a vertical field of view of 90 degrees.
     pub const BOOK: Camera = Camera {
         look_from: DVec3::ZERO,
         look_at: DVec3::NEG_Z,
@@ -66,7 +65,7 @@ impl Camera {
     /// Checks every number against its limits.
     ///
     /// # Errors
-    /// The first value that no picture can be made with, with its limit and what to do about it.
+    /// The first invalid value, with its limit and a remedy.
     pub fn validate(&self) -> Result<(), SceneError> {
         position(|| "look_from".to_owned(), self.look_from)?;
         position(|| "look_at".to_owned(), self.look_at)?;
@@ -115,7 +114,7 @@ impl Camera {
         }
     }
 
-    /// The focus distance that acts, scene units.
+    /// The focus distance in effect, scene units.
     pub fn effective_focus_distance(&self) -> f64 {
         self.focus_distance.unwrap_or_else(|| self.look_from.distance(self.look_at))
     }
@@ -124,7 +123,7 @@ impl Camera {
     pub fn basis(&self) -> CameraBasis {
         let w = unit(self.look_from - self.look_at);
         let right = |up: DVec3| up.cross(w);
-        // Below this sine of the angle to the view, rounding would choose the roll.
+        // Below this sine of the angle between up and view, rounding would determine the roll.
         const PARALLEL_SINE: f64 = 1e-9;
         let vup = if self.vup == DVec3::ZERO { DVec3::ZERO } else { unit(self.vup) };
         let mut u = right(vup);
@@ -140,8 +139,7 @@ impl Camera {
     }
 }
 
-/// `v` scaled to length 1. The largest component is divided out first, so that squares neither overflow nor
-/// vanish.
+/// Normalises `v`. Dividing by the largest component first keeps the squares from overflowing and underflowing.
 fn unit(v: DVec3) -> DVec3 {
     (v / v.abs().max_element()).normalize()
 }

@@ -1,39 +1,39 @@
-//! What can be wrong with a scene, said so that the reader can mend it.
+//! Errors in scenes, worded so that the reader can fix them.
 
 use glam::DVec3;
 use thiserror::Error;
 
-/// A scene or camera that no picture can be made of.
+/// A scene or camera that cannot be rendered.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SceneError {
-    /// NaN or infinite.
+    /// A value is NaN or infinite.
     #[error("{what} is {value}, but must be a finite number")]
     NotFinite {
-        /// Where the value stands.
+        /// The location of the value.
         what: String,
-        /// The value.
+        /// The invalid value.
         value: f64,
     },
-    /// A number outside its range.
+    /// A number is outside its range.
     #[error("{what} is {value}, but must be {limit}; {remedy}")]
     OutOfRange {
-        /// Where the value stands.
+        /// The location of the value.
         what: String,
-        /// The value.
+        /// The invalid value.
         value: f64,
         /// The range, in words.
         limit: &'static str,
-        /// What to do.
+        /// What the user should change.
         remedy: &'static str,
     },
-    /// A colour with a component outside its range.
+    /// A colour has a component outside its range.
     #[error("{what} is [{}, {}, {}], but each component must be within 0 and {limit}", value.x, value.y, value.z)]
     Colour {
-        /// Where the colour stands.
+        /// The location of the colour.
         what: String,
-        /// Linear RGB.
+        /// The colour, linear RGB.
         value: DVec3,
-        /// Largest component.
+        /// The largest allowed component.
         limit: f64,
     },
     /// A sphere names a material that does not exist.
@@ -43,19 +43,19 @@ pub enum SceneError {
     MissingMaterial {
         /// Index of the sphere.
         sphere: usize,
-        /// The name it gives.
+        /// The material name that it gives.
         material: String,
     },
-    /// Two materials of one name.
+    /// Two materials have the same name.
     #[error("two materials are called {name:?}; rename one")]
     DuplicateMaterial {
-        /// The name.
+        /// The repeated name.
         name: String,
     },
-    /// The camera stands where it looks.
+    /// The camera's position equals the point that it looks at.
     #[error("look_from and look_at are both [{}, {}, {}], so there is no direction to look in; move one of them", at.x, at.y, at.z)]
     NoDirection {
-        /// The point.
+        /// That point, scene units.
         at: DVec3,
     },
 }
@@ -66,10 +66,10 @@ impl SceneError {
     }
 }
 
-/// Largest coordinate or radius. Squares of it, and sums of three of those, must be finite in `f32`.
+/// Largest absolute coordinate or radius. Squares of it, and sums of three squares, must be finite in `f32`.
 pub(super) const LENGTH_LIMIT: f64 = 1e18;
 
-// The checks are run on millions of values; where one stands is put into words only if it is refused.
+// These checks run on millions of values, so the text of a location is built only for an error.
 
 pub(super) fn finite(what: impl FnOnce() -> String, value: f64) -> Result<(), SceneError> {
     if value.is_finite() { Ok(()) } else { Err(SceneError::NotFinite { what: what(), value }) }

@@ -1,45 +1,45 @@
-//! What happens to light at a surface. (Book 1, sections 9 to 11.)
+//! How surfaces scatter light. (Book 1, sections 9 to 11.)
 
 use super::SceneError;
 use super::error::{colour, finite};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// A surface's behaviour.
+/// The behaviour of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase", deny_unknown_fields)]
 pub enum Material {
-    /// Scatters in proportion to the cosine with the normal. (Section 9.4.)
+    /// Scatters with a density proportional to the cosine to the normal. (Section 9.4.)
     Lambertian {
-        /// Reflected share, linear RGB, each in `0..=1`.
+        /// Reflectance, linear RGB, each component in `0..=1`.
         albedo: DVec3,
     },
     /// Reflects as a mirror, blurred by `fuzz`. (Section 10.)
     Metal {
-        /// Reflected share, linear RGB, each in `0..=1`.
+        /// Reflectance, linear RGB, each component in `0..=1`.
         albedo: DVec3,
-        /// Radius of the sphere that the reflected unit direction is moved within; 0 is a mirror.
-        /// Not negative; what is above 1 acts as 1, as in the book.
+        /// Radius of the sphere from which an offset to the reflected unit direction is drawn; 0 is a mirror. Not
+        /// negative. Values above 1 act as 1, as in the book.
         #[serde(default)]
         fuzz: f64,
     },
-    /// Refracts or reflects, and absorbs nothing. (Section 11.)
+    /// Refracts or reflects light and absorbs none. (Section 11.)
     Dielectric {
-        /// The material's index over that of what surrounds it, more than 0 and at most `1e9`.
+        /// Refraction index relative to the surroundings, greater than 0 and at most `1e9`.
         refraction_index: f64,
     },
 }
 
-/// A material and what the scene file calls it.
+/// A material with its name in the scene file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedMaterial {
     /// Unique within a scene.
     pub name: String,
-    /// The behaviour.
+    /// How the surface scatters.
     pub material: Material,
 }
 
-/// A number or colour that a material has.
+/// A parameter of a material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Parameter {
     /// A plain number.
@@ -49,10 +49,10 @@ pub enum Parameter {
 }
 
 impl Material {
-    /// The book's words for all kinds.
+    /// The names of all kinds, as in the book.
     pub const KINDS: [&'static str; 3] = ["lambertian", "metal", "dielectric"];
 
-    /// What scene files call its numbers and colours, in the order in which they are written.
+    /// The parameters with their names in scene files, in the order in which they are written.
     pub fn parameters(&self) -> Vec<(&'static str, Parameter)> {
         use Parameter::{Colour, Number};
         match *self {
@@ -62,7 +62,7 @@ impl Material {
         }
     }
 
-    /// The fuzz that acts: 0 for other materials, at most 1 for a metal.
+    /// The fuzz in effect: at most 1 for metals, 0 for other materials.
     pub fn effective_fuzz(&self) -> f64 {
         match self {
             Material::Metal { fuzz, .. } => fuzz.min(1.0),
@@ -70,7 +70,7 @@ impl Material {
         }
     }
 
-    /// The share that it reflects, linear RGB; glass has none of its own.
+    /// The reflectance, linear RGB; `None` for glass.
     pub fn albedo(&self) -> Option<DVec3> {
         match *self {
             Material::Lambertian { albedo } | Material::Metal { albedo, .. } => Some(albedo),
@@ -78,7 +78,7 @@ impl Material {
         }
     }
 
-    /// The book's word for it.
+    /// The book's name for this kind of material.
     pub fn kind(&self) -> &'static str {
         match self {
             Material::Lambertian { .. } => Material::KINDS[0],

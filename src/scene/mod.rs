@@ -1,9 +1,8 @@
-//! What is to be rendered, as plain data: spheres, materials, a sky and a camera.
+//! A scene as plain data: spheres, materials, a sky and a camera.
 //!
-//! Nothing here knows how a picture is made. Lengths are in scene units, angles in degrees (this is the
-//! interface; the renderers work in radians), colours are linear RGB. All of it is `f64`, so that a scene
-//! written to a file and read back is the same scene to the bit; the renderers round once, when they build
-//! their own tables.
+//! This module does not depend on how pictures are made. Lengths are in scene units, angles in degrees (the renderers
+//! work in radians), and colours are linear RGB. All numbers are `f64`, so a scene that is written to a file and read
+//! back is the same to the bit. The renderers round once, when they prepare the scene.
 
 pub mod builtin;
 mod camera;
@@ -22,20 +21,20 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
-/// Largest component of a sky colour. The film's fixed point holds one sample's radiance below 128
-/// ([`crate::film::RADIANCE_LIMIT`]); no path gains energy on the way, so a sky below it never saturates.
+/// Upper limit on a component of a sky colour. The film's fixed point holds radiance below 128 per sample
+/// ([`crate::film::RADIANCE_LIMIT`]). Paths never gain energy, so a sky within this limit never saturates.
 pub const SKY_LIMIT: f64 = 100.0;
 
-/// A vertical gradient that surrounds the scene and is its only light. (Book 1, section 4.2.)
+/// A vertical gradient that surrounds the scene and is its only light source. (Book 1, section 4.2.)
 ///
-/// A ray that leaves the scene in the unit direction `d` gathers
+/// A ray that leaves the scene in the unit direction `d` receives the radiance
 /// `(1 - a) bottom + a top` with `a = (d.y + 1) / 2`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sky {
-    /// Radiance straight down, linear RGB, each component in `0..=100`.
+    /// Radiance from straight below, linear RGB, each component in `0..=100`.
     pub bottom: DVec3,
-    /// Radiance straight up, linear RGB, each component in `0..=100`.
+    /// Radiance from straight above, linear RGB, each component in `0..=100`.
     pub top: DVec3,
 }
 
@@ -45,14 +44,14 @@ impl Default for Sky {
     }
 }
 
-/// Spheres under a sky.
+/// A scene: spheres under a sky.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Scene {
-    /// Materials; a sphere names one by its index here.
+    /// The materials; spheres refer to them by index.
     pub materials: Vec<NamedMaterial>,
-    /// Spheres, in the order of the file. May be empty.
+    /// The spheres, in the order of the file. May be empty.
     pub spheres: Vec<Sphere>,
-    /// The light.
+    /// The sky, which is the only light.
     pub sky: Sky,
 }
 
@@ -63,15 +62,15 @@ impl Scene {
         self.materials.len() - 1
     }
 
-    /// Adds a sphere with its centre and radius in scene units.
+    /// Adds a sphere; centre and radius are in scene units.
     pub fn add_sphere(&mut self, center: DVec3, radius: f64, material: usize) {
         self.spheres.push(Sphere { center, radius, material });
     }
 
-    /// The material of a sphere.
+    /// Returns the material of a sphere.
     ///
     /// # Panics
-    /// If the sphere's material index is out of range, which [`Scene::validate`] rules out.
+    /// If the sphere's material index is out of range, which [`Scene::validate`] excludes.
     pub fn material_of(&self, sphere: &Sphere) -> &Material {
         &self.materials[sphere.material].material
     }
@@ -79,7 +78,7 @@ impl Scene {
     /// Checks every number against its limits.
     ///
     /// # Errors
-    /// The first value that no picture can be made with, with its limit and what to do about it.
+    /// The first invalid value, with its limit and a remedy.
     pub fn validate(&self) -> Result<(), SceneError> {
         let mut names = HashSet::with_capacity(self.materials.len());
         for named in &self.materials {

@@ -1,24 +1,24 @@
-//! What is under a point of the picture: one exact ray, in `f64`, through the middle of the lens.
+//! Finds what is under a point of the picture, with one exact `f64` ray through the middle of the lens.
 
 use super::{Camera, Scene};
 use glam::DVec3;
 
-/// Where a ray first meets the scene.
+/// The first hit of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pick {
-    /// Index of the sphere.
+    /// Index of the sphere in the scene.
     pub sphere: usize,
     /// Distance from the eye along the ray, scene units.
     pub distance: f64,
-    /// The point, scene units.
+    /// The hit point, scene units.
     pub point: DVec3,
-    /// Unit normal, against the ray.
+    /// Unit normal on the side that the ray comes from.
     pub normal: DVec3,
 }
 
 impl Camera {
-    /// Unit direction from the eye through the point `at` of the picture, `[0, 0]` its upper left and `[1, 1]`
-    /// its lower right corner. `aspect` is width by height.
+    /// Unit direction from the eye through the point `at` of the picture, where `[0, 0]` is the upper left corner and
+    /// `[1, 1]` the lower right. `aspect` is width over height.
     pub fn direction_through(&self, at: [f64; 2], aspect: f64) -> DVec3 {
         let basis = self.basis();
         let half_height = (self.vfov_degrees.to_radians() / 2.0).tan();
@@ -27,12 +27,13 @@ impl Camera {
         (right * basis.u + up * basis.v - basis.w).normalize()
     }
 
-    /// Distance of `point` from the eye along the view: the focus distance that makes it sharp.
+    /// Distance from the eye to `point` along the viewing direction: the focus distance at which `point` is sharp.
     pub fn depth_of(&self, point: DVec3) -> f64 {
         (self.look_from - point).dot(self.basis().w)
     }
 
-    /// Where `point` is in the picture, as in [`Camera::direction_through`]; `None` behind the eye.
+    /// Position of `point` in the picture, in the coordinates of [`Camera::direction_through`]; `None` if it is behind
+    /// the eye.
     pub fn place_of(&self, point: DVec3, aspect: f64) -> Option<[f64; 2]> {
         let basis = self.basis();
         let depth = self.depth_of(point);
@@ -48,7 +49,7 @@ impl Camera {
 }
 
 impl Scene {
-    /// The first sphere that a ray meets. `direction` has length 1.
+    /// Finds the first sphere that a ray hits. `direction` must have length 1.
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Pick> {
         let nearest = self
             .spheres
@@ -67,11 +68,11 @@ impl Scene {
     }
 }
 
-/// The nearest root in front of the eye. An eye on the surface does not see that surface.
+/// The nearest root in front of the eye. If the eye is on the surface, that surface is not visible.
 fn root(to_center: DVec3, radius: f64, direction: DVec3) -> Option<f64> {
     const ON_SURFACE: f64 = 1e-9;
     let along = to_center.dot(direction);
-    // The distance from the centre to the ray, without the cancellation of the book's discriminant.
+    // Distance from the centre to the ray, computed without the cancellation in the book's discriminant.
     let beside = to_center - along * direction;
     let squared = radius * radius - beside.length_squared();
     if squared < 0.0 {

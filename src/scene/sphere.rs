@@ -4,13 +4,13 @@ use super::SceneError;
 use super::error::{LENGTH_LIMIT, finite, position};
 use glam::DVec3;
 
-/// A sphere with one material all over.
+/// A sphere with a single material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sphere {
     /// Centre, scene units.
     pub center: DVec3,
-    /// Radius, scene units, more than 0. The book's early editions made a hollow sphere with a negative
-    /// radius; since version 4 it is an inner sphere of the inverse refraction index.
+    /// Radius, scene units, greater than 0. The book's early editions made hollow spheres with a negative radius; since
+    /// version 4 a hollow sphere contains a sphere of the inverse refraction index.
     pub radius: f64,
     /// Index into [`super::Scene::materials`].
     pub material: usize,

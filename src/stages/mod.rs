@@ -1,7 +1,7 @@
 //! The book's chapters as data: what each adds, what to look for, and the picture that shows it.
 //!
-//! A stage is no second tracer. It is a scene, a camera and the [`Rules`] in force at that point of the book;
-//! the window, the command line, the gallery and the tests find all of them in [`Stage::ALL`].
+//! A stage is not a second tracer. It is a scene, a camera and the [`Rules`] in effect at that point of the book. The
+//! window, the command line, the gallery and the tests find all stages in [`Stage::ALL`].
 
 mod rules;
 mod table;
@@ -13,61 +13,61 @@ use crate::suggest::{or_nearest, similar_names};
 use std::fmt;
 use thiserror::Error;
 
-/// The book on the web.
+/// The web address of the book.
 pub const BOOK_URL: &str = "https://raytracing.github.io/books/RayTracingInOneWeekend.html";
 
 /// One step of the book.
 #[derive(Clone, Copy)]
 pub struct Stage {
-    /// What the command line, the window and files call it. Never changes.
+    /// The identifier on the command line, in the window and in files. It never changes.
     pub id: &'static str,
     /// Number of the book's section, such as "11.4".
     pub section: &'static str,
-    /// Heading of the section in the book.
+    /// The section's heading in the book.
     pub section_title: &'static str,
-    /// Heading of its chapter.
+    /// The chapter's heading in the book.
     pub chapter_title: &'static str,
-    /// Our heading.
+    /// Weekender's own heading.
     pub title: &'static str,
-    /// What the tracer can do now that it could not do before.
+    /// What the tracer can do from this stage on.
     pub what_is_new: &'static str,
-    /// Why that is needed, or why it is right.
+    /// Why this is needed, or why it is correct.
     pub why: &'static str,
-    /// Where in the picture to look, and what is seen there.
+    /// Where to look in the picture, and what to see there.
     pub look_for: &'static str,
-    /// The stage that a wipe compares this one with first.
+    /// The stage that the wipe compares with this one by default.
     pub pair: Option<&'static str>,
-    /// What the picture is made from.
+    /// The scene and settings of the picture.
     pub setup: Setup,
 }
 
-/// The scene of a stage and the numbers that it is rendered with.
+/// A stage's scene with its render settings.
 #[derive(Clone, Copy)]
 pub struct Setup {
-    /// Makes the scene. The same every time.
+    /// Creates the scene; the result is always the same.
     pub scene: fn() -> Scene,
-    /// The camera.
+    /// The camera of the picture.
     pub camera: Camera,
-    /// The rules in force.
+    /// The rules in effect.
     pub rules: Rules,
-    /// Pixels across.
+    /// Picture width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Picture height in pixels.
     pub height: u32,
     /// Samples per pixel.
     pub samples_per_pixel: u64,
-    /// Most rays of a path, the camera's included.
+    /// Most rays per path, including the camera ray.
     pub max_depth: u32,
 }
 
 impl Stage {
-    /// All of them, in the book's order. The last has every rule on.
+    /// All stages in the book's order. The last has every rule on.
     pub const ALL: &'static [Stage] = table::STAGES;
 
-    /// The stage of this id.
+    /// Finds the stage with this id.
     ///
     /// # Errors
-    /// [`UnknownStage`] with those whose ids are like it.
+    /// [`UnknownStage`], with similar ids.
     pub fn find(id: &str) -> Result<&'static Stage, UnknownStage> {
         Self::ALL.iter().find(|stage| stage.id == id).ok_or_else(|| UnknownStage {
             id: id.to_owned(),
@@ -75,29 +75,29 @@ impl Stage {
         })
     }
 
-    /// The one after it in the book.
+    /// The next stage in the book.
     pub fn next(&self) -> Option<&'static Stage> {
         Self::ALL.get(self.index() + 1)
     }
 
-    /// The one before it in the book.
+    /// The previous stage in the book.
     pub fn previous(&self) -> Option<&'static Stage> {
         Self::ALL.get(self.index().checked_sub(1)?)
     }
 
-    /// Its place in [`Stage::ALL`].
+    /// Index of the stage in [`Stage::ALL`].
     pub fn index(&self) -> usize {
         Self::ALL.iter().position(|stage| stage.id == self.id).unwrap_or(Self::ALL.len())
     }
 
-    /// Number of its chapter.
+    /// The number of the stage's chapter.
     pub fn chapter(&self) -> &'static str {
         self.section.split('.').next().unwrap_or(self.section)
     }
 
-    /// Its section in the book on the web.
+    /// The web address of the stage's section in the book.
     pub fn url(&self) -> String {
-        // The book's anchors are its headings without spaces and capitals.
+        // Anchors in the book are the headings in lower case without spaces.
         let anchor = |heading: &str| heading.replace(' ', "").to_lowercase();
         format!("{BOOK_URL}#{}/{}", anchor(self.chapter_title), anchor(self.section_title))
     }
@@ -121,8 +121,8 @@ impl Eq for Stage {}
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("there is no stage {id:?}; {}", or_nearest(near))]
 pub struct UnknownStage {
-    /// What was asked for.
+    /// The requested id.
     pub id: String,
-    /// Ids like it, the likeliest first.
+    /// Similar ids, the most similar first.
     pub near: Vec<&'static str>,
 }

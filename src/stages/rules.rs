@@ -1,40 +1,40 @@
-//! The rules of the tracer that a stage can switch. The finished renderer is [`Rules::default`].
+//! The tracer's rules that a stage can switch. [`Rules::default`] is the finished renderer.
 
 use serde::{Deserialize, Serialize};
 
-/// Which of the book's rules are in force.
+/// Which of the book's rules are in effect.
 ///
-/// None of these is a second tracer: they are switches within the one kernel, and a job whose rules are the
-/// finished ones carries no code for the others.
+/// The rules are switches within one kernel, not separate tracers. A job with the finished rules carries no code for
+/// the others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Rules {
-    /// What a ray brings back.
+    /// What a ray contributes.
     pub shading: Shading,
-    /// Direction of a Lambertian bounce.
+    /// Direction of a bounce off a Lambertian surface.
     pub diffuse: Diffuse,
-    /// Which laws glass obeys.
+    /// The laws that glass obeys.
     pub dielectric: DielectricLaws,
-    /// How a ray leaves the surface that it starts on.
+    /// How rays leave the surface that they start on.
     pub surface: Surface,
-    /// Whether the reflectance of every material is replaced by that of the picture's strip: five vertical
-    /// strips of 10, 30, 50, 70 and 90 %. (Section 9.5.)
+    /// Whether the reflectance of every material is replaced by that of the picture strip: five vertical strips of 10,
+    /// 30, 50, 70 and 90 %. (Section 9.5.)
     pub reflectance_strips: bool,
-    /// Whether samples are spread over the pixel; else all go through its centre. (Section 8.)
+    /// Whether samples are spread over the pixel; otherwise all pass through its centre. (Section 8.)
     pub antialiasing: bool,
-    /// How linear values become the picture's bytes.
+    /// How linear values are converted to bytes of the picture.
     pub transfer: Transfer,
 }
 
 impl Default for Rules {
-    /// [`Rules::FINISHED`].
+    /// Returns [`Rules::FINISHED`].
     fn default() -> Self {
         Rules::FINISHED
     }
 }
 
 impl Rules {
-    /// Those of the finished renderer.
+    /// The rules of the finished renderer.
     pub const FINISHED: Rules = Rules {
         shading: Shading::Path,
         diffuse: Diffuse::Lambertian,
@@ -45,69 +45,69 @@ impl Rules {
         transfer: Transfer::Gamma2,
     };
 
-    /// Whether the tracer needs no code beyond that of the finished renderer.
-    /// (Antialiasing is a number to the kernel, and the transfer comes after it.)
+    /// Whether the tracer needs only the code of the finished renderer. (To the kernel, antialiasing is just a number,
+    /// and the transfer happens after it.)
     pub fn are_finished(&self) -> bool {
         Rules { antialiasing: true, transfer: Transfer::Gamma2, ..*self } == Rules::FINISHED
     }
 }
 
-/// What a ray brings back.
+/// What a ray contributes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shading {
-    /// No rays: red grows with x, green with y downwards, from 0 to 1 over the picture. (Section 2.)
+    /// Traces no rays: red increases with x and green downwards with y, from 0 to 1 across the picture. (Section 2.)
     ImageGradient,
-    /// A hit is red, a miss is the sky. (Section 5.2.)
+    /// Hits are red, misses show the sky. (Section 5.2.)
     FirstHitRed,
-    /// A hit is `(n + 1) / 2`, a miss is the sky. (Section 6.1.)
+    /// Hits show `(n + 1) / 2`, misses show the sky. (Section 6.1.)
     Normals,
-    /// Light along a path. (Section 9 on.)
+    /// Light along a path. (From section 9 on.)
     Path,
 }
 
-/// Direction of a Lambertian bounce.
+/// Direction of a bounce off a Lambertian surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Diffuse {
     /// Uniform over the hemisphere. (Section 9.1.)
     Hemisphere,
-    /// The normal plus a unit vector: in proportion to the cosine. (Section 9.4.)
+    /// The normal plus a unit vector, with a density proportional to the cosine. (Section 9.4.)
     Lambertian,
 }
 
-/// Which laws glass obeys.
+/// The laws that glass obeys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DielectricLaws {
-    /// Always refracts. Where Snell's law has no solution the book's formula is followed to its wrong
-    /// direction. (Section 11.2.)
+    /// Always refracts. Where Snell's law has no solution, the book's formula gives a wrong direction, which is kept.
+    /// (Section 11.2.)
     RefractOnly,
     /// Reflects where Snell's law has no solution. (Section 11.3.)
     TotalReflection,
-    /// Reflects by Schlick's share besides. (Section 11.4.)
+    /// Also reflects with Schlick's reflectance. (Section 11.4.)
     Schlick,
 }
 
-/// How a ray leaves the surface that it starts on.
+/// How rays leave the surface that they start on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Surface {
-    /// It knows the surface: no threshold, and no acne at any scale.
+    /// The ray knows its surface: there is no threshold, and no acne at any scale.
     Exact,
-    /// The book's quadratic with 0 as the smallest distance, which finds the surface again by rounding.
-    /// (Section 9.3.)
+    /// The book's quadratic with 0 as the smallest distance, which rounding makes find the same surface again. (Section
+    /// 9.3.)
     Acne,
-    /// The book's arithmetic as it ends: the quadratic with [`BOOK_T_MIN`] as the smallest distance. (Section 9.3.)
+    /// The book's final arithmetic: the quadratic with [`BOOK_T_MIN`] as the smallest distance. (Section 9.3.)
     Book,
 }
 
-/// The distance within which the book finds no surface, scene units. (Section 9.3.)
+/// The distance below which the book ignores hits, scene units. (Section 9.3.)
 pub const BOOK_T_MIN: f64 = 0.001;
 
 impl Surface {
-    /// The distance within which the book's arithmetic finds no surface, scene units; `None` where ours is in force,
-    /// which needs none.
+    /// The distance below which the book's arithmetic ignores hits, scene units; `None` for [`Surface::Exact`], which
+    /// needs no threshold.
     pub fn smallest_distance(self) -> Option<f64> {
         match self {
             Surface::Exact => None,
@@ -117,20 +117,20 @@ impl Surface {
     }
 }
 
-/// How linear values become the picture's bytes.
+/// How linear values are converted to bytes of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Transfer {
-    /// As they are. (Sections 2 to 9.4.)
+    /// Linear. (Sections 2 to 9.4.)
     Linear,
     /// Square root. (Section 9.5.)
     Gamma2,
-    /// The upper half linear, the lower half with the square root: to compare. (Section 9.5.)
+    /// The upper half linear, the lower half with the square root, for comparison. (Section 9.5.)
     LinearAboveGamma2,
 }
 
 impl Transfer {
-    /// Whether `row` of `height` takes the square root.
+    /// Whether `row` of a picture `height` rows high takes the square root.
     pub fn is_gamma(self, row: usize, height: usize) -> bool {
         match self {
             Transfer::Linear => false,

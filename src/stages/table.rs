@@ -1,4 +1,4 @@
-//! The stages, in the book's order. Section numbers and scene figures are those of v4.0.2.
+//! The stages in the book's order. Section numbers and scene values are those of v4.0.2.
 
 use super::{DielectricLaws, Diffuse, Rules, Setup, Shading, Stage, Surface, Transfer};
 use crate::scene::Camera;
@@ -24,7 +24,7 @@ const LINEAR: Rules = Rules { transfer: Transfer::Linear, ..Rules::FINISHED };
 const NORMALS: Rules = Rules { shading: Shading::Normals, ..LINEAR };
 const HEMISPHERE: Rules = Rules { diffuse: Diffuse::Hemisphere, ..LINEAR };
 
-/// One ray through each pixel's centre, which sees no further than its first hit.
+/// One ray through each pixel's centre, which ends at its first hit.
 const ONE_RAY: Setup = Setup {
     scene: empty,
     camera: Camera::BOOK,
@@ -35,8 +35,8 @@ const ONE_RAY: Setup = Setup {
     max_depth: 1,
 };
 
-/// Paths of as many rays as the book allows. The number of samples is a power of two, where Sobol's points
-/// are spread best.
+/// Paths with as many rays as the book allows. The number of samples is a power of two, at which Sobol points are most
+/// evenly distributed.
 const PATHS: Setup = Setup {
     scene: matte_on_ground,
     camera: Camera::BOOK,
@@ -53,7 +53,7 @@ const HALF_ENERGY_LIMITED: Setup = Setup { rules: HEMISPHERE, max_depth: 5, ..PA
 
 const HOLLOW_GLASS: Setup = Setup { scene: || three_spheres(LeftSphere::HollowGlass), ..PATHS };
 
-/// From above and the left of the three spheres.
+/// A view of the three spheres from above and from the left.
 const SIDE_VIEW: Camera = Camera { look_from: DVec3::new(-2.0, 2.0, 1.0), ..Camera::BOOK };
 
 const CLOSE_SIDE_VIEW: Camera = Camera { vfov_degrees: 20.0, ..SIDE_VIEW };

@@ -56,8 +56,8 @@ const PAIRS: &[Pair] = &[
         twins: &["rng.rs"],
         shader_alone: &[
             ("stream_of", "a lane counts its stream up"),
-            ("pixel_key", "made when a lane is dealt a block: `sampling::pixel_key`"),
-            ("sampler_key", "made when a lane is dealt a block: `sampling::HalfKey`"),
+            ("pixel_key", "made when a lane is refilled with a block: `sampling::pixel_key`"),
+            ("sampler_key", "made when a lane is refilled with a block: `sampling::HalfKey`"),
         ],
         twin_alone: &[],
     },

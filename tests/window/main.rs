@@ -5,6 +5,7 @@ mod commands;
 mod common;
 mod device;
 mod extreme;
+mod faults;
 mod files;
 mod panels;
 mod plot;

@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use super::origin::Source;
+use crate::render::RenderSettings;
 use std::borrow::Cow;
 use std::fmt::Write;
 
@@ -27,17 +28,11 @@ impl Document {
         if (mine.width, mine.height) != (theirs.width, theirs.height) {
             add("--size", &format!("{}x{}", mine.width, mine.height));
         }
-        if mine.max_depth != theirs.max_depth {
-            add("--depth", &mine.max_depth);
-        }
-        if mine.sampler != theirs.sampler {
-            add("--sampler", &mine.sampler.name());
-        }
-        if mine.seed != theirs.seed {
-            add("--seed", &mine.seed);
-        }
-        if mine.estimate_error != theirs.estimate_error {
-            add("--estimate-error", &if mine.estimate_error { "on" } else { "off" });
+        for named in RenderSettings::NAMED {
+            let value = (named.value)(mine);
+            if value != (named.value)(theirs) {
+                add(&format!("--{}", named.flag), &value);
+            }
         }
         let (camera, base) = (self.acting_camera(), &origin.camera);
         for (flag, value, default) in [
@@ -71,8 +66,13 @@ impl Document {
     }
 }
 
-/// Quotes a word for a shell. A NUL, which no argument can contain, stays unchanged.
+/// A word as a shell takes it. Vectors and the like have no quotes, though shlex would put them around a comma.
 fn quoted(word: &str) -> Cow<'_, str> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return Cow::Borrowed(word);
+    }
+    // It fails for a NUL alone, which no argument can have.
     shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
 }
 
@@ -129,6 +129,7 @@ mod tests {
     #[test]
     fn names_are_quoted_where_a_shell_needs_it() {
         assert_eq!(quoted("a-b.toml"), "a-b.toml");
+        assert_eq!(quoted("13,2,3"), "13,2,3");
         for name in ["my scene's.toml", "$HOME/a b", "a\"b", ""] {
             assert_eq!(shlex::split(&quoted(name)), Some(vec![name.to_owned()]), "{name}");
         }

@@ -2,6 +2,7 @@
 
 use super::named::{mark, name_of};
 use crate::recipe::Recipe;
+use crate::render::{RenderSettings, SettingValue};
 use crate::scene::{Camera, Parameter, Scene, Sphere};
 use crate::stages::Rules;
 use glam::DVec3;
@@ -82,10 +83,16 @@ fn write_render(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
     writeln!(out, "width = {} # pixels", settings.width)?;
     writeln!(out, "height = {}", settings.height)?;
     writeln!(out, "samples_per_pixel = {}", recipe.samples_per_pixel)?;
-    writeln!(out, "max_depth = {} # rays of a path", settings.max_depth)?;
-    writeln!(out, "sampler = {}", quoted(settings.sampler.name()))?;
-    writeln!(out, "seed = {}", settings.seed)?;
-    writeln!(out, "estimate_error = {}", settings.estimate_error)
+    for named in RenderSettings::NAMED {
+        let value = match (named.value)(settings) {
+            SettingValue::Number(number) => number.to_string(),
+            SettingValue::Name(name) => quoted(name),
+            SettingValue::Switch(is_on) => is_on.to_string(),
+        };
+        let comment = if named.comment.is_empty() { String::new() } else { format!(" # {}", named.comment) };
+        writeln!(out, "{} = {value}{comment}", named.key)?;
+    }
+    Ok(())
 }
 
 /// Only the rules that differ from the finished renderer's.

@@ -1,8 +1,8 @@
 //! Width-generic values: one source for scalar code, SIMD packets and the `f64` reference.
 //!
-//! A [`Lanes`] is a token that stands for a lane count, a precision and an instruction level. Its values are
-//! rows of that many numbers. Everything is `#[inline(always)]`: a call that stays a call would run without the
-//! level's instructions.
+//! A [`Lanes`] is a token for a lane count, a precision and an instruction level. Its values are rows of that many
+//! numbers. Every function is `#[inline(always)]`: a function that is not inlined would be compiled without the level's
+//! instructions.
 
 mod instructions;
 mod scalar;
@@ -19,16 +19,16 @@ pub use vector::{V3, dot, load3, mul_add3, neg_mul_add3, select3, splat3};
 use crate::kernel::{Real, RecordColumns, UNIT_FLOAT_SCALE};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
-/// Largest lane count, for buffers on the stack.
+/// The largest lane count, for buffers on the stack.
 pub const MAX_LANES: usize = 16;
 
-/// Rows of numbers, and what can be done with them.
+/// Operations on rows of numbers.
 ///
-/// Ordering by [`Lanes::key`]: of a distance `t` the bits of `-t` are compared as signed integers, in which order
-/// positive distances come first, the nearest before all, then infinity, then NaN and distances behind the ray; so
-/// those lose a search for the nearest by themselves. (SSE and AVX2 compare signed integers alone.)
+/// Distances are ordered by [`Lanes::key`]: the bits of `-t` are compared as signed integers. In that order positive
+/// distances come first, the nearest before the others, then infinity, then NaN and distances behind the ray. Misses
+/// therefore lose a search for the nearest hit without an extra test. (SSE and AVX2 can only compare signed integers.)
 pub trait Lanes: Copy + Send + Sync + 'static {
-    /// Precision.
+    /// Precision of the numbers.
     type Real: Real;
     /// Floating-point numbers.
     type F: Copy
@@ -45,47 +45,47 @@ pub trait Lanes: Copy + Send + Sync + 'static {
         + BitXor<Output = Self::U>
         + BitAnd<Output = Self::U>
         + BitOr<Output = Self::U>;
-    /// Truth values.
+    /// Masks: one truth value per lane.
     type M: Copy + BitAnd<Output = Self::M> + BitOr<Output = Self::M> + Not<Output = Self::M>;
     /// The bits of a negated distance, for ordering.
     type Key: Copy;
-    /// Numbers in a row.
+    /// Numbers per row.
     const WIDTH: usize;
 
     /// The same number in every lane.
     fn splat(self, x: Self::Real) -> Self::F;
     /// The same number in every lane.
     fn splat_u(self, x: u32) -> Self::U;
-    /// A literal in every lane.
+    /// The same literal in every lane, rounded to the precision.
     #[inline(always)]
     fn constant(self, x: f64) -> Self::F {
         self.splat(Self::Real::from_f64(x))
     }
-    /// A row of numbers from memory.
+    /// Loads a row of numbers from memory.
     fn load(self, from: &Wide<Self::Real>) -> Self::F;
-    /// Truth values from the lowest bits.
+    /// A mask from the lowest bits of `bits`, lane 0 in the lowest.
     fn mask(self, bits: u32) -> Self::M;
-    /// The first [`Lanes::WIDTH`] numbers of a buffer.
+    /// Loads the first [`Lanes::WIDTH`] numbers of a buffer.
     fn load_u(self, from: &WideU) -> Self::U;
-    /// To the first [`Lanes::WIDTH`] numbers of a buffer.
+    /// Stores to the first [`Lanes::WIDTH`] numbers of a buffer.
     fn store_u(u: Self::U, to: &mut WideU);
-    /// To the first [`Lanes::WIDTH`] numbers of a buffer.
+    /// Stores to the first [`Lanes::WIDTH`] numbers of a buffer.
     fn store(f: Self::F, to: &mut Wide<Self::Real>);
 
-    /// `a b + c`, rounded once where the level can.
+    /// `a b + c`, rounded once where the level has fused multiply-add.
     fn mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
-    /// `a b - c`, rounded once where the level can.
+    /// `a b - c`, rounded once where the level has fused multiply-add.
     #[inline(always)]
     fn mul_sub(a: Self::F, b: Self::F, c: Self::F) -> Self::F {
         Self::mul_add(a, b, -c)
     }
-    /// `c - a b`, rounded once where the level can.
+    /// `c - a b`, rounded once where the level has fused multiply-add.
     fn neg_mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
-    /// Square root; NaN below 0.
+    /// Square root; NaN for numbers below 0.
     fn sqrt(x: Self::F) -> Self::F;
-    /// Without the sign.
+    /// Absolute value.
     fn abs(x: Self::F) -> Self::F;
-    /// The size of one with the sign of another.
+    /// The magnitude of `size` with the sign of `sign`.
     fn copysign(size: Self::F, sign: Self::F) -> Self::F;
     /// `if a < b { a } else { b }`.
     fn min(a: Self::F, b: Self::F) -> Self::F;
@@ -93,89 +93,89 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn max(a: Self::F, b: Self::F) -> Self::F;
     /// `a < b`.
     fn lt(a: Self::F, b: Self::F) -> Self::M;
-    /// Where `m`, `a`; else `b`.
+    /// `a` where `m` is true, else `b`.
     fn select(m: Self::M, a: Self::F, b: Self::F) -> Self::F;
 
-    /// Whether the sign is a minus, also that of 0.
+    /// Whether the sign bit is set, as it is for -0.
     fn is_negative(x: Self::F) -> Self::M;
 
-    /// Where `m`, `a`; else `b`.
+    /// `a` where `m` is true, else `b`.
     fn select_u(m: Self::M, a: Self::U, b: Self::U) -> Self::U;
-    /// Where `m`, `a`; else 0.
+    /// `a` where `m` is true, else 0.
     #[inline(always)]
     fn keep(self, m: Self::M, a: Self::U) -> Self::U {
         Self::select_u(m, a, self.splat_u(0))
     }
-    /// Where `m`, `u32::MAX`; else `a`.
+    /// `u32::MAX` where `m` is true, else `a`.
     #[inline(always)]
     fn fill(self, m: Self::M, a: Self::U) -> Self::U {
         Self::select_u(m, self.splat_u(u32::MAX), a)
     }
     /// `a == b`.
     fn eq_u(a: Self::U, b: Self::U) -> Self::M;
-    /// The smaller.
+    /// The smaller of the two.
     fn min_u(a: Self::U, b: Self::U) -> Self::U;
-    /// Left by `n` bits.
+    /// Shifts left by `n` bits.
     fn shl(a: Self::U, n: u32) -> Self::U;
-    /// Right by `n` bits.
+    /// Shifts right by `n` bits.
     fn shr(a: Self::U, n: u32) -> Self::U;
 
-    /// One bit a lane.
+    /// The mask as bits, one per lane.
     fn bits(m: Self::M) -> u32;
 
-    /// Of a negated distance, to compare as signed.
+    /// The ordering key of a negated distance, to be compared as a signed integer.
     fn key(negated: Self::F) -> Self::Key;
-    /// The negated distance.
+    /// The negated distance of a key.
     fn from_key(k: Self::Key) -> Self::F;
-    /// The key, or where `m` one that loses.
+    /// A key that loses every comparison where `m` is true, else `k`.
     fn exclude(self, m: Self::M, k: Self::Key) -> Self::Key;
-    /// The smaller.
+    /// The smaller key, which belongs to the nearer hit.
     fn min_key(a: Self::Key, b: Self::Key) -> Self::Key;
     /// `a < b`.
     fn lt_key(a: Self::Key, b: Self::Key) -> Self::M;
     /// `a == b`.
     fn eq_key(a: Self::Key, b: Self::Key) -> Self::M;
 
-    /// An integer below `2^31` as a float.
+    /// Converts an integer below `2^31` to a float.
     fn float_of(u: Self::U) -> Self::F;
-    /// A float in `0 ..= 2^31 - 128` to the nearest integer, ties to even.
+    /// Rounds a float in `0 ..= 2^31 - 128` to the nearest integer, ties to even.
     fn fixed_point(self, f: Self::F) -> Self::U;
-    /// Rows that [`Lanes::permute`] can choose among; 0 if it is not there.
+    /// Rows that [`Lanes::permute`] can choose among; 0 if the level has no permute instruction.
     const PERMUTED_ROWS: usize = 0;
-    /// From a column of numbers, the one that each lane's index names: one instruction for a table that fits a
-    /// register. Indices count modulo [`Lanes::PERMUTED_ROWS`].
+    /// The element of a column that each lane's index selects: one instruction for a table that fits a register.
+    /// Indices count modulo [`Lanes::PERMUTED_ROWS`].
     #[inline(always)]
     fn permute(self, column: &Wide<Self::Real>, _indices: Self::U) -> Self::F {
         self.splat(column.0[0])
     }
-    /// Columns `4 group ..` of the rows that the first [`Lanes::WIDTH`] `indices` name.
+    /// Loads the columns from `4 * group` on of the rows that the first [`Lanes::WIDTH`] `indices` name.
     fn gather(self, records: &[RecordColumns<Self::Real>], indices: &WideU, group: usize) -> [Self::F; 4];
     /// Sine and cosine of an angle in turns, `0 <= u < 1`.
     fn sin_cos_turns(self, u: Self::F) -> (Self::F, Self::F);
 }
 
-/// Numbers of one row in memory, of which a packet takes the first of its width.
+/// A row of numbers in memory. A packet uses as many as it has lanes, from the front.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(align(64))]
 pub struct Wide<R>(pub [R; MAX_LANES]);
 
-/// The same for integers.
+/// A [`Wide`] of integers.
 pub type WideU = Wide<u32>;
 
 impl<R: Copy> Wide<R> {
-    /// The same number everywhere.
+    /// The same number in every place.
     pub fn splat(x: R) -> Self {
         Wide([x; MAX_LANES])
     }
 }
 
-/// A float in `[0, 1)` from the upper 24 bits.
+/// Converts the upper 24 bits to a float in `[0, 1)`.
 #[inline(always)]
 pub fn unit_float<L: Lanes>(l: L, u: L::U) -> L::F {
     L::float_of(L::shr(u, 8)) * l.constant(UNIT_FLOAT_SCALE)
 }
 
-/// The polynomial of [`crate::sampling::sin_cos_turns`].
+/// Evaluates the polynomial of [`crate::sampling::sin_cos_turns`].
 #[inline(always)]
 fn polynomial_sin_cos_turns<L: Lanes>(l: L, u: L::F) -> (L::F, L::F) {
     let quarter = l.constant(0.25);

@@ -1,11 +1,11 @@
-//! One lane: scalar code of the packets' precision, and the `f64` reference.
+//! One lane: scalar code in the packets' precision, and the `f64` reference.
 
 use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
 use crate::kernel::RecordColumns;
 use std::num::Wrapping;
 
-/// One lane of `f32`. `FUSED` says whether the level it runs at has fused multiply and add; on one that has not,
-/// `f32::mul_add` would be a call to a library.
+/// One lane of `f32`. `FUSED` says whether the level has fused multiply-add; on a level without it, `f32::mul_add`
+/// would call a library function.
 #[derive(Clone, Copy)]
 pub struct Scalar<const FUSED: bool>;
 

@@ -1,4 +1,4 @@
-//! Packets: rows in registers, or in several where a level's registers are shorter.
+//! Packets: rows in one register, or in several where a level's registers are shorter.
 
 use super::instructions::{Instructions, transpose4};
 use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
@@ -138,7 +138,7 @@ macro_rules! simd_lanes {
             }
             #[inline(always)]
             fn exclude(self, m: $m<S>, k: $i<S>) -> $i<S> {
-                // -1 is a NaN's bits.
+                // The bits of -1 are a NaN.
                 let bits: $u<S> = k.bitcast();
                 self.fill(m, bits).bitcast()
             }
@@ -227,7 +227,7 @@ fn gathered_columns<S: Simd>(simd: S, records: &[RecordColumns<f32>], index: u32
     f32x4::from_slice(simd, &records[index as usize].0[4 * group..4 * group + 4])
 }
 
-/// Four columns of the rows that four indices name.
+/// Loads four columns of the rows that four indices name.
 #[inline(always)]
 fn gather4<S: Simd>(
     simd: S,

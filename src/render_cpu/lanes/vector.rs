@@ -1,4 +1,4 @@
-//! Vectors of rows: points, directions, colours.
+//! Vectors whose components are rows: points, directions and colours.
 
 use super::{Lanes, Wide};
 use std::ops::{Add, Mul, Sub};
@@ -6,11 +6,11 @@ use std::ops::{Add, Mul, Sub};
 /// Three rows: a point, a direction or a colour.
 #[derive(Clone, Copy)]
 pub struct V3<F> {
-    /// First component.
+    /// First component: x, or red.
     pub x: F,
-    /// Second component.
+    /// Second component: y, or green.
     pub y: F,
-    /// Third component.
+    /// Third component: z, or blue.
     pub z: F,
 }
 
@@ -31,13 +31,13 @@ impl<F: Copy + Sub<Output = F>> Sub for V3<F> {
 }
 
 impl<F: Copy + Mul<Output = F>> V3<F> {
-    /// All components times `s`.
+    /// Multiplies every component by `s`.
     #[inline(always)]
     pub fn scale(self, s: F) -> Self {
         V3 { x: self.x * s, y: self.y * s, z: self.z * s }
     }
 
-    /// Component by component.
+    /// Multiplies component by component.
     #[inline(always)]
     pub fn times(self, o: Self) -> Self {
         V3 { x: self.x * o.x, y: self.y * o.y, z: self.z * o.z }
@@ -50,13 +50,13 @@ pub fn splat3<L: Lanes>(l: L, v: [L::Real; 3]) -> V3<L::F> {
     V3 { x: l.splat(v[0]), y: l.splat(v[1]), z: l.splat(v[2]) }
 }
 
-/// A vector a lane, from memory.
+/// Loads one vector per lane from memory.
 #[inline(always)]
 pub fn load3<L: Lanes>(l: L, v: &[Wide<L::Real>; 3]) -> V3<L::F> {
     V3 { x: l.load(&v[0]), y: l.load(&v[1]), z: l.load(&v[2]) }
 }
 
-/// Scalar product.
+/// Dot product.
 #[inline(always)]
 pub fn dot<L: Lanes>(a: V3<L::F>, b: V3<L::F>) -> L::F {
     L::mul_add(a.x, b.x, L::mul_add(a.y, b.y, a.z * b.z))
@@ -71,11 +71,11 @@ pub fn mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
 /// `b - a s`.
 #[inline(always)]
 pub fn neg_mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
-    // The factor that changes most is negated: a negated direction would be kept in registers of its own.
+    // Negates the factor that changes most often: a negated direction would occupy registers of its own.
     V3 { x: L::neg_mul_add(s, a.x, b.x), y: L::neg_mul_add(s, a.y, b.y), z: L::neg_mul_add(s, a.z, b.z) }
 }
 
-/// Where `m`, `a`; else `b`.
+/// `a` where `m` is true, else `b`.
 #[inline(always)]
 pub fn select3<L: Lanes>(m: L::M, a: V3<L::F>, b: V3<L::F>) -> V3<L::F> {
     V3 { x: L::select(m, a.x, b.x), y: L::select(m, a.y, b.y), z: L::select(m, a.z, b.z) }

@@ -1,4 +1,4 @@
-//! The instructions of x86-64.
+//! The operations that x86-64 does in one instruction.
 
 use super::instructions::Instructions;
 use fearless_simd::prelude::*;
@@ -12,7 +12,7 @@ use std::arch::x86_64::{
     _mm512_cvtps_epi32, _mm512_permutexvar_ps,
 };
 
-/// Implements a method by an intrinsic.
+/// Implements a method with an intrinsic.
 macro_rules! by {
     ($level:ident, $method:ident($($x:ident: $from:ident),+) -> $to:ident, $value:expr) => {
         #[inline(always)]
@@ -30,7 +30,7 @@ macro_rules! by {
 
 impl Instructions for Sse4_2 {
     by!(Sse4_2, to_nearest_4(x: f32x4) -> i32x4, _mm_cvtps_epi32(x.into()));
-    // A mask's lanes are all ones or all zeros.
+    // Each lane of a mask is all ones or all zeros.
     by!(Sse4_2, ones_4(m: mask32x4) -> u32x4, __m128i::from(m));
 }
 
@@ -55,7 +55,7 @@ impl Instructions for Avx2 {
     by!(Avx2, ones_8(m: mask32x8) -> u32x8, __m256i::from(m));
 }
 
-/// Within the halves of a register.
+/// Unpacking within each half of a register.
 trait Unpack: Sized {
     fn unpack_low(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
     fn unpack_high(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;

@@ -1,4 +1,4 @@
-//! What a ray brings back, and the next sample where its path has ended.
+//! What a ray contributes, and the next sample where its path has ended.
 
 use super::draw::{draw, last_stream, next_stream};
 use super::{HitRecords, Packet, hit_point, pixel_position};
@@ -10,8 +10,8 @@ use crate::render_cpu::lanes::{Lanes, V3, select3};
 use crate::render_cpu::work::{TileStats, Work};
 use crate::stages::Shading;
 
-/// Adds the light that arrives, ends paths, starts the next sample where one has ended, and draws the numbers of
-/// the next rays.
+/// Adds the arriving light, ends paths, starts the next sample where a path has ended, and draws the numbers for the
+/// next rays.
 #[inline(always)]
 pub(super) fn collect<L: Lanes, const PARTS: u32>(
     l: L,
@@ -33,7 +33,7 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     }
     add_radiance(l, packet, lit, light, stats);
 
-    // Lanes whose path has ended go on to the next sample, or to the next block.
+    // Lanes whose path has ended go on to the next sample or the next block.
     let next = packet.counter + l.load_u(&packet.blocks.step);
     packet.counter = L::select_u(ended, next, packet.counter);
     let at_end = L::eq_u(packet.counter, l.load_u(&packet.blocks.end));
@@ -46,7 +46,7 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     packet.draw = draw::<L, PARTS>(l, prepared, packet);
 }
 
-/// The sky's radiance in a direction of this height, in units of the film.
+/// The sky's radiance in a direction with this y component, in units of the film.
 #[inline(always)]
 fn shade_miss<L: Lanes>(l: L, broadcast: &BroadcastScene<L::Real>, height: L::F) -> V3<L::F> {
     let zero = l.constant(0.0);
@@ -57,7 +57,7 @@ fn shade_miss<L: Lanes>(l: L, broadcast: &BroadcastScene<L::Real>, height: L::F)
     V3 { x: channel(0), y: channel(1), z: channel(2) }
 }
 
-/// What a ray brings back where the stage shows something simpler than light: `light` where it misses.
+/// A ray's contribution in stages that show something simpler than light; `light` where the ray misses.
 #[inline(always)]
 fn shade_hit<L: Lanes, const PARTS: u32>(
     l: L,
@@ -71,7 +71,7 @@ fn shade_hit<L: Lanes, const PARTS: u32>(
     let shown = match prepared.features.shading {
         Shading::ImageGradient => {
             let position = pixel_position(l, l.load_u(&packet.blocks.pixel));
-            // A single column or row has no far end: it is 0 everywhere.
+            // A single column or row has no far end, so its share is 0.
             let share = |position: L::F, pixels: u32| {
                 position / l.constant(f64::from(pixels.saturating_sub(1).max(1))) * full
             };
@@ -94,7 +94,8 @@ fn shade_hit<L: Lanes, const PARTS: u32>(
     select3::<L>(miss, light, shown)
 }
 
-/// Adds a path's end to the sums of the lanes that are `lit`, or counts it where it is not a number that can be added.
+/// Adds the radiance of a finished path to the sums of the lanes in `lit`, or counts it as rejected if it is not a
+/// number that can be added.
 #[inline(always)]
 fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::F>, stats: &mut TileStats) {
     let radiance = light.times(packet.throughput);
@@ -115,7 +116,7 @@ fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::
     add(2, radiance.z);
 }
 
-/// Deals the lanes `done` their next blocks of samples.
+/// Refills the lanes `done` with their next blocks of samples.
 #[inline(always)]
 fn enter_block<L: Lanes>(
     l: L,

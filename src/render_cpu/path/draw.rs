@@ -1,4 +1,4 @@
-//! The numbers that paths are made from.
+//! The random numbers of a path.
 
 use super::Packet;
 use crate::kernel::parts;
@@ -10,13 +10,13 @@ use crate::sampling::stream_stride;
 /// The numbers for a packet's next rays.
 #[derive(Clone, Copy)]
 pub(super) struct Draw<L: Lanes> {
-    /// For a direction or a point on the lens.
+    /// For a direction, or for a point on the lens.
     pub pair: [L::F; 2],
-    /// Sine of the second of the pair, in turns.
+    /// Sine of the second number of the pair, in turns.
     pub sine: L::F,
-    /// Its cosine.
+    /// Cosine of the second number of the pair, in turns.
     pub cosine: L::F,
-    /// For a point in the pixel where the pair is for the lens.
+    /// For the point in the pixel when the pair is used for the lens.
     pub jitter: [L::F; 2],
 }
 
@@ -43,13 +43,13 @@ pub(super) fn has_lens<L: Lanes, const PARTS: u32>(prepared: &PreparedScene<L::R
     PARTS & parts::LENS != 0 && prepared.camera.tau > L::Real::default()
 }
 
-/// The stream of a path's next ray.
+/// The sampler's stream for a path's next ray.
 #[inline(always)]
 pub(super) fn next_stream<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, packet: &Packet<L>) -> L::U {
     packet.stream + l.splat_u(stream_stride(prepared.settings.sampler))
 }
 
-/// The stream of a path's last ray.
+/// The sampler's stream for a path's last ray.
 #[inline(always)]
 pub(super) fn last_stream<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, packet: &Packet<L>) -> L::U {
     let stride = stream_stride(prepared.settings.sampler);

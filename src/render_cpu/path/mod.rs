@@ -1,9 +1,9 @@
 //! The path loop: packets of rays that are always full.
 //!
-//! A lane owns a pixel and walks through a block of its samples. When its path ends it starts its next sample at
-//! once, and when its block is done it is dealt the next (block, pixel) of the tile; so a packet never waits for
-//! its longest path. A lane's sums stay in 32-bit registers until its block is done. Several packets take turns
-//! in three phases, intersect, collect and send on, so that the latency of one hides behind the others.
+//! Each lane traces one pixel at a time. When a path ends, the lane starts the pixel's next sample immediately. When
+//! its block of samples is done, the lane is refilled with the next (block, pixel) of the tile, so a packet never waits
+//! for its longest path. A lane's sums stay in 32-bit registers until its block is done. Several packets take turns in
+//! three phases (intersect, collect, send on), so that the latency of one hides behind the others.
 //!
 //! Twin: shaders/path.wgsl
 
@@ -30,33 +30,34 @@ use draw::Draw;
 use records::HitRecords;
 use send::send_on;
 
-/// Packets that take turns. In a prototype with 16 lanes, fewer left the processor waiting (2: -10 %, 1: -35 %) and
-/// more gained nothing; not measured again here.
+/// Packets that take turns. In a prototype with 16 lanes, fewer packets left the processor waiting (2: -10 %, 1: -35 %)
+/// and more gained nothing. This was not measured again here.
 const PACKETS: usize = 4;
 
 struct Packet<L: Lanes> {
     rays: Rays<L>,
     nearest: Nearest<L>,
     throughput: V3<L::F>,
-    /// Squared sine between a ray inside steep glass and the normal where it starts, and so where it ends.
+    /// Squared sine of the angle between a ray inside steep glass and the normal where it starts; it is the same where
+    /// the ray ends.
     sine2: L::F,
-    /// The sampler's counter: which sample.
+    /// The sampler's counter, which selects the sample.
     counter: L::U,
-    /// The sampler's stream: which ray of it.
+    /// The sampler's stream, which selects the ray of the sample.
     stream: L::U,
     screen: [L::F; 2],
     /// Lanes that have work.
     alive: L::M,
-    /// Lanes whose path was absorbed: it ends at its next shading, adds nothing and is not counted as a ray.
+    /// Lanes whose path was absorbed: it ends at its next shading, adds nothing and does not count as a ray.
     absorbed: L::M,
-    /// Lanes whose path ends where it is; they go on from the camera.
+    /// Lanes whose path ends here; their next ray starts at the camera.
     ended: L::M,
     draw: Draw<L>,
     blocks: LaneBlocks,
 }
 
 impl<L: Lanes> Packet<L> {
-    /// All lanes at the end of a block of nothing, so that the first shading refills them with work.
+    /// All lanes at the end of an empty block, so that the first shading refills them.
     #[inline(always)]
     fn idle(l: L) -> Self {
         let zero = l.constant(0.0);
@@ -80,7 +81,7 @@ impl<L: Lanes> Packet<L> {
     }
 }
 
-/// Traces all of `work` with the code that `PARTS` names; the job must need no other.
+/// Traces all of `work` with the code that `PARTS` selects, which must include everything the job needs.
 #[inline(always)]
 pub fn trace<L: Lanes, const PARTS: u32>(
     l: L,
@@ -105,7 +106,7 @@ pub fn trace<L: Lanes, const PARTS: u32>(
     }
 }
 
-/// Ends the paths of packets or sends them on.
+/// Ends the paths of packets or continues them.
 #[inline(always)]
 fn shade<L: Lanes, const PARTS: u32>(
     l: L,
@@ -122,7 +123,7 @@ fn shade<L: Lanes, const PARTS: u32>(
     }
 }
 
-/// Finds what the rays of a packet meet first. Returns the lanes that are alive.
+/// Finds the nearest hit of each ray in a packet. Returns the lanes that are alive.
 #[inline(always)]
 fn intersect<L: Lanes, const PARTS: u32>(
     l: L,
@@ -177,7 +178,7 @@ fn intersect<L: Lanes, const PARTS: u32>(
     alive
 }
 
-/// The points that were hit, where anything was.
+/// The points of the hits; meaningless for lanes without one.
 #[inline(always)]
 fn hit_point<L: Lanes, const PARTS: u32>(
     l: L,
@@ -206,7 +207,7 @@ fn hit_point<L: Lanes, const PARTS: u32>(
     point
 }
 
-/// Column and row from `x | y << 16`.
+/// Splits `x | y << 16` into column and row.
 #[inline(always)]
 fn pixel_position<L: Lanes>(l: L, pixel: L::U) -> [L::F; 2] {
     [L::float_of(pixel & l.splat_u(0xFFFF)), L::float_of(L::shr(pixel, 16))]

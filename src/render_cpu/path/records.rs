@@ -1,23 +1,23 @@
-//! The shading records of what was hit.
+//! The shading records of the spheres that were hit.
 
 use super::Packet;
 use crate::kernel::{Columns, GROUP, NONE, RECORD_COLUMNS, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::lanes::{Lanes, V3, WideU};
 
-/// Groups of columns that a record has.
+/// Column groups of a record.
 const GROUPS: usize = RECORD_COLUMNS / GROUP;
 
 /// The first group that only anchored spheres need.
 const ANCHORED_GROUP: usize = 3;
 
-/// By lane, the record of the sphere that was hit. Its fields are loaded by name: [`crate::kernel::LoadShading`].
+/// The record of the sphere that each lane has hit. Fields are loaded by name: [`crate::kernel::LoadShading`].
 pub(super) struct HitRecords<L: Lanes> {
     groups: [[L::F; GROUP]; GROUPS],
 }
 
 impl<L: Lanes> HitRecords<L> {
-    /// A lane without a hit gets some record.
+    /// Loads the records. A lane without a hit gets an arbitrary record.
     #[inline(always)]
     pub fn load<const PARTS: u32>(l: L, broadcast: &BroadcastScene<L::Real>, packet: &Packet<L>) -> Self {
         let (prepared, hit) = (&broadcast.prepared, packet.nearest.sphere);
@@ -25,7 +25,7 @@ impl<L: Lanes> HitRecords<L> {
         let is_needed = |group: usize| group != ANCHORED_GROUP || with_anchored;
         let mut groups = [[l.constant(0.0); GROUP]; GROUPS];
         if prepared.records.len() <= L::PERMUTED_ROWS {
-            // Few enough that a column fits a register.
+            // The records are few enough that a column fits a register.
             for (group, loaded) in groups.iter_mut().enumerate() {
                 if is_needed(group) {
                     for (column, number) in loaded.iter_mut().enumerate() {

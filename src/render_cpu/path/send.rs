@@ -1,4 +1,4 @@
-//! Where paths go on: from the surface that was hit, or from the camera where they have ended.
+//! Continues paths: from the surface that was hit, or from the camera where a path has ended.
 
 use super::draw::has_lens;
 use super::{HitRecords, Packet, hit_point, pixel_position};
@@ -13,7 +13,7 @@ use crate::render_cpu::material::{
 use crate::render_cpu::sphere::Rays;
 use crate::stages::Surface as SurfaceRule;
 
-/// Sends paths on, or the next ones from the camera where they have ended.
+/// Continues paths from their hits, and starts new ones at the camera where a path has ended.
 #[inline(always)]
 pub(super) fn send_on<L: Lanes, const PARTS: u32>(
     l: L,
@@ -29,7 +29,7 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(
     let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
     let next = select3::<L>(vanishes, bounced.normal, next);
     let next = next.scale(one / L::sqrt(L::select(vanishes, one, length2)));
-    // A fuzzy reflection into the surface is absorbed.
+    // Metal absorbs a fuzzy reflection that points into the surface.
     packet.absorbed = bounced.is_metal & !L::lt(l.constant(0.0), dot::<L>(next, bounced.normal)) & !ended;
     let mut left = l.fill(ended | bounced.inward, hit);
     if PARTS & parts::EXTREMES != 0 && broadcast.prepared.features.eye_on_surface {
@@ -45,7 +45,7 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(
     packet.throughput = select3::<L>(ended, V3 { x: one, y: one, z: one }, throughput);
 }
 
-/// The rays of new paths.
+/// The camera rays of new paths.
 #[inline(always)]
 fn generate_camera_ray<L: Lanes, const PARTS: u32>(
     l: L,
@@ -68,21 +68,21 @@ fn generate_camera_ray<L: Lanes, const PARTS: u32>(
     }
 }
 
-/// Where paths leave the surfaces that they have met.
+/// How paths leave the surfaces that they have hit.
 struct Bounced<L: Lanes> {
     origin: V3<L::F>,
-    /// Not of length 1.
+    /// The outgoing direction, not normalised.
     direction: V3<L::F>,
     /// Unit normal on the side that the ray came from.
     normal: V3<L::F>,
-    /// What the throughput is multiplied by.
+    /// The factor for the throughput.
     albedo: V3<L::F>,
     is_metal: L::M,
-    /// Whether the path goes on inside of the sphere.
+    /// Whether the path continues inside the sphere.
     inward: L::M,
 }
 
-/// Scatters at what was hit.
+/// Scatters at the hit.
 #[inline(always)]
 fn scatter_path<L: Lanes, const PARTS: u32>(
     l: L,
@@ -139,8 +139,8 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
     Bounced { origin: point.position, direction, normal, albedo, is_metal, inward }
 }
 
-/// Scatters where the angle of incidence must be known better than from its cosine. A ray inside glass meets it under
-/// the angle under which it started: that is remembered, so that total reflection lasts.
+/// Scatters where the rounded cosine does not give the angle of incidence precisely enough. A ray inside glass
+/// arrives at the same angle at which it started. The angle is stored, so that total reflection persists.
 #[inline(always)]
 fn scatter_steeply<L: Lanes>(
     l: L,
@@ -167,7 +167,7 @@ fn scatter_steeply<L: Lanes>(
     bounced
 }
 
-/// The reflectance of the picture's strip that a pixel lies in: 10, 30, 50, 70, 90 %.
+/// The reflectance of the picture strip that contains a pixel: 10, 30, 50, 70 or 90 %.
 #[inline(always)]
 fn strip_reflectance<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, pixel: L::U) -> L::F {
     let [x, _] = pixel_position(l, pixel);

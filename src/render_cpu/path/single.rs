@@ -1,4 +1,4 @@
-//! One path, step by step, by the code that traces packets.
+//! One path, ray by ray, traced by the packets' code.
 
 use super::{Packet, intersect, parts, shade};
 use crate::kernel::Real;
@@ -7,14 +7,14 @@ use crate::render_cpu::bvh::{EMPTY_STACK, Stack};
 use crate::render_cpu::lanes::{Lanes, V3, Wide, WideU};
 use crate::render_cpu::work::{TileStats, Work};
 
-/// A packet of one lane, for a record of what it does.
+/// A packet of one lane, used to record what a path does.
 pub struct SinglePath<L: Lanes> {
     packet: Packet<L>,
     stack: Stack,
 }
 
 impl<L: Lanes> SinglePath<L> {
-    /// Takes the first sample of `work`.
+    /// Starts with the first sample of `work`.
     #[inline(always)]
     pub fn start(l: L, broadcast: &BroadcastScene<L::Real>, work: &mut Work) -> Self {
         let mut packet = Packet::idle(l);
@@ -28,32 +28,32 @@ impl<L: Lanes> SinglePath<L> {
         SinglePath { packet, stack: EMPTY_STACK }
     }
 
-    /// Whether there is a ray to trace.
+    /// Whether there is a ray left to trace.
     pub fn is_alive(&self) -> bool {
         L::bits(self.packet.alive) != 0
     }
 
-    /// Whether the path was absorbed where it is.
+    /// Whether the path was absorbed at its last hit.
     pub fn is_absorbed(&self) -> bool {
         L::bits(self.packet.absorbed) != 0
     }
 
-    /// Where the ray starts.
+    /// Start of the current ray.
     pub fn origin(&self) -> V3<L::F> {
         self.packet.rays.origin
     }
 
-    /// Where it goes.
+    /// Unit direction of the current ray.
     pub fn direction(&self) -> V3<L::F> {
         self.packet.rays.direction
     }
 
-    /// What its light counts for.
+    /// Factor by which light that arrives along the ray is multiplied.
     pub fn throughput(&self) -> V3<L::F> {
         self.packet.throughput
     }
 
-    /// Traces the ray and sends it on. Returns the number of the sphere that it met and the distance.
+    /// Traces the ray and continues the path. Returns the number of the sphere that it hit and the distance.
     #[inline(always)]
     pub fn advance(&mut self, l: L, broadcast: &BroadcastScene<L::Real>, work: &mut Work) -> (u32, f64) {
         let mut stats = TileStats::default();

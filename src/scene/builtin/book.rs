@@ -4,8 +4,8 @@ use super::random::{Draws, to_four_decimals};
 use crate::scene::{Camera, Material, Scene};
 use glam::DVec3;
 
-/// Chosen so that three of the 22 x 22 small spheres fall where the golden one stands and are left out,
-/// which leaves the 485 spheres that the book's own generator leaves.
+/// With this seed, three of the 22 x 22 small spheres fall where the golden sphere stands and are left out. This leaves
+/// 485 spheres, the same number as the book's own generator.
 const SEED: u64 = 1;
 
 /// The camera of the final render.
@@ -18,7 +18,7 @@ pub const BOOK_CAMERA: Camera = Camera {
     focus_distance: Some(10.0),
 };
 
-/// The scene of the book's cover: 485 spheres, the same every time.
+/// The scene on the book's cover: 485 spheres, always the same.
 pub fn book() -> Scene {
     let mut scene = Scene::default();
     let ground = scene.add_material("ground", Material::Lambertian { albedo: DVec3::splat(0.5) });
@@ -72,7 +72,7 @@ mod tests {
             let count = small.iter().filter(|sphere| scene.material_of(sphere).kind() == kind).count();
             count as f64 / small.len() as f64
         };
-        // Four standard errors of a share among 481.
+        // Four standard errors of a proportion among 481 spheres.
         for (kind, expected) in [("lambertian", 0.8), ("metal", 0.15), ("dielectric", 0.05)] {
             let tolerance = 4.0 * f64::sqrt(expected * (1.0 - expected) / 481.0);
             assert!((share(kind) - expected).abs() < tolerance, "{kind}: {}", share(kind));
@@ -92,7 +92,7 @@ mod tests {
             assert!(center.x - x <= 0.9 && center.z - z <= 0.9, "{center}");
             assert!(cells.insert([x as i32, z as i32]), "two spheres in one cell: {center}");
         }
-        // Of the 22 x 22 cells those alone are empty whose sphere would have come too close.
+        // Of the 22 x 22 cells, only those whose sphere would have come too close are empty.
         let all = (-11..11).flat_map(|x| (-11..11).map(move |z| [x, z]));
         let empty: Vec<[i32; 2]> = all.filter(|cell| !cells.remove(cell)).collect();
         assert_eq!((empty.len(), cells.len()), (3, 0), "{empty:?}, {cells:?}");

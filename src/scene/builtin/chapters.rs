@@ -4,12 +4,12 @@ use crate::scene::{Camera, Material, Scene};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Radius of the ground below the small scenes; its top is at `y = -0.5`.
+/// Radius of the ground sphere in the small scenes; its top is at `y = -0.5`.
 const GROUND_RADIUS: f64 = 100.0;
 
 const GREY: DVec3 = DVec3::splat(0.5);
 
-/// Nothing but the sky. (Section 4.2.)
+/// A scene with only the sky. (Section 4.2.)
 pub fn empty() -> Scene {
     Scene::default()
 }
@@ -29,17 +29,16 @@ pub fn matte_on_ground() -> Scene {
     scene
 }
 
-/// What stands on the left of [`three_spheres`].
+/// The sphere on the left of [`three_spheres`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LeftSphere {
-    /// Solid, of this index over its surroundings.
+    /// Solid glass with this refraction index relative to its surroundings.
     Glass(f64),
-    /// A shell of glass 1.5 around a ball of air of radius 0.4. (Section 11.5.)
+    /// A shell of glass of index 1.5 around a ball of air of radius 0.4. (Section 11.5.)
     HollowGlass,
 }
 
-/// Glass on the left, a blue matte ball in the middle, metal of fuzz 1 on the right, on a yellow ground.
-/// (Section 11.)
+/// Glass on the left, a blue matte ball in the middle and metal of fuzz 1 on the right, on yellow ground. (Section 11.)
 pub fn three_spheres(left: LeftSphere) -> Scene {
     let mut scene = ground_and_centre();
     let left_centre = DVec3::new(-1.0, 0.0, -1.0);
@@ -57,8 +56,8 @@ pub fn three_spheres(left: LeftSphere) -> Scene {
     scene
 }
 
-/// A silver ball on the left and a golden one on the right, of these fuzzes, with a blue matte one between
-/// them. (Sections 10.5 and 10.6.)
+/// A silver ball on the left and a golden ball on the right with these fuzz values, and a blue matte ball between them.
+/// (Sections 10.5 and 10.6.)
 pub fn metals(left_fuzz: f64, right_fuzz: f64) -> Scene {
     let mut scene = ground_and_centre();
     let silver = scene.add_material("left", Material::Metal { albedo: DVec3::splat(0.8), fuzz: left_fuzz });
@@ -81,7 +80,7 @@ fn add_right_metal(scene: &mut Scene, fuzz: f64) {
     scene.add_sphere(DVec3::new(1.0, 0.0, -1.0), 0.5, gold);
 }
 
-/// A blue and a red ball that touch in the middle and reach the edges of a view of 90 degrees. (Section 12.1.)
+/// A blue and a red ball that touch in the middle and reach the edges of a 90 degree view. (Section 12.1.)
 pub fn touching_spheres() -> Scene {
     let radius = FRAC_1_SQRT_2;
     let mut scene = Scene::default();
@@ -92,8 +91,8 @@ pub fn touching_spheres() -> Scene {
     scene
 }
 
-/// The camera that looks at the three spheres from above and from their left, `vfov_degrees` high.
-/// (Section 12.2.)
+/// A camera that looks at the three spheres from above and from their left. `vfov_degrees` is the vertical
+/// field of view. (Section 12.2.)
 pub fn view_from_the_side(vfov_degrees: f64) -> Camera {
     Camera { look_from: DVec3::new(-2.0, 2.0, 1.0), vfov_degrees, ..Camera::BOOK }
 }

@@ -1,28 +1,28 @@
-//! A field of any number of spheres, for measuring how time grows with them.
+//! A field with any number of spheres, for measuring how render time scales.
 
 use super::random::{Draws, to_four_decimals};
 use crate::scene::{Camera, Material, Scene, Sphere};
 use glam::DVec3;
 use std::ops::RangeInclusive;
 
-/// How many small spheres a field may have.
+/// Limits on the number of small spheres in a field.
 pub const FIELD_COUNT_LIMITS: RangeInclusive<u64> = 1..=10_000_000;
 
 const SEED: u64 = 20;
 
-/// Materials are shared: these and the ground's, whatever the number of spheres.
+/// Number of matte materials. Spheres share materials: the palette and the ground's, however many spheres there are.
 const MATTE_COUNT: usize = 44;
 const METAL_COUNT: usize = 15;
 const GLASS_COUNT: usize = 4;
 
-/// Side of the square cell that each sphere has to itself, scene units.
+/// Side of the square cell of each sphere, scene units.
 const CELL: f64 = 1.0;
 
-/// `count` small spheres on one large one, and a camera that looks over them.
+/// `count` small spheres on a large one, with a camera that looks across them.
 ///
-/// Each stands in its own cell of a square grid, so none overlap, and the field is as wide as their number
-/// asks for. Colours run in patches over it. `count` is taken into [`FIELD_COUNT_LIMITS`]; the work and the
-/// memory (40 bytes each) are in proportion to it.
+/// Each sphere has its own cell in a square grid, so none overlap, and the width of the field follows from their
+/// number. Colours form patches. `count` is clamped to [`FIELD_COUNT_LIMITS`]. Time and memory (40 bytes per sphere)
+/// are proportional to it.
 pub fn field(count: u64) -> (Scene, Camera) {
     let count = count.clamp(*FIELD_COUNT_LIMITS.start(), *FIELD_COUNT_LIMITS.end());
     let ground = Ground::of(count);
@@ -31,7 +31,7 @@ pub fn field(count: u64) -> (Scene, Camera) {
     scene.spheres.extend((0..count).map(|index| ground.sphere(index)));
 
     let half_width = ground.half_width;
-    // The middle ground stays in view while the far edge recedes.
+    // Keeps the middle ground in view as the far edge recedes.
     let height = 3.0 * (half_width / 16.0).sqrt().max(0.5);
     let camera = Camera {
         look_from: DVec3::new(0.35 * half_width, height, half_width + 2.0 * height),
@@ -42,7 +42,7 @@ pub fn field(count: u64) -> (Scene, Camera) {
     (scene, camera)
 }
 
-/// Whether a scene is the [`field`] of `count` spheres, to the bit. It takes no memory.
+/// Whether a scene equals the [`field`] of `count` spheres, to the bit. Allocates no memory.
 pub fn is_field(scene: &Scene, count: u64) -> bool {
     if !FIELD_COUNT_LIMITS.contains(&count) || scene.spheres.len() as u64 != count + 1 {
         return false;
@@ -53,9 +53,9 @@ pub fn is_field(scene: &Scene, count: u64) -> bool {
         && scene.spheres[1..].iter().copied().eq((0..count).map(|index| ground.sphere(index)))
 }
 
-/// What the spheres of a field stand on.
+/// The ground of a field.
 struct Ground {
-    /// Cells in a row.
+    /// Number of cells in a row.
     columns: u64,
     /// Half the field's side, scene units.
     half_width: f64,
@@ -67,12 +67,12 @@ impl Ground {
     fn of(count: u64) -> Self {
         let columns = (count as f64).sqrt().ceil() as u64;
         let half_width = 0.5 * CELL * columns as f64;
-        // So wide that the field is a gently curved part of it.
+        // The ground is so large that the field is only a gently curved part of it.
         let radius = (100.0 * half_width).max(1000.0);
         Ground { columns, half_width, radius, center: DVec3::new(0.0, -radius, 0.0) }
     }
 
-    /// All materials, and the ground alone.
+    /// A scene with all materials and only the ground.
     fn bare_scene(&self) -> Scene {
         let mut scene = Scene::default();
         let ground =
@@ -111,10 +111,10 @@ fn add_palette(scene: &mut Scene) {
     }
 }
 
-/// A material of the palette for a sphere at `(x, z)`: neighbours have colours of neighbouring hue.
+/// Index of a palette material for a sphere at `(x, z)`; nearby spheres have similar hues.
 fn palette_index(x: f64, z: f64, draws: &mut Draws) -> usize {
     let pick = |turn: f64, count: usize| ((turn.rem_euclid(1.0) * count as f64) as usize).min(count - 1);
-    // Triangle waves, not sines: the same bits on every machine.
+    // Triangle waves instead of sines, because they give the same bits on every machine.
     let wave = |position: f64, length: f64| (2.0 * (position / length).rem_euclid(1.0) - 1.0).abs();
     let patch = 0.6 * wave(x + 0.3 * z, 29.0) + 0.6 * wave(z - 0.4 * x, 41.0) + draws.within(-0.07, 0.07);
     match draws.unit() {

@@ -1,4 +1,4 @@
-//! Scenes that need no file, and the registry that finds them.
+//! The built-in scenes and their registry.
 
 mod book;
 mod chapters;
@@ -15,27 +15,27 @@ pub use field::{FIELD_COUNT_LIMITS, field, is_field};
 use super::{Camera, Scene};
 use std::fmt;
 
-/// A scene that is generated on demand, and the numbers that suit it.
+/// A scene that is generated on demand, with default render settings.
 #[derive(Clone, Copy)]
 pub struct BuiltinScene {
-    /// What the user calls it.
+    /// The name on the command line and in the window.
     pub name: &'static str,
-    /// One line about it.
+    /// A description in one line.
     pub about: &'static str,
-    /// Pixels across.
+    /// Default picture width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Default picture height in pixels.
     pub height: u32,
-    /// Samples per pixel.
+    /// Default samples per pixel.
     pub samples_per_pixel: u64,
-    /// Most rays of a path, the camera's included.
+    /// Default limit on rays per path, including the camera ray.
     pub max_depth: u32,
-    /// Makes the scene and the camera that looks at it. The same every time.
+    /// Creates the scene and its camera; the result is always the same.
     pub build: fn() -> (Scene, Camera),
 }
 
 impl BuiltinScene {
-    /// A [`field`] of the default size.
+    /// A [`field`] with the default number of spheres.
     pub const FIELD: BuiltinScene = BuiltinScene {
         name: "field",
         about: "ten thousand small spheres on a wide ground; field:N has N of them",
@@ -46,7 +46,7 @@ impl BuiltinScene {
         build: || field(10_000),
     };
 
-    /// All of them, the default first.
+    /// All built-in scenes, the default first.
     pub const ALL: &'static [BuiltinScene] = &[
         BuiltinScene {
             name: "three-spheres",
@@ -112,7 +112,7 @@ impl BuiltinScene {
         },
     ];
 
-    /// The scene of this name.
+    /// Finds the scene with this name.
     pub fn find(name: &str) -> Option<&'static BuiltinScene> {
         Self::ALL.iter().find(|scene| scene.name == name)
     }

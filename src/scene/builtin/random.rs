@@ -1,9 +1,9 @@
-//! Numbers for placing things: pure functions of what they are drawn for, the same on every machine.
+//! Random numbers for placing things: pure functions of their purpose, the same on every machine.
 
-/// Draws that belong to one thing (a cell of a grid, say) of one scene.
+/// The draws for one thing in a scene, such as a grid cell.
 ///
-/// SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators"), started at a
-/// place that the seed and the thing's index choose.
+/// SplitMix64 (Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators"), with a starting state
+/// that depends on the seed and the thing's index.
 pub(super) struct Draws {
     state: u64,
 }
@@ -31,7 +31,7 @@ fn mix(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-/// `x` to four decimals. Generated numbers are rounded so that a saved scene is short and can be read.
+/// Rounds `x` to four decimals, so that a saved scene is short and readable.
 pub(super) fn to_four_decimals(x: f64) -> f64 {
     (x * 1e4).round() / 1e4
 }

@@ -1,0 +1,33 @@
+//! Faults in the tracer while the window shows its picture.
+
+use crate::common::{has_samples, open, save, until};
+use weekender::film::{Film, checkpoint};
+use weekender::output::OutputFormat;
+
+const PICTURE: &str = "--stage defocus --size 48x27 --device cpu --samples 40";
+
+/// The film that the window saves at the end of the picture.
+fn film_of(flags: &str, message: Option<&str>) -> Film {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    let mut harness = open(&format!("{PICTURE} {flags}"));
+    if let Some(message) = message {
+        until(&mut harness, message, |window| window.messages().iter().any(|said| said.contains(message)));
+    }
+    until(&mut harness, "the end", |window| has_samples(40)(window) && window.status().phase.is_over());
+    save(&mut harness, OutputFormat::Exr, &path);
+    checkpoint::load(&path).unwrap().film
+}
+
+#[test]
+fn a_panic_of_the_tracer_is_reported_and_another_backend_finishes_the_picture() {
+    let whole = film_of("", None);
+    for tiles in [0, 9] {
+        let film = film_of(&format!("--simulate-panic {tiles}"), Some("panicked"));
+        assert_eq!((film.samples(), film.rejected()), (whole.samples(), 0), "{tiles} tiles before the panic");
+        // The backend that takes over may round otherwise, which sends a path in some thousands another way.
+        let mean = |film: &Film| (0..48 * 27).map(|pixel| film.mean(pixel)[0]).sum::<f64>() / (48.0 * 27.0);
+        let (found, expected) = (mean(&film), mean(&whole));
+        assert!((found - expected).abs() < 2e-4 * expected, "{tiles}: {found}, not {expected}");
+    }
+}
