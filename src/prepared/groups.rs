@@ -31,6 +31,9 @@ const CANDIDATE_LIMIT: usize = 64;
 /// length near the eye by this factor. At that ratio, rounding reaches `8e-6` of that length.
 const SHIFT_RATIO: f64 = 128.0;
 
+/// Spheres count as near the eye up to this many times the distance of the nearest one.
+const NEIGHBOUR_RATIO: f64 = 4.0;
+
 /// Spacing of the grid for that point, as a multiple of the length. On a grid, the point stays fixed for small
 /// movements of the eye.
 const GRID_RATIO: f64 = 256.0;
@@ -169,11 +172,13 @@ fn origin<'a>(spheres: impl Iterator<Item = &'a Sphere> + Clone, eye: &Eye) -> D
     let by_height = spheres.clone().map(|sphere| (eye.height(sphere).abs(), sphere));
     let Some((height, nearest)) = by_height.min_by(|a, b| a.0.total_cmp(&b.0)) else { return DVec3::ZERO };
     // Layers around or inside the nearest sphere count as lengths, too.
-    let layers = spheres.filter_map(|other| {
+    let layers = spheres.clone().filter_map(|other| {
         let gap = (other.radius - nearest.radius).abs() - other.center.distance(nearest.center);
         (gap > 0.0).then_some(gap)
     });
-    let length = layers.fold(height.min(nearest.radius), f64::min);
+    let neighbours = spheres.filter(|other| eye.height(other).abs() <= NEIGHBOUR_RATIO * height);
+    let lengths = layers.chain(neighbours.map(|other| other.radius));
+    let length = lengths.fold(height.min(nearest.radius), f64::min);
     let away = (eye.position - nearest.center).try_normalize().unwrap_or_default();
     let foot = if height == 0.0 { eye.position } else { nearest.center + away * nearest.radius };
     if foot.abs().max_element() <= SHIFT_RATIO * length {

@@ -455,6 +455,26 @@ fn small_balls_near_the_origin_are_where_they_are() {
     assert!(found.bias.abs() < 4e-6, "{found:?}");
 }
 
+/// What the eye is nearest to need not be what it looks at.
+#[test]
+fn a_small_ball_beside_a_larger_one_is_where_it_is() {
+    let small = DVec3::new(0.014_095_8, 0.034_369_6, 0.036_614_1);
+    let scene = Scene {
+        sky: Sky { bottom: DVec3::ZERO, top: DVec3::new(0.5, 1.0, 2.0) },
+        ..scene(&[(DVec3::new(0.013, 0.035, 0.036), 5e-4, lambertian(0.5)), (small, 7e-5, mirror(0.5))])
+    };
+    let look_from = DVec3::new(0.013, 0.034, 0.037);
+    let settings = RenderSettings { max_depth: 2, ..size(16, 12) };
+    for shift in [DVec3::ZERO, DVec3::new(0.007_812_5, -0.015_625, 0.003_906_25)] {
+        let mut scene = scene.clone();
+        scene.spheres.iter_mut().for_each(|sphere| sphere.center += shift);
+        let look_at = DVec3::new(0.014_09, 0.034_355, 0.036_626) + shift;
+        let camera = Camera { look_from: look_from + shift, look_at, vfov_degrees: 1.0, ..Camera::BOOK };
+        let found = paired(&job(&scene, camera, settings), 256, &mut widest(), &mut reference());
+        assert!(found.bias.abs() < 4e-6, "{shift}: {found:?}");
+    }
+}
+
 /// Far balls: the normal at a hit has length 1, however coarsely the distance is rounded.
 #[test]
 fn specks_are_shaded_as_balls_are() {
