@@ -41,7 +41,7 @@ impl Show {
             Show::Picture => "picture",
             Show::Normals => "normals",
             Show::Albedo => "albedo",
-            Show::Bounces => "bounces per path",
+            Show::Bounces => "rays per path",
             Show::Error => "standard error",
             Show::Occupancy => "lane occupancy",
             Show::Difference => "difference to reference",
