@@ -37,6 +37,8 @@ pub struct SharedFile {
     held: SampleRanges,
     /// Samples that other runs have added.
     others: Option<Film>,
+    /// Those of them that `base` does not hold.
+    others_since: Option<Film>,
 }
 
 /// The result of saving a film.
@@ -60,6 +62,7 @@ impl SharedFile {
             base: None,
             held: SampleRanges::default(),
             others: None,
+            others_since: None,
         };
         place.note(Self::look_at(path));
         place
@@ -73,6 +76,7 @@ impl SharedFile {
     /// Remembers the file that was found.
     fn note(&mut self, found: Option<(Stamp, Option<File>)>) {
         (self.seen, self.base) = found.map_or((None, None), |(stamp, file)| (Some(stamp), file));
+        self.others_since = None;
     }
 
     /// The file at `path`, held open on systems where an open file can be replaced.
@@ -197,9 +201,11 @@ impl SharedFile {
                 told(&common)
             )
         })?;
-        match &mut self.others {
-            Some(others) => others.merge(&added).map_err(|error| error.to_string())?,
-            None => self.others = Some(added),
+        for others in [&mut self.others, &mut self.others_since] {
+            match others {
+                Some(others) => others.merge(&added).map_err(|error| error.to_string())?,
+                None => *others = Some(added.clone()),
+            }
         }
         (self.seen, self.may_replace) = (seen, true);
         Ok(Verdict::Added(format!(
@@ -209,12 +215,16 @@ impl SharedFile {
         )))
     }
 
-    /// The part of `theirs` that is not in the film both runs started from, if `common` is exactly that film.
+    /// The part of `theirs` that is neither in the film both runs started from nor known to be from other runs, if `common`
+    /// is exactly these two.
     fn without_base(&self, theirs: Film, common: &[Range<u64>]) -> Option<Film> {
         let mut file = self.base.as_ref()?;
         let length = file.metadata().ok()?.len();
         file.rewind().ok()?;
-        let base = checkpoint::read(BufReader::new(file), length, &self.path).ok()?.film;
+        let mut base = checkpoint::read(BufReader::new(file), length, &self.path).ok()?.film;
+        if let Some(others) = &self.others_since {
+            base.merge(others).ok()?;
+        }
         (base.samples().iter().eq(common.iter().cloned())).then(|| difference(theirs, &base)).flatten()
     }
 
@@ -400,6 +410,25 @@ mod tests {
         let saved = run.save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
         assert!(saved.is_elsewhere, "{saved:?}");
         assert_eq!(std::fs::read(&path).unwrap(), b"nor this");
+    }
+
+    /// Another run may write again between the first look at its samples and the lock.
+    #[test]
+    fn samples_that_come_in_two_turns_before_the_own_are_told_apart() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("g.exr");
+        put(&path, &[0..2]);
+        let mut place = SharedFile::new(&path);
+        let mine = film(&[0..2, 100..102]);
+        for theirs in [200..202, 200..204] {
+            put(&path, &[0..2, theirs]);
+            let joined = place.joined(&mine).unwrap().unwrap_or_else(|| mine.clone());
+            let verdict = place.consider(&joined, &Description::new("r"), &same);
+            assert!(matches!(verdict, Ok(Verdict::Added(_))));
+        }
+        let saved = place.save(&mine, &Description::new("r"), &same).unwrap();
+        assert!(!saved.is_elsewhere, "{saved:?}");
+        assert!(at(&path) == film(&[0..2, 100..102, 200..204]));
     }
 
     #[test]
