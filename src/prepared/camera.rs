@@ -11,12 +11,12 @@ impl<R: Real> CameraTable<R> {
         let basis = camera.basis();
         let half_height = (camera.vfov_degrees.to_radians() / 2.0).tan();
         let half_width = half_height * f64::from(width) / f64::from(height);
-        let tau = (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
+        let tau = camera.defocus_tangent();
         CameraTable {
             eye: rounded(camera.look_from - origin),
             tau: R::from_f64(tau),
             u: rounded(basis.u),
-            lens_radius: R::from_f64(camera.effective_focus_distance() * tau),
+            lens_radius: R::from_f64(camera.lens_radius()),
             v: rounded(basis.v),
             scale_x: R::from_f64(2.0 * half_width / f64::from(width)),
             w: rounded(basis.w),

@@ -22,8 +22,9 @@ const DISTANCE_UNITS: f64 = 4.0;
 /// surface first is then hardly longer.
 const CLOSING_RATIO: f64 = 100.0;
 
-/// The same limit where one side is glass: a path that misses its exit from the glass becomes a different path.
-const GLASS_CLOSING_RATIO: f64 = 1e4;
+/// The same limit where paths can be inside one of the spheres, which is glass or around the eye: a path that misses its
+/// way out of glass, or gets out of an opaque sphere, becomes a different path.
+const TRAPPING_CLOSING_RATIO: f64 = 1e4;
 
 /// In cells of up to this many spheres, all pairs are compared; in fuller cells, each sphere only with the next larger
 /// one.
@@ -180,7 +181,11 @@ fn unresolved(layer: Layer, job: &RenderJob, origin: DVec3) -> Option<Unresolved
     });
     let limit = limits[0].max(limits[1]);
     let is_glass = |sphere: &Sphere| matches!(job.scene().material_of(sphere), Material::Dielectric { .. });
-    let ratio = if spheres.iter().any(is_glass) { GLASS_CLOSING_RATIO } else { CLOSING_RATIO };
+    // The margin is far above what rounding can move the eye by.
+    let reach = |sphere: &Sphere| sphere.radius * (1.0 + 1e-5) + job.camera().lens_radius();
+    let has_inside =
+        |sphere: &Sphere| is_glass(sphere) || sphere.center.distance(job.camera().look_from) <= reach(sphere);
+    let ratio = if spheres.iter().any(has_inside) { TRAPPING_CLOSING_RATIO } else { CLOSING_RATIO };
     let is_thin = layer.thickness < limit;
     let closes = layer.opening < limit && layer.thickness < ratio * limit;
     (is_thin || closes).then_some(Unresolved { layer, limit })

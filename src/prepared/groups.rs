@@ -79,8 +79,7 @@ struct Eye {
 
 impl Eye {
     fn of(camera: &Camera) -> Self {
-        let tangent = (camera.defocus_angle_degrees.to_radians() / 2.0).tan();
-        Eye { position: camera.look_from, lens_radius: camera.effective_focus_distance() * tangent }
+        Eye { position: camera.look_from, lens_radius: camera.lens_radius() }
     }
 
     /// Distance to the surface: negative inside, 0 if it is within rounding of 0.

@@ -119,6 +119,16 @@ impl Camera {
         self.focus_distance.unwrap_or_else(|| self.look_from.distance(self.look_at))
     }
 
+    /// Tangent of half the defocus angle: the radius of the lens at a focus distance of 1.
+    pub fn defocus_tangent(&self) -> f64 {
+        (self.defocus_angle_degrees.to_radians() / 2.0).tan()
+    }
+
+    /// Rays start within this distance of `look_from`, scene units.
+    pub fn lens_radius(&self) -> f64 {
+        self.effective_focus_distance() * self.defocus_tangent()
+    }
+
     /// The camera's frame, orthonormal to the precision of `f64` for every valid camera.
     pub fn basis(&self) -> CameraBasis {
         let w = unit(self.look_from - self.look_at);

@@ -404,6 +404,23 @@ fn layers_without_a_warning_are_right() {
     }
 }
 
+/// Paths that start between two opaque balls stay there, unless rounding lets them out where the surfaces cross.
+#[test]
+fn crossing_balls_around_the_eye_are_told() {
+    let balls =
+        |by: f64| [(DVec3::ZERO, 1.0, lambertian(1.0)), (DVec3::new(by, 0.0, 0.0), 1.0, lambertian(1.0))];
+    let is_told = |height: f64, defocus_angle_degrees: f64| {
+        let look_from = DVec3::Y * (1.0 + height);
+        let camera = Camera { look_from, look_at: DVec3::ZERO, defocus_angle_degrees, ..Camera::BOOK };
+        !PreparedScene::<f32>::new(&job(&under_white_sky(&balls(4.5e-3)), camera, size(2, 2)))
+            .warnings()
+            .is_empty()
+    };
+    assert!(is_told(-0.5, 0.0), "within");
+    assert!(is_told(1e-3, 1.0), "on the surface, with a lens");
+    assert!(!is_told(0.5, 1.0), "outside, where no path is between them");
+}
+
 /// From afar a coat and what it coats have one distance, though both are small and their coordinates have digits to spare.
 #[test]
 fn coats_seen_from_afar_are_told_or_right() {

@@ -2,7 +2,7 @@
 
 use crate::film::Film;
 use crate::recipe::Recipe;
-use crate::scene::{Material, Scene};
+use crate::scene::{Material, Scene, Sphere};
 use crate::stress::backend::{Backend, Traced};
 use crate::stress::families::build::moved;
 use crate::stress::far::with_far_spheres;
@@ -160,7 +160,7 @@ impl Pair {
             }
             Check::Hierarchy => [recipe.clone(), with_far_spheres(recipe, extent(recipe))],
             Check::Scaling => [recipe.clone(), moved(recipe, 4.0, DVec3::ZERO)],
-            Check::Translation => there_and_back(recipe),
+            Check::Translation => there_and_back(recipe)?,
             Check::Copies => [recipe.clone(), without_copies(recipe)?],
         };
         one.job().ok()?;
@@ -204,13 +204,17 @@ impl Checker {
     }
 }
 
-/// The scene moved away, and that one moved back: the digits that the way costs are lost in both.
-fn there_and_back(recipe: &Recipe) -> [Recipe; 2] {
+/// The scene moved away, and that one moved back: the digits that the way costs are lost in both. `None` where they are
+/// all that tells on which side of a surface the eye is.
+fn there_and_back(recipe: &Recipe) -> Option<[Recipe; 2]> {
     // A power of two, so that places keep their digits.
     let length = extent(recipe).log2().round().exp2();
     let way = length * DVec3::new(4.0, -8.0, 2.0);
     let there = moved(recipe, 1.0, way);
-    [moved(&there, 1.0, -way), there]
+    let rounding = 32.0 * f64::EPSILON * way.abs().max_element();
+    let eye = recipe.camera.look_from;
+    let is_clear = |s: &Sphere| (s.center.distance(eye) - s.radius).abs() > rounding;
+    recipe.scene.spheres.iter().all(is_clear).then(|| [moved(&there, 1.0, -way), there])
 }
 
 /// The length within which the scene lies about the eye, but for what is much larger.
@@ -269,6 +273,17 @@ mod tests {
         let book = by_the_book(&moved(&small, 0.003, DVec3::ZERO));
         let reason = checker.fails(Check::Scaling, &book, &go_on);
         assert!(reason.is_some_and(|reason| reason.starts_with("cpu: ")), "scaling");
+    }
+
+    #[test]
+    fn a_scene_is_not_moved_so_far_that_its_eye_changes_sides() {
+        assert!(there_and_back(&tame()).is_some());
+        let mut near = one_ball();
+        let ball = near.scene.spheres[0];
+        near.camera.look_from = ball.center + DVec3::Y * ball.radius * (1.0 + 1e-9);
+        assert!(there_and_back(&near).is_some());
+        near.camera.look_at = near.camera.look_from + DVec3::X * 1e7 * ball.radius;
+        assert!(there_and_back(&near).is_none());
     }
 
     #[test]
