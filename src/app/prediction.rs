@@ -44,11 +44,13 @@ pub fn prediction_label(status: &Status, target: Option<f64>) -> Option<String> 
     Some(format!("RMSE {} {}", target?, prediction_words(&prediction)))
 }
 
-/// Text such as "in about 38 s (33 to 44)".
+/// Text such as "in about 38 s (33 to 44)". A range that rounds to one number is left out.
 pub fn prediction_words(prediction: &Prediction) -> String {
     let [low, high] = prediction.range;
     let about = whole(prediction.time);
-    if high < FARTHEST {
+    if high < FARTHEST && whole(low) == whole(high) {
+        format!("in about {about} s")
+    } else if high < FARTHEST {
         format!("in about {about} s ({} to {})", whole(low), whole(high))
     } else {
         format!("in about {about} s ({} or more)", whole(low))
@@ -70,6 +72,13 @@ mod tests {
     fn a_prediction_without_an_end_says_so() {
         let prediction = Prediction { time: 38.0, range: [31.0, f64::INFINITY] };
         assert_eq!(prediction_words(&prediction), "in about 38 s (31 or more)");
+    }
+
+    #[test]
+    fn a_range_of_one_number_is_left_out() {
+        let words = |range| prediction_words(&Prediction { time: 0.8, range });
+        assert_eq!(words([0.7, 0.9]), "in about 1 s");
+        assert_eq!(words([0.7, 1.9]), "in about 1 s (1 to 2)");
     }
 
     #[test]
