@@ -6,7 +6,7 @@ use divan::counter::ItemsCount;
 use glam::DVec3;
 use weekender::prepared::hierarchy::Hierarchy;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
-use weekender::render_cpu::lanes::Lanes;
+use weekender::render_cpu::lanes::{Lanes, Mask, Unsigned};
 use weekender::render_cpu::sphere::Nearest;
 use weekender::scene::Sphere;
 use weekender::scene::builtin::field;
@@ -63,7 +63,7 @@ impl Body for Traverse {
             traverse(l, &self.hierarchy, &self.spheres, &rays, all, &mut stack, &mut nearest);
             found = found ^ nearest.sphere;
         }
-        L::bits(L::eq_u(found, l.splat_u(0)))
+        found.eq(l.splat_u(0)).bits()
     }
 }
 

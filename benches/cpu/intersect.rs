@@ -4,7 +4,7 @@ use crate::widths::{Body, COUNT, Vectors, rays, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use weekender::kernel::{AnchoredSphere, Roots};
-use weekender::render_cpu::lanes::Lanes;
+use weekender::render_cpu::lanes::{Lanes, Mask, Unsigned};
 use weekender::render_cpu::sphere::{
     BroadcastSphere, Nearest, Spheres, anchored_root, book_root, near_root, nearest_root,
 };
@@ -67,7 +67,7 @@ impl Body for Intersect {
             }
             found = found ^ nearest.sphere;
         }
-        L::bits(L::eq_u(found, l.splat_u(0)))
+        found.eq(l.splat_u(0)).bits()
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::widths::{Body, COUNT, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use weekender::render_cpu::lanes::Lanes;
+use weekender::render_cpu::lanes::{Lanes, Mask, Unsigned};
 use weekender::render_cpu::rng::{pcg4d, sobol_pair};
 
 /// A pair of Sobol coordinates for each of [`COUNT`] rays.
@@ -18,7 +18,7 @@ impl Body for Sobol {
             let [u, v] = sobol_pair(l, counter, sum);
             sum = sum + (u ^ v);
         }
-        L::bits(L::eq_u(sum, l.splat_u(0)))
+        sum.eq(l.splat_u(0)).bits()
     }
 }
 
@@ -34,7 +34,7 @@ impl Body for Independent {
             let [a, b, c, d] = pcg4d(l, [counter, sum, l.splat_u(3), l.splat_u(7)]);
             sum = sum + (a ^ b ^ c ^ d);
         }
-        L::bits(L::eq_u(sum, l.splat_u(0)))
+        sum.eq(l.splat_u(0)).bits()
     }
 }
 

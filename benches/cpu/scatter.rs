@@ -3,7 +3,7 @@
 use crate::widths::{Body, COUNT, Vectors, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use weekender::render_cpu::lanes::{Lanes, V3, dot};
+use weekender::render_cpu::lanes::{Float, Lanes, Mask, V3};
 use weekender::render_cpu::material::{Surface, incidence_of, scatter};
 use weekender::stages::DielectricLaws;
 
@@ -35,8 +35,8 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
         for first in (0..COUNT).step_by(L::WIDTH) {
             let (mut direction, coin) = self.directions.load(l, first);
             let (normal, kind) = self.normals.load(l, first);
-            let is_glass = L::lt(kind, l.constant(if GLASS { 0.3 } else { 0.0 }));
-            let index = L::select(is_glass, l.constant(1.5), zero);
+            let is_glass = kind.lt(l.constant(if GLASS { 0.3 } else { 0.0 }));
+            let index = is_glass.select(l.constant(1.5), zero);
             let surface = Surface {
                 weight: kind - l.constant(0.6),
                 refraction_index: index,
@@ -45,9 +45,9 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
             };
             let (unit, _) = self.units.load(l, first);
             for _ in 0..BOUNCES {
-                let cosine = dot::<L>(direction, normal);
-                let front = L::lt(cosine, zero);
-                let cosine = L::min(L::abs(cosine), l.constant(1.0));
+                let cosine = direction.dot(normal);
+                let front = cosine.lt(zero);
+                let cosine = cosine.abs().min(l.constant(1.0));
                 let laws = DielectricLaws::Schlick;
                 let found = scatter::<L, GLASS>(
                     l,
@@ -64,7 +64,7 @@ impl<const GLASS: bool> Body for Scatter<GLASS> {
             }
             sum = sum + direction;
         }
-        L::bits(L::lt(sum.x + sum.y, sum.z))
+        (sum.x + sum.y).lt(sum.z).bits()
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Twin: shaders/bvh.wgsl
 
-use super::lanes::{Lanes, V3, splat3};
+use super::lanes::{Float, Lanes, Mask, V3, splat3};
 use super::sphere::{Nearest, Rays, Spheres, near_root, nearest_root};
 use crate::kernel::{BOX_MARGIN, BOX_WIDENING, COUNT_MASK, LEAST_COMPONENT, Node, Real, STACK_SIZE};
 use crate::prepared::hierarchy::Hierarchy;
@@ -25,7 +25,7 @@ pub struct Slabs<L: Lanes> {
 #[inline(always)]
 pub fn slabs_of<L: Lanes>(l: L, rays: &Rays<L>, extent: L::Real) -> Slabs<L> {
     let o = rays.origin;
-    let size = L::max(L::max(L::abs(o.x), L::abs(o.y)), L::max(L::abs(o.z), l.splat(extent)));
+    let size = o.x.abs().max(o.y.abs()).max(o.z.abs().max(l.splat(extent)));
     let margin = size * l.constant(BOX_MARGIN);
     let inverse = V3 {
         x: inverse_of(l, rays.direction.x),
@@ -40,22 +40,22 @@ pub fn slabs_of<L: Lanes>(l: L, rays: &Rays<L>, extent: L::Real) -> Slabs<L> {
 #[inline(always)]
 fn inverse_of<L: Lanes>(l: L, d: L::F) -> L::F {
     let least = l.constant(LEAST_COMPONENT);
-    let size = L::max(L::abs(d), least);
-    L::copysign(l.constant(1.0) / size, d)
+    let size = d.abs().max(least);
+    (l.constant(1.0) / size).copysign(d)
 }
 
 /// Returns the lanes whose ray meets the box before distance `limit`.
 #[inline(always)]
 pub fn meets_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit: L::F) -> L::M {
     let (low, high) = (splat3(l, node.low), splat3(l, node.high));
-    let at = |corner: L::F, inverse: L::F, origin: L::F| L::mul_add(corner, inverse, -origin);
+    let at = |corner: L::F, inverse: L::F, origin: L::F| corner.mul_add(inverse, -origin);
     let (x0, x1) = (at(low.x, slabs.inverse.x, slabs.low.x), at(high.x, slabs.inverse.x, slabs.high.x));
     let (y0, y1) = (at(low.y, slabs.inverse.y, slabs.low.y), at(high.y, slabs.inverse.y, slabs.high.y));
     let (z0, z1) = (at(low.z, slabs.inverse.z, slabs.low.z), at(high.z, slabs.inverse.z, slabs.high.z));
-    let enter = L::max(L::max(L::min(x0, x1), L::min(y0, y1)), L::max(L::min(z0, z1), l.constant(0.0)));
-    let leave = L::min(L::min(L::max(x0, x1), L::max(y0, y1)), L::min(L::max(z0, z1), limit));
+    let enter = x0.min(x1).max(y0.min(y1)).max(z0.min(z1).max(l.constant(0.0)));
+    let leave = x0.max(x1).min(y0.max(y1)).min(z0.max(z1).min(limit));
     // The factor covers the rounding of the distances themselves.
-    !L::lt(leave * l.constant(BOX_WIDENING), enter)
+    !(leave * l.constant(BOX_WIDENING)).lt(enter)
 }
 
 /// Updates `nearest` with the nearest hits among the spheres of a hierarchy. Results matter only for `active` lanes.
@@ -70,14 +70,13 @@ pub fn traverse<L: Lanes>(
     nearest: &mut Nearest<L>,
 ) {
     let slabs = slabs_of(l, rays, hierarchy.extent);
-    let forward = [rays.direction.x, rays.direction.y, rays.direction.z].map(|d| {
-        2 * L::bits(L::lt(l.constant(0.0), d) & active).count_ones() >= L::bits(active).count_ones()
-    });
+    let forward = [rays.direction.x, rays.direction.y, rays.direction.z]
+        .map(|d| 2 * (l.constant(0.0).lt(d) & active).bits().count_ones() >= active.bits().count_ones());
     let mut limit = nearest.distance();
     let (mut index, mut depth) = (0, 0);
     loop {
         let node = &hierarchy.nodes[index as usize];
-        if L::bits(meets_box(l, &slabs, node, limit) & active) != 0 {
+        if (meets_box(l, &slabs, node, limit) & active).bits() != 0 {
             let count = node.count & COUNT_MASK;
             if count == 0 {
                 let ascending = node.count & (1 << 29) == 0;

@@ -2,7 +2,7 @@
 //!
 //! Twin: shaders/camera.wgsl
 
-use super::lanes::{Lanes, V3, Wide, load3, mul_add3};
+use super::lanes::{Float, Lanes, V3, Wide, load3};
 use crate::kernel::CameraTable;
 
 /// Where a ray starts and its direction, which is not normalised.
@@ -17,8 +17,8 @@ pub struct CameraRays<L: Lanes> {
 #[inline(always)]
 pub fn screen<L: Lanes>(l: L, camera: &CameraTable<Wide<L::Real>>, x: L::F, y: L::F) -> [L::F; 2] {
     [
-        L::mul_add(x, l.load(&camera.scale_x), l.load(&camera.offset[0])),
-        L::mul_add(y, l.load(&camera.scale_y), l.load(&camera.offset[1])),
+        x.mul_add(l.load(&camera.scale_x), l.load(&camera.offset[0])),
+        y.mul_add(l.load(&camera.scale_y), l.load(&camera.offset[1])),
     ]
 }
 
@@ -30,8 +30,8 @@ pub fn pinhole_ray<L: Lanes>(
     screen: [L::F; 2],
     jitter: [L::F; 2],
 ) -> CameraRays<L> {
-    let sx = L::mul_add(jitter[0], l.load(&camera.scale_x), screen[0]);
-    let sy = L::mul_add(jitter[1], l.load(&camera.scale_y), screen[1]);
+    let sx = jitter[0].mul_add(l.load(&camera.scale_x), screen[0]);
+    let sy = jitter[1].mul_add(l.load(&camera.scale_y), screen[1]);
     CameraRays { origin: load3(l, &camera.eye), direction: through(l, camera, sx, sy) }
 }
 
@@ -45,20 +45,15 @@ pub fn lens_ray<L: Lanes>(
     on_lens: [L::F; 2],
 ) -> CameraRays<L> {
     let (tau, radius) = (l.load(&camera.tau), l.load(&camera.lens_radius));
-    let sx = L::mul_add(jitter[0], l.load(&camera.scale_x), screen[0]);
-    let sy = L::mul_add(jitter[1], l.load(&camera.scale_y), screen[1]);
-    let direction =
-        through(l, camera, L::neg_mul_add(tau, on_lens[0], sx), L::neg_mul_add(tau, on_lens[1], sy));
-    let origin = mul_add3::<L>(load3(l, &camera.u), radius * on_lens[0], load3(l, &camera.eye));
-    CameraRays { origin: mul_add3::<L>(load3(l, &camera.v), radius * on_lens[1], origin), direction }
+    let sx = jitter[0].mul_add(l.load(&camera.scale_x), screen[0]);
+    let sy = jitter[1].mul_add(l.load(&camera.scale_y), screen[1]);
+    let direction = through(l, camera, tau.neg_mul_add(on_lens[0], sx), tau.neg_mul_add(on_lens[1], sy));
+    let origin = load3(l, &camera.u).mul_add(radius * on_lens[0], load3(l, &camera.eye));
+    CameraRays { origin: load3(l, &camera.v).mul_add(radius * on_lens[1], origin), direction }
 }
 
 #[inline(always)]
 fn through<L: Lanes>(l: L, camera: &CameraTable<Wide<L::Real>>, sx: L::F, sy: L::F) -> V3<L::F> {
     let (u, v, w) = (load3(l, &camera.u), load3(l, &camera.v), load3(l, &camera.w));
-    mul_add3::<L>(
-        u,
-        sx,
-        V3 { x: L::mul_sub(v.x, sy, w.x), y: L::mul_sub(v.y, sy, w.y), z: L::mul_sub(v.z, sy, w.z) },
-    )
+    u.mul_add(sx, V3 { x: v.x.mul_sub(sy, w.x), y: v.y.mul_sub(sy, w.y), z: v.z.mul_sub(sy, w.z) })
 }

@@ -6,7 +6,7 @@
 //!
 //! Twin: shaders/material.wgsl
 
-use super::lanes::{Lanes, V3, dot, mul_add3, neg_mul_add3};
+use super::lanes::{Float, Lanes, Mask, V3};
 use crate::kernel::LoadShading;
 use crate::stages::DielectricLaws;
 
@@ -60,15 +60,15 @@ pub struct Incidence<L: Lanes> {
 #[inline(always)]
 pub fn incidence_of<L: Lanes>(l: L, outward_cosine: L::F) -> Incidence<L> {
     let one = l.constant(1.0);
-    let cosine = L::min(one, L::abs(outward_cosine));
-    Incidence { cosine, sine2: L::neg_mul_add(cosine, cosine, one) }
+    let cosine = one.min(outward_cosine.abs());
+    Incidence { cosine, sine2: cosine.neg_mul_add(cosine, one) }
 }
 
 /// Computes the incidence from the squared sine, which rounding can push above 1.
 #[inline(always)]
 pub fn incidence_of_sine2<L: Lanes>(l: L, sine2: L::F) -> Incidence<L> {
-    let sine2 = L::min(l.constant(1.0), sine2);
-    Incidence { cosine: L::sqrt(l.constant(1.0) - sine2), sine2 }
+    let sine2 = l.constant(1.0).min(sine2);
+    Incidence { cosine: (l.constant(1.0) - sine2).sqrt(), sine2 }
 }
 
 /// Scatters at a mirror, metal or Lambertian surface, or at a dielectric if `GLASS` is set.
@@ -88,40 +88,40 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
 ) -> Scatter<L> {
     let (zero, one) = (l.constant(0.0), l.constant(1.0));
     let &Incidence { cosine, sine2 } = incidence;
-    let reflects = L::is_negative(surface.weight);
-    let mut along = L::select(reflects, one, zero);
-    let mut across = L::select(reflects, cosine + cosine, one);
+    let reflects = surface.weight.is_negative();
+    let mut along = reflects.select(one, zero);
+    let mut across = reflects.select(cosine + cosine, one);
     let mut refracts = l.mask(0);
     let mut is_metal = reflects;
     let mut ratio = one;
     if GLASS {
-        let is_glass = L::lt(zero, surface.refraction_index);
-        ratio = L::select(front, surface.inverse_index, surface.refraction_index);
+        let is_glass = zero.lt(surface.refraction_index);
+        ratio = front.select(surface.inverse_index, surface.refraction_index);
         // Squared sine of the refraction angle: above 1, Snell's law has no solution.
         let refracted_sine2 = ratio * ratio * sine2;
         let mut kept = is_glass;
         if laws != DielectricLaws::RefractOnly {
-            kept = kept & !L::lt(one, refracted_sine2);
+            kept = kept & !one.lt(refracted_sine2);
         }
         if laws == DielectricLaws::Schlick {
-            kept = kept & !L::lt(coin, reflectance(l, cosine, surface.f0));
+            kept = kept & !coin.lt(reflectance(l, cosine, surface.f0));
         }
-        let inner_cosine = L::sqrt(L::abs(one - refracted_sine2));
+        let inner_cosine = (one - refracted_sine2).abs().sqrt();
         refracts = kept;
-        along = L::select(refracts, ratio, along);
-        across = L::select(refracts, L::mul_add(ratio, cosine, -inner_cosine), across);
+        along = refracts.select(ratio, along);
+        across = refracts.select(ratio.mul_add(cosine, -inner_cosine), across);
         is_metal = is_metal & !is_glass;
     }
-    let smooth = mul_add3::<L>(direction, along, normal.scale(across));
-    Scatter { direction: mul_add3::<L>(unit, L::abs(surface.weight), smooth), refracts, is_metal, ratio }
+    let smooth = direction.mul_add(along, normal.scale(across));
+    Scatter { direction: unit.mul_add(surface.weight.abs(), smooth), refracts, is_metal, ratio }
 }
 
 /// The refracted direction, not normalised, from the part of the incoming direction `across` the normal. This form
 /// keeps its precision where the usual form subtracts large numbers.
 #[inline(always)]
 pub fn refracted<L: Lanes>(l: L, across: V3<L::F>, normal: V3<L::F>, ratio: L::F, sine2: L::F) -> V3<L::F> {
-    let inner_cosine = L::sqrt(L::abs(l.constant(1.0) - ratio * ratio * sine2));
-    neg_mul_add3::<L>(normal, inner_cosine, across.scale(ratio))
+    let inner_cosine = (l.constant(1.0) - ratio * ratio * sine2).abs().sqrt();
+    normal.neg_mul_add(inner_cosine, across.scale(ratio))
 }
 
 /// Schlick's approximation of the reflectance. (Section 11.4.)
@@ -130,11 +130,11 @@ pub fn reflectance<L: Lanes>(l: L, cosine: L::F, f0: L::F) -> L::F {
     let one = l.constant(1.0);
     let x = one - cosine;
     let x2 = x * x;
-    L::mul_add(one - f0, x2 * x2 * x, f0)
+    (one - f0).mul_add(x2 * x2 * x, f0)
 }
 
 /// A uniform direction on the side of `normal`, as in the first diffuse stage. (Section 9.1.)
 #[inline(always)]
 pub fn hemisphere<L: Lanes>(l: L, normal: V3<L::F>, unit: V3<L::F>) -> V3<L::F> {
-    unit.scale(L::copysign(l.constant(1.0), dot::<L>(unit, normal)))
+    unit.scale(l.constant(1.0).copysign(unit.dot(normal)))
 }

@@ -9,9 +9,9 @@ use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK};
 /// Hashes 32 bits to 32 bits; a bijection.
 #[inline(always)]
 pub fn mix32<L: Lanes>(l: L, x: L::U) -> L::U {
-    let x = (x ^ L::shr(x, 16)) * l.splat_u(0x7FEB_352D);
-    let x = (x ^ L::shr(x, 15)) * l.splat_u(0x846C_A68B);
-    x ^ L::shr(x, 16)
+    let x = (x ^ (x >> 16)) * l.splat_u(0x7FEB_352D);
+    let x = (x ^ (x >> 15)) * l.splat_u(0x846C_A68B);
+    x ^ (x >> 16)
 }
 
 /// Hashes four numbers to four numbers.
@@ -19,12 +19,7 @@ pub fn mix32<L: Lanes>(l: L, x: L::U) -> L::U {
 pub fn pcg4d<L: Lanes>(l: L, v: [L::U; 4]) -> [L::U; 4] {
     let (a, c) = (l.splat_u(1_664_525), l.splat_u(1_013_904_223));
     let v = stir::<L>([v[0] * a + c, v[1] * a + c, v[2] * a + c, v[3] * a + c]);
-    stir::<L>([
-        v[0] ^ L::shr(v[0], 16),
-        v[1] ^ L::shr(v[1], 16),
-        v[2] ^ L::shr(v[2], 16),
-        v[3] ^ L::shr(v[3], 16),
-    ])
+    stir::<L>([v[0] ^ (v[0] >> 16), v[1] ^ (v[1] >> 16), v[2] ^ (v[2] >> 16), v[3] ^ (v[3] >> 16)])
 }
 
 #[inline(always)]
@@ -40,7 +35,7 @@ fn stir<L: Lanes>([x, y, z, w]: [L::U; 4]) -> [L::U; 4] {
 pub fn laine_karras<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
     let x = x ^ (x * l.splat_u(0x3D20_ADEA));
     let x = x + seed;
-    let x = x * (L::shr(seed, 16) | l.splat_u(1));
+    let x = x * ((seed >> 16) | l.splat_u(1));
     let x = x ^ (x * l.splat_u(0x0552_6C56));
     x ^ (x * l.splat_u(0x53A2_2864))
 }
@@ -48,11 +43,11 @@ pub fn laine_karras<L: Lanes>(l: L, x: L::U, seed: L::U) -> L::U {
 /// Computes the second Sobol coordinate from the first.
 #[inline(always)]
 pub fn pascal<L: Lanes>(l: L, u: L::U) -> L::U {
-    let u = u ^ L::shl(u, 16);
-    let u = u ^ L::shl(u & l.splat_u(0x00FF_00FF), 8);
-    let u = u ^ L::shl(u & l.splat_u(0x0F0F_0F0F), 4);
-    let u = u ^ L::shl(u & l.splat_u(0x3333_3333), 2);
-    u ^ L::shl(u & l.splat_u(0x5555_5555), 1)
+    let u = u ^ (u << 16);
+    let u = u ^ ((u & l.splat_u(0x00FF_00FF)) << 8);
+    let u = u ^ ((u & l.splat_u(0x0F0F_0F0F)) << 4);
+    let u = u ^ ((u & l.splat_u(0x3333_3333)) << 2);
+    u ^ ((u & l.splat_u(0x5555_5555)) << 1)
 }
 
 /// A pair of Sobol coordinates. `counter` is the reversed sample index; `stream` selects the block of dimensions and is

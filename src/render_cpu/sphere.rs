@@ -2,7 +2,7 @@
 //!
 //! Twin: shaders/sphere.wgsl
 
-use super::lanes::{Lanes, V3, Wide, WideU, dot, load3, mul_add3, neg_mul_add3, splat3};
+use super::lanes::{Float, Key, Lanes, Mask, Unsigned, V3, Wide, WideU, load3, splat3};
 use crate::kernel::{AnchoredSphere, Roots};
 pub use crate::kernel::{EYE, NONE};
 
@@ -87,15 +87,15 @@ impl<L: Lanes> Nearest<L> {
     /// Takes `key` where it is nearer. Of two spheres at the same distance, the one taken first stays.
     #[inline(always)]
     pub fn take(&mut self, key: L::Key, sphere: L::U) {
-        self.sphere = L::select_u(L::lt_key(key, self.key), sphere, self.sphere);
-        self.key = L::min_key(self.key, key);
+        self.sphere = key.lt(self.key).select(sphere, self.sphere);
+        self.key = self.key.min(key);
     }
 
     /// Takes `key` where it is nearer, for searches in any order: of two spheres at the same distance, the one of lower
     /// rank stays. `ranks` holds the ranks of the spheres from number 0 on. Results matter only for `active` lanes.
     #[inline(always)]
     pub fn take_in_any_order(&mut self, l: L, key: L::Key, sphere: u32, ranks: &[u32], active: L::M) {
-        let tied = L::bits(L::eq_key(key, self.key) & active);
+        let tied = (key.eq(self.key) & active).bits();
         self.take(key, l.splat_u(sphere));
         if tied != 0 {
             self.settle(l, tied, sphere, ranks);
@@ -132,32 +132,32 @@ impl<L: Lanes> Nearest<L> {
 #[inline(always)]
 fn chord<L: Lanes>(rays: &Rays<L>, sphere: &Spheres<L>) -> (L::F, L::F) {
     let g = rays.origin - sphere.center;
-    let h = dot::<L>(rays.direction, g);
-    let across = neg_mul_add3::<L>(rays.direction, h, g);
-    let d = L::neg_mul_add(across.z, across.z, sphere.radius2);
-    let d = L::neg_mul_add(across.y, across.y, d);
-    let d = L::neg_mul_add(across.x, across.x, d);
-    (h, L::sqrt(d))
+    let h = rays.direction.dot(g);
+    let across = rays.direction.neg_mul_add(h, g);
+    let d = across.z.neg_mul_add(across.z, sphere.radius2);
+    let d = across.y.neg_mul_add(across.y, d);
+    let d = across.x.neg_mul_add(across.x, d);
+    (h, d.sqrt())
 }
 
 /// Distance to a sphere that no ray is inside of.
 #[inline(always)]
 pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
     let (h, s) = chord(rays, sphere);
-    l.exclude(L::eq_u(rays.left, sphere.number), L::key(h + s))
+    l.exclude(rays.left.eq(sphere.number), L::key(h + s))
 }
 
 /// Distance to a sphere from inside or outside.
 #[inline(always)]
 pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
     let (h, s) = chord(rays, sphere);
-    let leaves = L::eq_u(rays.left, sphere.number);
-    let enters = L::eq_u(rays.inside, sphere.number);
+    let leaves = rays.left.eq(sphere.number);
+    let enters = rays.inside.eq(sphere.number);
     let near = l.exclude(enters, L::key(h + s));
     // A ray that enters the sphere from its surface travels the chord 2h. The negation comes last, so that a chord of
     // length 0 is a hit at -0.
-    let far = L::key(-(L::select(enters, L::abs(h), s) - h));
-    l.exclude(leaves, L::min_key(near, far))
+    let far = L::key(-(enters.select(h.abs(), s) - h));
+    l.exclude(leaves, near.min(far))
 }
 
 /// Distance to an anchored sphere. Everything is measured from the anchor, so no number is as large as the radius. As
@@ -174,35 +174,35 @@ pub fn anchored_root<L: Lanes>(
     let k = l.splat(sphere.curvature);
     let two = l.constant(2.0);
     let x = rays.origin - splat3(l, sphere.anchor);
-    let (x_along, m_along) = (dot::<L>(x, d), dot::<L>(m, d));
-    let (x_across, m_across) = (neg_mul_add3::<L>(d, x_along, x), neg_mul_add3::<L>(d, m_along, m));
-    let b = L::neg_mul_add(k, x_along, m_along);
-    let c = L::neg_mul_add(two, dot::<L>(x, m), k * dot::<L>(x, x));
-    let bend = L::neg_mul_add(two, dot::<L>(x_across, m_across), k * dot::<L>(x_across, x_across));
+    let (x_along, m_along) = (x.dot(d), m.dot(d));
+    let (x_across, m_across) = (d.neg_mul_add(x_along, x), d.neg_mul_add(m_along, m));
+    let b = k.neg_mul_add(x_along, m_along);
+    let c = two.neg_mul_add(x.dot(m), k * x.dot(x));
+    let bend = two.neg_mul_add(x_across.dot(m_across), k * x_across.dot(x_across));
     let zero = l.constant(0.0);
-    let discriminant = L::neg_mul_add(k, bend, m_along * m_along);
-    let mut leaves = L::eq_u(rays.left, number);
-    let enters = L::eq_u(rays.inside, number);
+    let discriminant = k.neg_mul_add(bend, m_along * m_along);
+    let mut leaves = rays.left.eq(number);
+    let enters = rays.inside.eq(number);
     if sphere.is_under_eye() {
-        leaves = leaves | (L::eq_u(rays.left, l.splat_u(EYE)) & L::lt(m_along, zero));
+        leaves = leaves | (rays.left.eq(l.splat_u(EYE)) & m_along.lt(zero));
     }
     // A ray that enters the sphere from its surface travels the chord 2b.
-    let own_chord = (b + L::abs(b)) / k;
+    let own_chord = (b + b.abs()) / k;
     match sphere.roots() {
         Roots::Nearer => {
-            let q = b + L::copysign(L::sqrt(discriminant), b);
-            l.exclude(leaves, L::key(-(L::max(c, zero) / q)))
+            let q = b + discriminant.sqrt().copysign(b);
+            l.exclude(leaves, L::key(-(c.max(zero) / q)))
         }
         Roots::Both => {
-            let q = b + L::copysign(L::sqrt(discriminant), b);
+            let q = b + discriminant.sqrt().copysign(b);
             let first = l.exclude(enters, L::key(-(c / q)));
-            let second = L::key(-L::select(enters, own_chord, q / k));
-            l.exclude(leaves, L::min_key(first, second))
+            let second = L::key(-enters.select(own_chord, q / k));
+            l.exclude(leaves, first.min(second))
         }
         Roots::Farther => {
-            let q = b + L::copysign(L::sqrt(L::max(discriminant, zero)), b);
-            let farther = L::max(L::max(c / q, q / k), zero);
-            L::key(-L::select(enters, own_chord, farther))
+            let q = b + discriminant.max(zero).sqrt().copysign(b);
+            let farther = (c / q).max(q / k).max(zero);
+            L::key(-enters.select(own_chord, farther))
         }
     }
 }
@@ -212,12 +212,12 @@ pub fn anchored_root<L: Lanes>(
 #[inline(always)]
 pub fn book_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>, t_min: L::F) -> L::Key {
     let f = sphere.center - rays.origin;
-    let a = dot::<L>(rays.direction, rays.direction);
-    let h = dot::<L>(rays.direction, f);
-    let c = dot::<L>(f, f) - sphere.radius2;
-    let s = L::sqrt(h * h - a * c);
-    let beyond = |t: L::F| L::key(-L::select(L::lt(t_min, t), t, l.constant(-1.0)));
-    L::min_key(beyond((h - s) / a), beyond((h + s) / a))
+    let a = rays.direction.dot(rays.direction);
+    let h = rays.direction.dot(f);
+    let c = f.dot(f) - sphere.radius2;
+    let s = (h * h - a * c).sqrt();
+    let beyond = |t: L::F| L::key(-t_min.lt(t).select(t, l.constant(-1.0)));
+    beyond((h - s) / a).min(beyond((h + s) / a))
 }
 
 /// A point on a surface.
@@ -240,15 +240,15 @@ pub fn surface_point<L: Lanes>(
     curvature: L::F,
     radius: L::F,
 ) -> SurfacePoint<L> {
-    let w = mul_add3::<L>(rays.direction, t, rays.origin - center).scale(curvature);
-    let outward = w.scale(L::neg_mul_add(l.constant(0.5), dot::<L>(w, w), l.constant(1.5)));
-    SurfacePoint { position: mul_add3::<L>(outward, radius, center), outward }
+    let w = rays.direction.mul_add(t, rays.origin - center).scale(curvature);
+    let outward = w.scale(l.constant(0.5).neg_mul_add(w.dot(w), l.constant(1.5)));
+    SurfacePoint { position: outward.mul_add(radius, center), outward }
 }
 
 /// Like [`surface_point`], with the book's own arithmetic: rounding may leave the point off the surface. (Section 6.2.)
 #[inline(always)]
 pub fn book_point<L: Lanes>(rays: &Rays<L>, t: L::F, center: V3<L::F>, curvature: L::F) -> SurfacePoint<L> {
-    let position = mul_add3::<L>(rays.direction, t, rays.origin);
+    let position = rays.direction.mul_add(t, rays.origin);
     SurfacePoint { position, outward: (position - center).scale(curvature) }
 }
 
@@ -264,12 +264,12 @@ pub fn speck_surface_point<L: Lanes>(
     radius: L::F,
 ) -> SurfacePoint<L> {
     let g = rays.origin - center;
-    let h = dot::<L>(rays.direction, g);
-    let across = neg_mul_add3::<L>(rays.direction, h, g).scale(curvature);
-    let along2 = L::max(l.constant(1.0) - dot::<L>(across, across), l.constant(0.0));
-    let w = mul_add3::<L>(rays.direction, L::copysign(L::sqrt(along2), t + h), across);
-    let outward = w.scale(l.constant(1.0) / L::sqrt(dot::<L>(w, w)));
-    SurfacePoint { position: mul_add3::<L>(outward, radius, center), outward }
+    let h = rays.direction.dot(g);
+    let across = rays.direction.neg_mul_add(h, g).scale(curvature);
+    let along2 = (l.constant(1.0) - across.dot(across)).max(l.constant(0.0));
+    let w = rays.direction.mul_add(along2.sqrt().copysign(t + h), across);
+    let outward = w.scale(l.constant(1.0) / w.dot(w).sqrt());
+    SurfacePoint { position: outward.mul_add(radius, center), outward }
 }
 
 /// Like [`surface_point`], on an anchored sphere.
@@ -283,11 +283,11 @@ pub fn anchored_surface_point<L: Lanes>(
     curvature: L::F,
 ) -> SurfacePoint<L> {
     let one = l.constant(1.0);
-    let x = mul_add3::<L>(rays.direction, t, rays.origin - anchor);
+    let x = rays.direction.mul_add(t, rays.origin - anchor);
     let away = x.scale(curvature) - inward;
-    let length = L::sqrt(dot::<L>(away, away));
+    let length = away.dot(away).sqrt();
     let outward = away.scale(one / length);
-    let c = L::neg_mul_add(l.constant(2.0), dot::<L>(x, inward), curvature * dot::<L>(x, x));
+    let c = l.constant(2.0).neg_mul_add(x.dot(inward), curvature * x.dot(x));
     let height = c / (one + length);
-    SurfacePoint { position: neg_mul_add3::<L>(outward, height, x) + anchor, outward }
+    SurfacePoint { position: outward.neg_mul_add(height, x) + anchor, outward }
 }

@@ -9,12 +9,11 @@ mod surfaces;
 
 use glam::DVec3;
 use gpu_common::gpu;
-use std::num::Wrapping;
 use weekender::film::FIXED_POINT_MAX;
 use weekender::kernel::{AnchoredSphere, CameraTable, PROBE_STRIDE};
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
-use weekender::render_cpu::lanes::{Lanes, Scalar, V3, Wide};
+use weekender::render_cpu::lanes::{Lanes, Scalar, Single, V3, Wide, Word};
 use weekender::render_cpu::material::{Surface, incidence_of, reflectance, refracted, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, anchored_root, anchored_surface_point, book_root, near_root, nearest_root,
@@ -31,6 +30,7 @@ use weekender::stages::{DielectricLaws, Rules};
 /// The CPU's arithmetic, one lane, fused.
 type L = Scalar<true>;
 const L: L = Scalar::<true>;
+type F = Single<true>;
 
 const COUNT: usize = 4096;
 
@@ -91,12 +91,16 @@ fn float(words: &Words, i: usize) -> f32 {
     f32::from_bits(words[i])
 }
 
-fn vector(words: &Words, i: usize) -> V3<f32> {
-    V3 { x: float(words, i), y: float(words, i + 1), z: float(words, i + 2) }
+fn number(words: &Words, i: usize) -> F {
+    Single(float(words, i))
 }
 
-fn list(v: V3<f32>) -> [f32; 3] {
-    [v.x, v.y, v.z]
+fn vector(words: &Words, i: usize) -> V3<F> {
+    V3 { x: number(words, i), y: number(words, i + 1), z: number(words, i + 2) }
+}
+
+fn list(v: V3<F>) -> [f32; 3] {
+    [v.x.0, v.y.0, v.z.0]
 }
 
 /// The largest difference, in units of the last place of numbers as large as `scale`.
@@ -210,8 +214,8 @@ fn rays(words: &Words) -> Rays<L> {
     Rays {
         origin: vector(words, 0),
         direction: vector(words, 3),
-        left: Wrapping(words[6]),
-        inside: Wrapping(words[7]),
+        left: Word(words[6]),
+        inside: Word(words[7]),
     }
 }
 
@@ -230,7 +234,7 @@ fn compare_keys(ulps: &mut Ulps, got: u32, expected: i32, what: &Words) {
 fn intersections() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     let mut ulps = Ulps::default();
-    let one = Wrapping(1);
+    let one = Word(1);
     for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Roots, ray_words) {
         let rays = rays(&input);
         let sphere: [f32; 4] = [8, 9, 10, 11].map(|i| float(&input, i));
@@ -241,7 +245,7 @@ fn intersections() {
         compare_keys(
             &mut ulps,
             output[2],
-            book_root(L, &rays, &Spheres::splat(L, sphere, one), BOOK_T_MIN),
+            book_root(L, &rays, &Spheres::splat(L, sphere, one), Single(BOOK_T_MIN)),
             &input,
         );
     }
@@ -264,7 +268,7 @@ fn intersections() {
         words
     };
     for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Surface, surface) {
-        let [curvature, t, radius] = [11, 12, 13].map(|i| float(&input, i));
+        let [curvature, t, radius] = [11, 12, 13].map(|i| number(&input, i));
         let point = surface_point(L, &rays(&input), t, vector(&input, 8), curvature, radius);
         ulps.compare(&list(vector(&output, 0)), &list(point.position), 4.0);
         ulps.compare(&list(vector(&output, 3)), &list(point.outward), 4.0);
@@ -303,9 +307,10 @@ fn anchored_spheres() {
             flags: input[3] % 3,
         };
         let rays = rays(&input);
-        compare_keys(&mut roots, output[0], anchored_root(L, &rays, &sphere, Wrapping(1)), &input);
+        compare_keys(&mut roots, output[0], anchored_root(L, &rays, &sphere, Word(1)), &input);
         let (anchor, inward) = (vector(&input, 8), vector(&input, 12));
-        let point = anchored_surface_point(L, &rays, float(&input, 15), anchor, inward, sphere.curvature);
+        let point =
+            anchored_surface_point(L, &rays, number(&input, 15), anchor, inward, Single(sphere.curvature));
         points.compare(&list(vector(&output, 1)), &list(point.position), 4.0);
         points.compare(&list(vector(&output, 4)), &list(point.outward), 1.0);
     }
@@ -341,9 +346,9 @@ fn scattering() {
             words[14] = u32::from(front < 0.5);
             words
         }) {
-            let [weight, refraction_index, inverse_index, f0] = [0, 1, 2, 3].map(|i| float(&input, i));
+            let [weight, refraction_index, inverse_index, f0] = [0, 1, 2, 3].map(|i| number(&input, i));
             let surface: Surface<L> = Surface { weight, refraction_index, inverse_index, f0 };
-            let (cosine, coin) = (float(&input, 13), float(&input, 15));
+            let (cosine, coin) = (number(&input, 13), number(&input, 15));
             let (d, n, unit) = (vector(&input, 4), vector(&input, 7), vector(&input, 10));
             let front = input[14] != 0;
             let sent =
@@ -355,7 +360,7 @@ fn scattering() {
                 continue;
             }
             ulps.compare(&list(vector(&output, 0)), &list(sent.direction), 2.0);
-            ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, f0)], 1.0);
+            ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, f0).0], 1.0);
             let sine2 = incidence_of(L, cosine).sine2;
             ulps.compare(&list(vector(&output, 5)), &list(refracted(L, d, n, sent.ratio, sine2)), 2.0);
         }
@@ -378,7 +383,7 @@ fn camera_rays() {
         let [c, d, ..] = uniform(i, 51);
         words(&[(x * 640.0).floor(), (y * 360.0).floor(), a, b, c - 0.5, d - 0.5])
     }) {
-        let [x, y, a, b, c, d] = [0, 1, 2, 3, 4, 5].map(|i| float(&input, i));
+        let [x, y, a, b, c, d] = [0, 1, 2, 3, 4, 5].map(|i| number(&input, i));
         let corner = screen(L, &camera, x, y);
         let pinhole = pinhole_ray(L, &camera, corner, [a, b]);
         let lens = lens_ray(L, &camera, corner, [a, b], [c, d]);
@@ -392,5 +397,5 @@ fn camera_rays() {
 /// The lane's own constants are used, so that a change of precision does not go unseen.
 #[test]
 fn oracle_is_single_precision() {
-    assert_eq!(L.constant(0.1), 0.1_f32);
+    assert_eq!(L.constant(0.1).0, 0.1_f32);
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
 use weekender::kernel::Real;
 use weekender::render::{RenderJob, RenderSettings, Renderer, Stats};
-use weekender::render_cpu::lanes::{Lanes, V3, Wide, dot, splat3};
+use weekender::render_cpu::lanes::{Float, Lanes, V3, Wide, splat3};
 use weekender::render_cpu::sphere::{NONE, Rays};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::scene::{Camera, Material, Scene};
@@ -71,7 +71,7 @@ pub fn v3<L: Lanes>(l: L, v: DVec3) -> V3<L::F> {
 
 /// Length 1, by the division that the path loop makes.
 pub fn normalised<L: Lanes>(l: L, d: V3<L::F>) -> V3<L::F> {
-    d.scale(l.constant(1.0) / L::sqrt(dot::<L>(d, d)))
+    d.scale(l.constant(1.0) / d.dot(d).sqrt())
 }
 
 /// A ray that starts on no sphere. `direction` may have any length.

@@ -9,7 +9,7 @@ use weekender::prepared::PreparedScene;
 use weekender::prepared::hierarchy::Hierarchy;
 use weekender::render::RenderSettings;
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
-use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, Wide, WideU};
+use weekender::render_cpu::lanes::{Key, Lanes, Mask, Reference, Scalar, Unsigned, V3, Wide, WideU};
 use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, near_root, nearest_root, surface_point};
 use weekender::scene::Sphere;
 use weekender::scene::builtin::{BOOK_CAMERA, book};
@@ -137,9 +137,9 @@ fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 
         let mut found = Nearest::nothing(l);
         traverse(l, &hierarchy, &rows, &rays, l.mask(1), &mut stack, &mut found);
         let expected = nearest_in_list(l, &rays, &rows, &numbers);
-        let same = L::eq_key(found.key, expected.key) & L::eq_u(found.sphere, expected.sphere);
+        let same = found.key.eq(expected.key) & found.sphere.eq(expected.sphere);
         assert_eq!(
-            L::bits(same) & 1,
+            same.bits() & 1,
             1,
             "seed {seed}, {count} spheres, spread {spread}: {:?}, not {:?}, from {} to {}",
             distance::<L>(found.key),
@@ -147,7 +147,7 @@ fn same_hits<L: Lanes>(l: L, seed: u64, count: usize, spread: f64, radii: [f64; 
             vector::<L>(rays.origin),
             vector::<L>(rays.direction),
         );
-        hits += L::bits(!L::eq_u(found.sphere, l.splat_u(NONE))) & 1;
+        hits += (!found.sphere.eq(l.splat_u(NONE))).bits() & 1;
     }
     hits
 }
@@ -241,11 +241,15 @@ fn same_packets<L: Lanes<Real = f32>>(
             l.load_u(&wide)
         };
         let rays = Rays::<L> {
-            origin: V3 { x: column(&|r| r.origin.x), y: column(&|r| r.origin.y), z: column(&|r| r.origin.z) },
+            origin: V3 {
+                x: column(&|r| r.origin.x.0),
+                y: column(&|r| r.origin.y.0),
+                z: column(&|r| r.origin.z.0),
+            },
             direction: V3 {
-                x: column(&|r| r.direction.x),
-                y: column(&|r| r.direction.y),
-                z: column(&|r| r.direction.z),
+                x: column(&|r| r.direction.x.0),
+                y: column(&|r| r.direction.y.0),
+                z: column(&|r| r.direction.z.0),
             },
             left: integers(&|r| r.left.0),
             inside: integers(&|r| r.inside.0),
@@ -254,9 +258,9 @@ fn same_packets<L: Lanes<Real = f32>>(
         let all = l.mask((1 << L::WIDTH) - 1);
         traverse(l, &hierarchy, &rows, &rays, all, &mut stack, &mut found);
         let expected = nearest_in_list(l, &rays, &rows, &numbers);
-        let same = L::eq_key(found.key, expected.key) & L::eq_u(found.sphere, expected.sphere);
-        assert_eq!(L::bits(same), L::bits(all), "seed {seed}, {count} spheres, spread {spread}");
-        hits += L::bits(!L::eq_u(found.sphere, l.splat_u(NONE))).count_ones();
+        let same = found.key.eq(expected.key) & found.sphere.eq(expected.sphere);
+        assert_eq!(same.bits(), all.bits(), "seed {seed}, {count} spheres, spread {spread}");
+        hits += (!found.sphere.eq(l.splat_u(NONE))).bits().count_ones();
     }
     hits
 }

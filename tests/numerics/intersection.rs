@@ -5,7 +5,7 @@ use glam::DVec3;
 use weekender::kernel::Real;
 use weekender::prepared::PreparedScene;
 use weekender::render::RenderJob;
-use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, V3, dot};
+use weekender::render_cpu::lanes::{Float, Lanes, Mask, Reference, Scalar, V3};
 use weekender::render_cpu::material::{Surface, incidence_of, scatter};
 use weekender::render_cpu::sphere::{
     NONE, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, near_root, nearest_root,
@@ -297,7 +297,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
     let rays = ray(l, origin, center + across - origin);
     let t = distance::<L>(near_root(l, &rays, &Spheres::splat(l, sphere, number)))?;
     let point = surface_at(l, &rays, t, center, radius);
-    let cosine = -dot::<L>(rays.direction, point.outward);
+    let cosine = -rays.direction.dot(point.outward);
     let surface = Surface::<L> {
         weight: l.constant(-0.0),
         refraction_index: l.constant(1.5),
@@ -316,7 +316,7 @@ fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) 
         zero,
         zero.x,
     );
-    assert_eq!(L::bits(bounced.refracts) & 1, 1);
+    assert_eq!(bounced.refracts.bits() & 1, 1);
     let inner = Rays::<L> {
         origin: point.position,
         direction: normalised(l, bounced.direction),
@@ -379,7 +379,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
         largest[0] = largest[0].max((away.length() / radius - 1.0).abs());
         let now = vector::<L>(rays.direction).normalize().cross(away.normalize()).length();
         largest[1] = largest[1].max((now - sine).abs());
-        let cosine = L::max(zero, L::min(l.constant(1.0), dot::<L>(rays.direction, point.outward)));
+        let cosine = zero.max(l.constant(1.0).min(rays.direction.dot(point.outward)));
         let inward = V3 { x: -point.outward.x, y: -point.outward.y, z: -point.outward.z };
         let bounced = scatter::<L, true>(
             l,
@@ -392,7 +392,7 @@ fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
             v3(l, DVec3::ZERO),
             l.constant(0.999_999),
         );
-        assert_eq!(L::bits(bounced.refracts) & 1, 0, "total reflection");
+        assert_eq!(bounced.refracts.bits() & 1, 0, "total reflection");
         rays.origin = point.position;
         rays.direction = normalised(l, bounced.direction);
     }

@@ -3,7 +3,7 @@
 use crate::common::*;
 use glam::DVec3;
 use weekender::render::{RenderSettings, SamplerKind};
-use weekender::render_cpu::lanes::Scalar;
+use weekender::render_cpu::lanes::{Lanes, Scalar};
 use weekender::render_cpu::material::{Surface, incidence_of, reflectance, scatter};
 use weekender::scene::{Camera, Material, Sky};
 use weekender::stages::DielectricLaws;
@@ -78,7 +78,8 @@ fn case_16_refraction_index_1() {
     let average = (0..steps)
         .map(|step| {
             let cosine = (f64::from(step) + 0.5) / f64::from(steps);
-            2.0 * cosine * f64::from(reflectance(l, cosine as f32, 0.0)) / f64::from(steps)
+            2.0 * cosine * first::<Scalar<false>>(reflectance(l, l.constant(cosine), l.constant(0.0)))
+                / f64::from(steps)
         })
         .sum::<f64>();
     assert!((average - 1.0 / 21.0).abs() < 1e-6, "{average}");
@@ -150,19 +151,19 @@ fn grazing<const FUSED: bool>() {
     let mut random = Random::new(7);
     for step in 0..20_000 {
         let index = if step == 0 { 1.0 } else { random.log_within(1e-3, 1e3) };
-        let share = ((1.0 - index) / (1.0 + index)).powi(2) as f32;
-        assert_eq!(reflectance(l, 0.0, share), 1.0, "index {index}");
+        let f0 = l.constant(((1.0 - index) / (1.0 + index)).powi(2));
+        assert_eq!(reflectance(l, l.constant(0.0), f0).0, 1.0, "index {index}");
         let normal = random.direction();
         let direction = perpendicular(normal, &mut random);
         for front in [false, true] {
             let surface = Surface::<Scalar<FUSED>> {
-                weight: -0.0,
-                refraction_index: index as f32,
-                inverse_index: (1.0 / index) as f32,
-                f0: share,
+                weight: l.constant(-0.0),
+                refraction_index: l.constant(index),
+                inverse_index: l.constant(1.0 / index),
+                f0,
             };
             // The largest coin there is.
-            let coin = weekender::sampling::unit_float(u32::MAX);
+            let coin = l.splat(weekender::sampling::unit_float(u32::MAX));
             let zero = v3(l, DVec3::ZERO);
             let scattered = |laws: DielectricLaws| {
                 let (direction, normal) = (v3(l, direction), v3(l, normal));
@@ -172,7 +173,7 @@ fn grazing<const FUSED: bool>() {
                     laws,
                     direction,
                     normal,
-                    &incidence_of(l, 0.0),
+                    &incidence_of(l, l.constant(0.0)),
                     front,
                     zero,
                     coin,

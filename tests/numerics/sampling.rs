@@ -4,7 +4,7 @@ use crate::common::{Random, first};
 use proptest::prelude::*;
 use std::collections::HashSet;
 use weekender::render::{RenderSettings, SAMPLE_LIMIT, SamplerKind};
-use weekender::render_cpu::lanes::{Lanes, MAX_LANES, Reference, Scalar, Wide, unit_float};
+use weekender::render_cpu::lanes::{Double, Lanes, MAX_LANES, Reference, Scalar, Single, Wide, unit_float};
 use weekender::render_cpu::rng;
 use weekender::sampling::{self, GOLDEN_RATIO, LENS_BLOCK, SampleBlock};
 
@@ -145,15 +145,17 @@ fn sine_and_cosine_of_turns() {
     for step in (0..1 << 24).step_by(37).chain([1 << 22, 1 << 23, 3 << 22, (1 << 24) - 1]) {
         let u = step as f32 / 16_777_216.0;
         let (sine, cosine) = sampling::sin_cos_turns(u);
-        assert_eq!(Scalar::<false>.sin_cos_turns(u), (sine, cosine), "the lanes' own");
+        let unfused = Scalar::<false>.sin_cos_turns(Single(u));
+        assert_eq!((unfused.0.0, unfused.1.0), (sine, cosine), "the lanes' own");
         let exact = (f64::from(u) * std::f64::consts::TAU).sin_cos();
         let [sine, cosine] = [sine, cosine].map(f64::from);
         largest = largest.max((sine - exact.0).abs()).max((cosine - exact.1).abs());
         length = length.max((sine.hypot(cosine) - 1.0).abs());
-        let fused = Scalar::<true>.sin_cos_turns(u);
-        largest = largest.max((f64::from(fused.0) - exact.0).abs()).max((f64::from(fused.1) - exact.1).abs());
-        let reference = Reference.sin_cos_turns(f64::from(u));
-        assert!((reference.0 - exact.0).abs() < 1e-15 && (reference.1 - exact.1).abs() < 1e-15);
+        let fused = Scalar::<true>.sin_cos_turns(Single(u));
+        largest =
+            largest.max((f64::from(fused.0.0) - exact.0).abs()).max((f64::from(fused.1.0) - exact.1).abs());
+        let reference = Reference.sin_cos_turns(Double(f64::from(u)));
+        assert!((reference.0.0 - exact.0).abs() < 1e-15 && (reference.1.0 - exact.1).abs() < 1e-15);
     }
     println!("sine and cosine: {largest:.2e}, length {length:.2e}");
     assert!(largest <= 2e-7, "{largest:e}");

@@ -12,17 +12,107 @@ mod vector;
 mod x86;
 
 pub use instructions::Instructions;
-pub use scalar::{Reference, Scalar};
+pub use scalar::{Double, Reference, Scalar, Single, Word};
 pub use simd::{Lanes4, Lanes8, Lanes16};
-pub use vector::{V3, dot, load3, mul_add3, neg_mul_add3, select3, splat3};
+pub use vector::{V3, load3, splat3};
 
 use crate::kernel::{Real, RecordColumns, UNIT_FLOAT_SCALE};
-use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Shl, Shr, Sub};
 
 /// The largest lane count, for buffers on the stack.
 pub const MAX_LANES: usize = 16;
 
-/// Operations on rows of numbers.
+/// Values that a mask can choose between, lane by lane.
+pub trait Select<M>: Copy {
+    /// `a` where `m` is true, else `b`.
+    fn select(m: M, a: Self, b: Self) -> Self;
+}
+
+/// One truth value per lane.
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// The mask as bits, lane 0 in the lowest.
+    fn bits(self) -> u32;
+    /// `a` where the mask is true, else `b`.
+    #[inline(always)]
+    fn select<T: Select<Self>>(self, a: T, b: T) -> T {
+        T::select(self, a, b)
+    }
+}
+
+/// A row of floating-point numbers.
+pub trait Float:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Select<Self::Mask>
+{
+    /// The result of a comparison.
+    type Mask: Mask;
+
+    /// `self b + c`, rounded once where the level has fused multiply-add.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// `self b - c`, rounded once where the level has fused multiply-add.
+    #[inline(always)]
+    fn mul_sub(self, b: Self, c: Self) -> Self {
+        self.mul_add(b, -c)
+    }
+    /// `c - self b`, rounded once where the level has fused multiply-add.
+    fn neg_mul_add(self, b: Self, c: Self) -> Self;
+    /// Square root; NaN for numbers below 0.
+    fn sqrt(self) -> Self;
+    /// Absolute value.
+    fn abs(self) -> Self;
+    /// This magnitude with the sign of `sign`.
+    fn copysign(self, sign: Self) -> Self;
+    /// `if self < other { self } else { other }`.
+    fn min(self, other: Self) -> Self;
+    /// `if self > other { self } else { other }`.
+    fn max(self, other: Self) -> Self;
+    /// `self < other`.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// Whether the sign bit is set, as it is for -0.
+    fn is_negative(self) -> Self::Mask;
+}
+
+/// A row of 32-bit unsigned integers, wrapping.
+pub trait Unsigned:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + BitXor<Output = Self>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + Shl<u32, Output = Self>
+    + Shr<u32, Output = Self>
+    + Select<Self::Mask>
+{
+    /// The result of a comparison.
+    type Mask: Mask;
+
+    /// `self == other`.
+    fn eq(self, other: Self) -> Self::Mask;
+    /// The smaller of the two.
+    fn min(self, other: Self) -> Self;
+}
+
+/// A row of negated distances, ordered by their bits as signed integers: see [`Lanes`].
+pub trait Key: Copy {
+    /// The result of a comparison.
+    type Mask: Mask;
+
+    /// The smaller key, which belongs to the nearer hit.
+    fn min(self, other: Self) -> Self;
+    /// `self < other`.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self == other`.
+    fn eq(self, other: Self) -> Self::Mask;
+}
+
+/// Rows of numbers of one width, and how they are made, loaded, stored and converted.
 ///
 /// Distances are ordered by [`Lanes::key`]: the bits of `-t` are compared as signed integers. In that order positive
 /// distances come first, the nearest before the others, then infinity, then NaN and distances behind the ray. Misses
@@ -31,24 +121,13 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// Precision of the numbers.
     type Real: Real;
     /// Floating-point numbers.
-    type F: Copy
-        + Add<Output = Self::F>
-        + Sub<Output = Self::F>
-        + Mul<Output = Self::F>
-        + Div<Output = Self::F>
-        + Neg<Output = Self::F>;
+    type F: Float<Mask = Self::M>;
     /// 32-bit unsigned integers, wrapping.
-    type U: Copy
-        + Add<Output = Self::U>
-        + Sub<Output = Self::U>
-        + Mul<Output = Self::U>
-        + BitXor<Output = Self::U>
-        + BitAnd<Output = Self::U>
-        + BitOr<Output = Self::U>;
+    type U: Unsigned<Mask = Self::M>;
     /// Masks: one truth value per lane.
-    type M: Copy + BitAnd<Output = Self::M> + BitOr<Output = Self::M> + Not<Output = Self::M>;
+    type M: Mask;
     /// The bits of a negated distance, for ordering.
-    type Key: Copy;
+    type Key: Key<Mask = Self::M>;
     /// Numbers per row.
     const WIDTH: usize;
 
@@ -72,69 +151,23 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     /// Stores to the first [`Lanes::WIDTH`] numbers of a buffer.
     fn store(f: Self::F, to: &mut Wide<Self::Real>);
 
-    /// `a b + c`, rounded once where the level has fused multiply-add.
-    fn mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
-    /// `a b - c`, rounded once where the level has fused multiply-add.
-    #[inline(always)]
-    fn mul_sub(a: Self::F, b: Self::F, c: Self::F) -> Self::F {
-        Self::mul_add(a, b, -c)
-    }
-    /// `c - a b`, rounded once where the level has fused multiply-add.
-    fn neg_mul_add(a: Self::F, b: Self::F, c: Self::F) -> Self::F;
-    /// Square root; NaN for numbers below 0.
-    fn sqrt(x: Self::F) -> Self::F;
-    /// Absolute value.
-    fn abs(x: Self::F) -> Self::F;
-    /// The magnitude of `size` with the sign of `sign`.
-    fn copysign(size: Self::F, sign: Self::F) -> Self::F;
-    /// `if a < b { a } else { b }`.
-    fn min(a: Self::F, b: Self::F) -> Self::F;
-    /// `if a > b { a } else { b }`.
-    fn max(a: Self::F, b: Self::F) -> Self::F;
-    /// `a < b`.
-    fn lt(a: Self::F, b: Self::F) -> Self::M;
-    /// `a` where `m` is true, else `b`.
-    fn select(m: Self::M, a: Self::F, b: Self::F) -> Self::F;
-
-    /// Whether the sign bit is set, as it is for -0.
-    fn is_negative(x: Self::F) -> Self::M;
-
-    /// `a` where `m` is true, else `b`.
-    fn select_u(m: Self::M, a: Self::U, b: Self::U) -> Self::U;
     /// `a` where `m` is true, else 0.
     #[inline(always)]
     fn keep(self, m: Self::M, a: Self::U) -> Self::U {
-        Self::select_u(m, a, self.splat_u(0))
+        m.select(a, self.splat_u(0))
     }
     /// `u32::MAX` where `m` is true, else `a`.
     #[inline(always)]
     fn fill(self, m: Self::M, a: Self::U) -> Self::U {
-        Self::select_u(m, self.splat_u(u32::MAX), a)
+        m.select(self.splat_u(u32::MAX), a)
     }
-    /// `a == b`.
-    fn eq_u(a: Self::U, b: Self::U) -> Self::M;
-    /// The smaller of the two.
-    fn min_u(a: Self::U, b: Self::U) -> Self::U;
-    /// Shifts left by `n` bits.
-    fn shl(a: Self::U, n: u32) -> Self::U;
-    /// Shifts right by `n` bits.
-    fn shr(a: Self::U, n: u32) -> Self::U;
 
-    /// The mask as bits, one per lane.
-    fn bits(m: Self::M) -> u32;
-
-    /// The ordering key of a negated distance, to be compared as a signed integer.
+    /// The ordering key of a negated distance.
     fn key(negated: Self::F) -> Self::Key;
     /// The negated distance of a key.
     fn from_key(k: Self::Key) -> Self::F;
     /// A key that loses every comparison where `m` is true, else `k`.
     fn exclude(self, m: Self::M, k: Self::Key) -> Self::Key;
-    /// The smaller key, which belongs to the nearer hit.
-    fn min_key(a: Self::Key, b: Self::Key) -> Self::Key;
-    /// `a < b`.
-    fn lt_key(a: Self::Key, b: Self::Key) -> Self::M;
-    /// `a == b`.
-    fn eq_key(a: Self::Key, b: Self::Key) -> Self::M;
 
     /// Converts an integer below `2^31` to a float.
     fn float_of(u: Self::U) -> Self::F;
@@ -172,7 +205,7 @@ impl<R: Copy> Wide<R> {
 /// Converts the upper 24 bits to a float in `[0, 1)`.
 #[inline(always)]
 pub fn unit_float<L: Lanes>(l: L, u: L::U) -> L::F {
-    L::float_of(L::shr(u, 8)) * l.constant(UNIT_FLOAT_SCALE)
+    L::float_of(u >> 8) * l.constant(UNIT_FLOAT_SCALE)
 }
 
 /// Evaluates the polynomial of [`crate::sampling::sin_cos_turns`].
@@ -180,17 +213,17 @@ pub fn unit_float<L: Lanes>(l: L, u: L::U) -> L::F {
 fn polynomial_sin_cos_turns<L: Lanes>(l: L, u: L::F) -> (L::F, L::F) {
     let quarter = l.constant(0.25);
     let x = u - l.constant(0.5);
-    let q = L::abs(x) - quarter;
-    let sine = sine_of_quarter(l, quarter - L::abs(q));
-    (-L::copysign(sine, x), sine_of_quarter(l, q))
+    let q = x.abs() - quarter;
+    let sine = sine_of_quarter(l, quarter - q.abs());
+    (-sine.copysign(x), sine_of_quarter(l, q))
 }
 
 #[inline(always)]
 fn sine_of_quarter<L: Lanes>(l: L, x: L::F) -> L::F {
     let c = crate::sampling::sine_coefficients();
     let y = x * x;
-    let p = L::mul_add(y, l.constant(c[4]), l.constant(c[3]));
-    let p = L::mul_add(y, p, l.constant(c[2]));
-    let p = L::mul_add(y, p, l.constant(c[1]));
-    L::mul_add(y, p, l.constant(c[0])) * x
+    let p = y.mul_add(l.constant(c[4]), l.constant(c[3]));
+    let p = y.mul_add(p, l.constant(c[2]));
+    let p = y.mul_add(p, l.constant(c[1]));
+    y.mul_add(p, l.constant(c[0])) * x
 }

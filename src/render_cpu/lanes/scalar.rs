@@ -1,8 +1,8 @@
 //! One lane: scalar code in the packets' precision, and the `f64` reference.
 
-use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
+use super::{Float, Key, Lanes, Mask, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns};
 use crate::kernel::RecordColumns;
-use std::num::Wrapping;
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Shl, Shr, Sub};
 
 /// One lane of `f32`. `FUSED` says whether the level has fused multiply-add; on a level without it, `f32::mul_add`
 /// would call a library function.
@@ -13,161 +13,264 @@ pub struct Scalar<const FUSED: bool>;
 #[derive(Clone, Copy)]
 pub struct Reference;
 
+/// A number of [`Scalar`].
+#[derive(Clone, Copy, Debug)]
+pub struct Single<const FUSED: bool>(pub f32);
+
+/// A number of [`Reference`].
+#[derive(Clone, Copy, Debug)]
+pub struct Double(pub f64);
+
+macro_rules! operator {
+    ($trait:ident, $method:ident, $operator:tt, $number:ty, $make:ident $(, $fused:ident)?) => {
+        impl$(<const $fused: bool>)? $trait for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, o: Self) -> Self {
+                $make(self.0 $operator o.0)
+            }
+        }
+    };
+}
+
+macro_rules! scalar_float {
+    ($number:ty, $make:ident, $is_fused:expr $(, $fused:ident)?) => {
+        operator!(Add, add, +, $number, $make $(, $fused)?);
+        operator!(Sub, sub, -, $number, $make $(, $fused)?);
+        operator!(Mul, mul, *, $number, $make $(, $fused)?);
+        operator!(Div, div, /, $number, $make $(, $fused)?);
+
+        impl$(<const $fused: bool>)? Neg for $number {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                $make(-self.0)
+            }
+        }
+
+        impl$(<const $fused: bool>)? Select<bool> for $number {
+            #[inline(always)]
+            fn select(m: bool, a: Self, b: Self) -> Self {
+                if m { a } else { b }
+            }
+        }
+
+        impl$(<const $fused: bool>)? Float for $number {
+            type Mask = bool;
+
+            #[inline(always)]
+            fn mul_add(self, b: Self, c: Self) -> Self {
+                $make(if $is_fused { self.0.mul_add(b.0, c.0) } else { self.0 * b.0 + c.0 })
+            }
+            #[inline(always)]
+            fn neg_mul_add(self, b: Self, c: Self) -> Self {
+                $make(if $is_fused { (-self.0).mul_add(b.0, c.0) } else { c.0 - self.0 * b.0 })
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                $make(self.0.sqrt())
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                $make(self.0.abs())
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                $make(self.0.copysign(sign.0))
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if self.0 < other.0 { self } else { other }
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if self.0 > other.0 { self } else { other }
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> bool {
+                self.0 < other.0
+            }
+            #[inline(always)]
+            fn is_negative(self) -> bool {
+                self.0.is_sign_negative()
+            }
+        }
+    };
+}
+
+scalar_float!(Single<FUSED>, Single, FUSED, FUSED);
+scalar_float!(Double, Double, false);
+
+impl Mask for bool {
+    #[inline(always)]
+    fn bits(self) -> u32 {
+        u32::from(self)
+    }
+}
+
+/// An integer of one lane, wrapping.
+#[derive(Clone, Copy, Debug)]
+pub struct Word(pub u32);
+
+macro_rules! word_operator {
+    ($trait:ident, $method:ident, $function:path $(, $other:ty)?) => {
+        impl $trait$(<$other>)? for Word {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, o: Self) -> Self {
+                Word($function(self.0, o.0))
+            }
+        }
+    };
+}
+
+word_operator!(Add, add, u32::wrapping_add);
+word_operator!(Sub, sub, u32::wrapping_sub);
+word_operator!(Mul, mul, u32::wrapping_mul);
+word_operator!(BitXor, bitxor, BitXor::bitxor);
+word_operator!(BitAnd, bitand, BitAnd::bitand);
+word_operator!(BitOr, bitor, BitOr::bitor);
+
+impl Shl<u32> for Word {
+    type Output = Self;
+    #[inline(always)]
+    fn shl(self, n: u32) -> Self {
+        Word(self.0 << n)
+    }
+}
+
+impl Shr<u32> for Word {
+    type Output = Self;
+    #[inline(always)]
+    fn shr(self, n: u32) -> Self {
+        Word(self.0 >> n)
+    }
+}
+
+impl Select<bool> for Word {
+    #[inline(always)]
+    fn select(m: bool, a: Self, b: Self) -> Self {
+        if m { a } else { b }
+    }
+}
+
+impl Unsigned for Word {
+    type Mask = bool;
+
+    #[inline(always)]
+    fn eq(self, other: Self) -> bool {
+        self.0 == other.0
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Word(self.0.min(other.0))
+    }
+}
+
 macro_rules! scalar_lanes {
-    ($real:ident, $bits:ident, $signed:ident, $fused:expr) => {
+    ($real:ident, $float:ty, $number:ident, $bits:ident, $signed:ident) => {
         type Real = $real;
-        type F = $real;
-        type U = Wrapping<u32>;
+        type F = $float;
+        type U = Word;
         type M = bool;
         type Key = $signed;
         const WIDTH: usize = 1;
 
         #[inline(always)]
-        fn splat(self, x: $real) -> $real {
-            x
+        fn splat(self, x: $real) -> Self::F {
+            $number(x)
         }
         #[inline(always)]
-        fn splat_u(self, x: u32) -> Wrapping<u32> {
-            Wrapping(x)
+        fn splat_u(self, x: u32) -> Word {
+            Word(x)
         }
         #[inline(always)]
         fn mask(self, bits: u32) -> bool {
             bits & 1 != 0
         }
         #[inline(always)]
-        fn load(self, from: &Wide<$real>) -> $real {
-            from.0[0]
+        fn load(self, from: &Wide<$real>) -> Self::F {
+            $number(from.0[0])
         }
         #[inline(always)]
-        fn load_u(self, from: &WideU) -> Wrapping<u32> {
-            Wrapping(from.0[0])
+        fn load_u(self, from: &WideU) -> Word {
+            Word(from.0[0])
         }
         #[inline(always)]
-        fn store_u(u: Wrapping<u32>, to: &mut WideU) {
+        fn store_u(u: Word, to: &mut WideU) {
             to.0[0] = u.0;
         }
         #[inline(always)]
-        fn store(f: $real, to: &mut Wide<$real>) {
-            to.0[0] = f;
+        fn store(f: Self::F, to: &mut Wide<$real>) {
+            to.0[0] = f.0;
         }
         #[inline(always)]
-        fn mul_add(a: $real, b: $real, c: $real) -> $real {
-            if $fused { a.mul_add(b, c) } else { a * b + c }
+        fn key(negated: Self::F) -> $signed {
+            negated.0.to_bits() as $signed
         }
         #[inline(always)]
-        fn neg_mul_add(a: $real, b: $real, c: $real) -> $real {
-            if $fused { (-a).mul_add(b, c) } else { c - a * b }
-        }
-        #[inline(always)]
-        fn sqrt(x: $real) -> $real {
-            x.sqrt()
-        }
-        #[inline(always)]
-        fn abs(x: $real) -> $real {
-            x.abs()
-        }
-        #[inline(always)]
-        fn copysign(size: $real, sign: $real) -> $real {
-            size.copysign(sign)
-        }
-        #[inline(always)]
-        fn min(a: $real, b: $real) -> $real {
-            if a < b { a } else { b }
-        }
-        #[inline(always)]
-        fn max(a: $real, b: $real) -> $real {
-            if a > b { a } else { b }
-        }
-        #[inline(always)]
-        fn lt(a: $real, b: $real) -> bool {
-            a < b
-        }
-        #[inline(always)]
-        fn select(m: bool, a: $real, b: $real) -> $real {
-            if m { a } else { b }
-        }
-        #[inline(always)]
-        fn is_negative(x: $real) -> bool {
-            x.is_sign_negative()
-        }
-        #[inline(always)]
-        fn select_u(m: bool, a: Wrapping<u32>, b: Wrapping<u32>) -> Wrapping<u32> {
-            if m { a } else { b }
-        }
-        #[inline(always)]
-        fn eq_u(a: Wrapping<u32>, b: Wrapping<u32>) -> bool {
-            a == b
-        }
-        #[inline(always)]
-        fn min_u(a: Wrapping<u32>, b: Wrapping<u32>) -> Wrapping<u32> {
-            a.min(b)
-        }
-        #[inline(always)]
-        fn shl(a: Wrapping<u32>, n: u32) -> Wrapping<u32> {
-            Wrapping(a.0 << n)
-        }
-        #[inline(always)]
-        fn shr(a: Wrapping<u32>, n: u32) -> Wrapping<u32> {
-            Wrapping(a.0 >> n)
-        }
-        #[inline(always)]
-        fn bits(m: bool) -> u32 {
-            u32::from(m)
-        }
-        #[inline(always)]
-        fn key(negated: $real) -> $signed {
-            negated.to_bits() as $signed
-        }
-        #[inline(always)]
-        fn from_key(k: $signed) -> $real {
-            <$real>::from_bits(k as $bits)
+        fn from_key(k: $signed) -> Self::F {
+            $number(<$real>::from_bits(k as $bits))
         }
         #[inline(always)]
         fn exclude(self, m: bool, k: $signed) -> $signed {
             if m { $signed::MAX } else { k }
         }
         #[inline(always)]
-        fn min_key(a: $signed, b: $signed) -> $signed {
-            a.min(b)
+        fn float_of(u: Word) -> Self::F {
+            $number(u.0 as i32 as $real)
         }
         #[inline(always)]
-        fn lt_key(a: $signed, b: $signed) -> bool {
-            a < b
+        fn fixed_point(self, f: Self::F) -> Word {
+            Word(f.0.round_ties_even() as i32 as u32)
         }
         #[inline(always)]
-        fn eq_key(a: $signed, b: $signed) -> bool {
-            a == b
-        }
-        #[inline(always)]
-        fn float_of(u: Wrapping<u32>) -> $real {
-            u.0 as i32 as $real
-        }
-        #[inline(always)]
-        fn fixed_point(self, f: $real) -> Wrapping<u32> {
-            Wrapping(f.round_ties_even() as i32 as u32)
-        }
-        #[inline(always)]
-        fn gather(self, records: &[RecordColumns<$real>], indices: &WideU, group: usize) -> [$real; 4] {
+        fn gather(self, records: &[RecordColumns<$real>], indices: &WideU, group: usize) -> [Self::F; 4] {
             let row = &records[indices.0[0] as usize].0;
-            [row[4 * group], row[4 * group + 1], row[4 * group + 2], row[4 * group + 3]]
+            [0, 1, 2, 3].map(|column| $number(row[4 * group + column]))
         }
     };
 }
 
+macro_rules! scalar_key {
+    ($signed:ident) => {
+        impl Key for $signed {
+            type Mask = bool;
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                Ord::min(self, other)
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> bool {
+                self < other
+            }
+            #[inline(always)]
+            fn eq(self, other: Self) -> bool {
+                self == other
+            }
+        }
+    };
+}
+
+scalar_key!(i32);
+scalar_key!(i64);
+
 impl<const FUSED: bool> Lanes for Scalar<FUSED> {
-    scalar_lanes!(f32, u32, i32, FUSED);
+    scalar_lanes!(f32, Single<FUSED>, Single, u32, i32);
 
     #[inline(always)]
-    fn sin_cos_turns(self, u: f32) -> (f32, f32) {
+    fn sin_cos_turns(self, u: Single<FUSED>) -> (Single<FUSED>, Single<FUSED>) {
         polynomial_sin_cos_turns(self, u)
     }
 }
 
 impl Lanes for Reference {
-    scalar_lanes!(f64, u64, i64, false);
+    scalar_lanes!(f64, Double, Double, u64, i64);
 
     #[inline(always)]
-    fn sin_cos_turns(self, u: f64) -> (f64, f64) {
-        (u * std::f64::consts::TAU).sin_cos()
+    fn sin_cos_turns(self, u: Double) -> (Double, Double) {
+        let (sine, cosine) = (u.0 * std::f64::consts::TAU).sin_cos();
+        (Double(sine), Double(cosine))
     }
 }

@@ -1,7 +1,7 @@
 //! Packets: rows in one register, or in several where a level's registers are shorter.
 
 use super::instructions::{Instructions, transpose4};
-use super::{Lanes, Wide, WideU, polynomial_sin_cos_turns};
+use super::{Float, Key, Lanes, Mask, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns};
 use crate::kernel::RecordColumns;
 use fearless_simd::prelude::*;
 use fearless_simd::{
@@ -56,77 +56,12 @@ macro_rules! simd_lanes {
                 f.store_slice(&mut to.0[..$width]);
             }
             #[inline(always)]
-            fn mul_add(a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
-                a.mul_add(b, c)
-            }
-            #[inline(always)]
-            fn neg_mul_add(a: $f<S>, b: $f<S>, c: $f<S>) -> $f<S> {
-                (-a).mul_add(b, c)
-            }
-            #[inline(always)]
-            fn sqrt(x: $f<S>) -> $f<S> {
-                x.sqrt()
-            }
-            #[inline(always)]
-            fn abs(x: $f<S>) -> $f<S> {
-                x.abs()
-            }
-            #[inline(always)]
-            fn copysign(size: $f<S>, sign: $f<S>) -> $f<S> {
-                size.copysign(sign)
-            }
-            #[inline(always)]
-            fn min(a: $f<S>, b: $f<S>) -> $f<S> {
-                a.min(b)
-            }
-            #[inline(always)]
-            fn max(a: $f<S>, b: $f<S>) -> $f<S> {
-                a.max(b)
-            }
-            #[inline(always)]
-            fn lt(a: $f<S>, b: $f<S>) -> $m<S> {
-                a.simd_lt(b)
-            }
-            #[inline(always)]
-            fn select(m: $m<S>, a: $f<S>, b: $f<S>) -> $f<S> {
-                m.select(a, b)
-            }
-            #[inline(always)]
-            fn is_negative(x: $f<S>) -> $m<S> {
-                let bits: $i<S> = x.bitcast();
-                bits.simd_lt(0)
-            }
-            #[inline(always)]
-            fn select_u(m: $m<S>, a: $u<S>, b: $u<S>) -> $u<S> {
-                m.select(a, b)
-            }
-            #[inline(always)]
             fn keep(self, m: $m<S>, a: $u<S>) -> $u<S> {
                 self.0.$ones(m) & a
             }
             #[inline(always)]
             fn fill(self, m: $m<S>, a: $u<S>) -> $u<S> {
                 self.0.$ones(m) | a
-            }
-            #[inline(always)]
-            fn eq_u(a: $u<S>, b: $u<S>) -> $m<S> {
-                a.simd_eq(b)
-            }
-            #[inline(always)]
-            fn min_u(a: $u<S>, b: $u<S>) -> $u<S> {
-                a.min(b)
-            }
-            #[inline(always)]
-            fn shl(a: $u<S>, n: u32) -> $u<S> {
-                a << n
-            }
-            #[inline(always)]
-            fn shr(a: $u<S>, n: u32) -> $u<S> {
-                a >> n
-            }
-            #[inline(always)]
-            fn bits(m: $m<S>) -> u32 {
-                m.to_bitmask() as u32
             }
             #[inline(always)]
             fn key(negated: $f<S>) -> $i<S> {
@@ -141,18 +76,6 @@ macro_rules! simd_lanes {
                 // The bits of -1 are a NaN.
                 let bits: $u<S> = k.bitcast();
                 self.fill(m, bits).bitcast()
-            }
-            #[inline(always)]
-            fn min_key(a: $i<S>, b: $i<S>) -> $i<S> {
-                a.min(b)
-            }
-            #[inline(always)]
-            fn lt_key(a: $i<S>, b: $i<S>) -> $m<S> {
-                a.simd_lt(b)
-            }
-            #[inline(always)]
-            fn eq_key(a: $i<S>, b: $i<S>) -> $m<S> {
-                a.simd_eq(b)
             }
             #[inline(always)]
             fn float_of(u: $u<S>) -> $f<S> {
@@ -174,6 +97,99 @@ macro_rules! simd_lanes {
             #[inline(always)]
             fn sin_cos_turns(self, u: $f<S>) -> ($f<S>, $f<S>) {
                 polynomial_sin_cos_turns(self, u)
+            }
+        }
+
+        impl<S: Instructions> Mask for $m<S> {
+            #[inline(always)]
+            fn bits(self) -> u32 {
+                self.to_bitmask() as u32
+            }
+        }
+
+        impl<S: Instructions> Select<$m<S>> for $f<S> {
+            #[inline(always)]
+            fn select(m: $m<S>, a: Self, b: Self) -> Self {
+                fearless_simd::Select::select(m, a, b)
+            }
+        }
+
+        impl<S: Instructions> Select<$m<S>> for $u<S> {
+            #[inline(always)]
+            fn select(m: $m<S>, a: Self, b: Self) -> Self {
+                fearless_simd::Select::select(m, a, b)
+            }
+        }
+
+        impl<S: Instructions> Float for $f<S> {
+            type Mask = $m<S>;
+
+            #[inline(always)]
+            fn mul_add(self, b: Self, c: Self) -> Self {
+                SimdFloat::mul_add(self, b, c)
+            }
+            #[inline(always)]
+            fn neg_mul_add(self, b: Self, c: Self) -> Self {
+                SimdFloat::mul_add(-self, b, c)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                SimdFloat::sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                SimdBase::abs(self)
+            }
+            #[inline(always)]
+            fn copysign(self, sign: Self) -> Self {
+                SimdFloat::copysign(self, sign)
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                SimdBase::min(self, other)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                SimdBase::max(self, other)
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> $m<S> {
+                self.simd_lt(other)
+            }
+            #[inline(always)]
+            fn is_negative(self) -> $m<S> {
+                let bits: $i<S> = self.bitcast();
+                bits.simd_lt(0)
+            }
+        }
+
+        impl<S: Instructions> Unsigned for $u<S> {
+            type Mask = $m<S>;
+
+            #[inline(always)]
+            fn eq(self, other: Self) -> $m<S> {
+                self.simd_eq(other)
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                SimdBase::min(self, other)
+            }
+        }
+
+        impl<S: Instructions> Key for $i<S> {
+            type Mask = $m<S>;
+
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                SimdBase::min(self, other)
+            }
+            #[inline(always)]
+            fn lt(self, other: Self) -> $m<S> {
+                self.simd_lt(other)
+            }
+            #[inline(always)]
+            fn eq(self, other: Self) -> $m<S> {
+                self.simd_eq(other)
             }
         }
     };

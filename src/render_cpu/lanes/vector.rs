@@ -1,6 +1,6 @@
 //! Vectors whose components are rows: points, directions and colours.
 
-use super::{Lanes, Wide};
+use super::{Float, Lanes, Select, Wide};
 use std::ops::{Add, Mul, Sub};
 
 /// Three rows: a point, a direction or a colour.
@@ -44,6 +44,34 @@ impl<F: Copy + Mul<Output = F>> V3<F> {
     }
 }
 
+impl<F: Float> V3<F> {
+    /// Dot product.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> F {
+        self.x.mul_add(o.x, self.y.mul_add(o.y, self.z * o.z))
+    }
+
+    /// `self s + b`.
+    #[inline(always)]
+    pub fn mul_add(self, s: F, b: Self) -> Self {
+        V3 { x: self.x.mul_add(s, b.x), y: self.y.mul_add(s, b.y), z: self.z.mul_add(s, b.z) }
+    }
+
+    /// `b - self s`.
+    #[inline(always)]
+    pub fn neg_mul_add(self, s: F, b: Self) -> Self {
+        // Negates the factor that changes most often: a negated direction would occupy registers of its own.
+        V3 { x: s.neg_mul_add(self.x, b.x), y: s.neg_mul_add(self.y, b.y), z: s.neg_mul_add(self.z, b.z) }
+    }
+}
+
+impl<M: Copy, F: Select<M>> Select<M> for V3<F> {
+    #[inline(always)]
+    fn select(m: M, a: Self, b: Self) -> Self {
+        V3 { x: F::select(m, a.x, b.x), y: F::select(m, a.y, b.y), z: F::select(m, a.z, b.z) }
+    }
+}
+
 /// The same vector in every lane.
 #[inline(always)]
 pub fn splat3<L: Lanes>(l: L, v: [L::Real; 3]) -> V3<L::F> {
@@ -54,29 +82,4 @@ pub fn splat3<L: Lanes>(l: L, v: [L::Real; 3]) -> V3<L::F> {
 #[inline(always)]
 pub fn load3<L: Lanes>(l: L, v: &[Wide<L::Real>; 3]) -> V3<L::F> {
     V3 { x: l.load(&v[0]), y: l.load(&v[1]), z: l.load(&v[2]) }
-}
-
-/// Dot product.
-#[inline(always)]
-pub fn dot<L: Lanes>(a: V3<L::F>, b: V3<L::F>) -> L::F {
-    L::mul_add(a.x, b.x, L::mul_add(a.y, b.y, a.z * b.z))
-}
-
-/// `a s + b`.
-#[inline(always)]
-pub fn mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
-    V3 { x: L::mul_add(a.x, s, b.x), y: L::mul_add(a.y, s, b.y), z: L::mul_add(a.z, s, b.z) }
-}
-
-/// `b - a s`.
-#[inline(always)]
-pub fn neg_mul_add3<L: Lanes>(a: V3<L::F>, s: L::F, b: V3<L::F>) -> V3<L::F> {
-    // Negates the factor that changes most often: a negated direction would occupy registers of its own.
-    V3 { x: L::neg_mul_add(s, a.x, b.x), y: L::neg_mul_add(s, a.y, b.y), z: L::neg_mul_add(s, a.z, b.z) }
-}
-
-/// `a` where `m` is true, else `b`.
-#[inline(always)]
-pub fn select3<L: Lanes>(m: L::M, a: V3<L::F>, b: V3<L::F>) -> V3<L::F> {
-    V3 { x: L::select(m, a.x, b.x), y: L::select(m, a.y, b.y), z: L::select(m, a.z, b.z) }
 }

@@ -6,7 +6,7 @@ use crate::film::FIXED_POINT_SCALE;
 use crate::kernel::{NONE, RADIANCE_TOTAL_LIMIT, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::screen;
-use crate::render_cpu::lanes::{Lanes, V3, select3};
+use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3};
 use crate::render_cpu::work::{TileStats, Work};
 use crate::stages::Shading;
 
@@ -21,8 +21,8 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     stats: &mut TileStats,
 ) {
     let prepared = &broadcast.prepared;
-    let miss = L::eq_u(packet.nearest.sphere, l.splat_u(NONE));
-    let is_last = L::eq_u(packet.stream, last_stream(l, prepared, packet));
+    let miss = packet.nearest.sphere.eq(l.splat_u(NONE));
+    let is_last = packet.stream.eq(last_stream(l, prepared, packet));
     let mut ended = miss | is_last | packet.absorbed;
     let mut lit = miss & !packet.absorbed;
     let mut light = shade_miss(l, broadcast, packet.rays.direction.y);
@@ -35,13 +35,13 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
 
     // Lanes whose path has ended go on to the next sample or the next block.
     let next = packet.counter + l.load_u(&packet.blocks.step);
-    packet.counter = L::select_u(ended, next, packet.counter);
-    let at_end = L::eq_u(packet.counter, l.load_u(&packet.blocks.end));
-    let done = L::bits(ended & packet.alive & at_end);
+    packet.counter = ended.select(next, packet.counter);
+    let at_end = packet.counter.eq(l.load_u(&packet.blocks.end));
+    let done = (ended & packet.alive & at_end).bits();
     if done != 0 {
         enter_block(l, broadcast, packet, work, done);
     }
-    packet.stream = L::select_u(ended, l.load_u(&packet.blocks.key), next_stream(l, prepared, packet));
+    packet.stream = ended.select(l.load_u(&packet.blocks.key), next_stream(l, prepared, packet));
     packet.ended = ended;
     packet.draw = draw::<L, PARTS>(l, prepared, packet);
 }
@@ -52,7 +52,7 @@ fn shade_miss<L: Lanes>(l: L, broadcast: &BroadcastScene<L::Real>, height: L::F)
     let zero = l.constant(0.0);
     let channel = |channel: usize| {
         let (middle, slope) = (l.load(&broadcast.sky_middle[channel]), l.load(&broadcast.sky_slope[channel]));
-        L::max(zero, L::mul_add(slope, height, middle))
+        zero.max(slope.mul_add(height, middle))
     };
     V3 { x: channel(0), y: channel(1), z: channel(2) }
 }
@@ -87,11 +87,11 @@ fn shade_hit<L: Lanes, const PARTS: u32>(
             let half = l.constant(0.5 * FIXED_POINT_SCALE);
             let record = HitRecords::load::<PARTS>(l, broadcast, packet);
             let outward = hit_point::<L, PARTS>(l, broadcast, packet, &record).outward;
-            let shade = |n: L::F| L::max(zero, L::mul_add(n, half, half));
+            let shade = |n: L::F| zero.max(n.mul_add(half, half));
             V3 { x: shade(outward.x), y: shade(outward.y), z: shade(outward.z) }
         }
     };
-    select3::<L>(miss, light, shown)
+    miss.select(light, shown)
 }
 
 /// Adds the radiance of a finished path to the sums of the lanes in `lit`, or counts it as rejected if it is not a
@@ -100,9 +100,9 @@ fn shade_hit<L: Lanes, const PARTS: u32>(
 fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::F>, stats: &mut TileStats) {
     let radiance = light.times(packet.throughput);
     let total = radiance.x + radiance.y + radiance.z;
-    let is_valid = L::lt(total, l.constant(RADIANCE_TOTAL_LIMIT));
+    let is_valid = total.lt(l.constant(RADIANCE_TOTAL_LIMIT));
     let counted = lit & packet.alive;
-    let invalid = L::bits(counted & !is_valid);
+    let invalid = (counted & !is_valid).bits();
     if invalid != 0 {
         stats.rejected += u64::from(invalid.count_ones());
     }
@@ -126,7 +126,7 @@ fn enter_block<L: Lanes>(
     done: u32,
 ) {
     let retired = work.refill(done, &mut packet.blocks);
-    packet.counter = L::select_u(l.mask(done), l.load_u(&packet.blocks.start), packet.counter);
+    packet.counter = l.mask(done).select(l.load_u(&packet.blocks.start), packet.counter);
     packet.alive = packet.alive & !l.mask(retired);
     let [x, y] = pixel_position(l, l.load_u(&packet.blocks.pixel));
     packet.screen = screen(l, &broadcast.camera, x, y);

@@ -17,7 +17,7 @@ pub use single::SinglePath;
 
 use super::broadcast::BroadcastScene;
 use super::bvh::{EMPTY_STACK, Stack, traverse};
-use super::lanes::{Lanes, V3, select3};
+use super::lanes::{Float, Lanes, Mask, V3};
 use super::sphere::{
     NONE, Nearest, Rays, Spheres, SurfacePoint, anchored_root, anchored_surface_point, book_point, book_root,
     near_root, nearest_root, speck_surface_point, surface_point,
@@ -132,12 +132,12 @@ fn intersect<L: Lanes, const PARTS: u32>(
     stack: &mut Stack,
     stats: &mut TileStats,
 ) -> u32 {
-    let alive = L::bits(packet.alive);
+    let alive = packet.alive.bits();
     if alive == 0 {
         return 0;
     }
     let active = packet.alive & !packet.absorbed;
-    stats.rays += u64::from(L::bits(active).count_ones());
+    stats.rays += u64::from(active.bits().count_ones());
     let (rays, prepared) = (&packet.rays, &broadcast.prepared);
     let mut nearest = Nearest::nothing(l);
     let book_t_min =
@@ -200,9 +200,9 @@ fn hit_point<L: Lanes, const PARTS: u32>(
     };
     if PARTS & parts::EXTREMES != 0 && features.anchored {
         let far = anchored_surface_point(l, rays, t, reference, record.inward(), curvature);
-        let is_anchored = L::lt(l.constant(0.0), record.anchoring());
-        point.position = select3::<L>(is_anchored, far.position, point.position);
-        point.outward = select3::<L>(is_anchored, far.outward, point.outward);
+        let is_anchored = l.constant(0.0).lt(record.anchoring());
+        point.position = is_anchored.select(far.position, point.position);
+        point.outward = is_anchored.select(far.outward, point.outward);
     }
     point
 }
@@ -210,5 +210,5 @@ fn hit_point<L: Lanes, const PARTS: u32>(
 /// Splits `x | y << 16` into column and row.
 #[inline(always)]
 fn pixel_position<L: Lanes>(l: L, pixel: L::U) -> [L::F; 2] {
-    [L::float_of(pixel & l.splat_u(0xFFFF)), L::float_of(L::shr(pixel, 16))]
+    [L::float_of(pixel & l.splat_u(0xFFFF)), L::float_of(pixel >> 16)]
 }

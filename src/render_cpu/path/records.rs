@@ -3,7 +3,7 @@
 use super::Packet;
 use crate::kernel::{Columns, GROUP, NONE, RECORD_COLUMNS, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
-use crate::render_cpu::lanes::{Lanes, V3, WideU};
+use crate::render_cpu::lanes::{Lanes, Unsigned, V3, WideU};
 
 /// Column groups of a record.
 const GROUPS: usize = RECORD_COLUMNS / GROUP;
@@ -35,7 +35,7 @@ impl<L: Lanes> HitRecords<L> {
             }
         } else {
             let mut numbers = WideU::default();
-            L::store_u(l.keep(!L::eq_u(hit, l.splat_u(NONE)), hit), &mut numbers);
+            L::store_u(l.keep(!hit.eq(l.splat_u(NONE)), hit), &mut numbers);
             for (group, loaded) in groups.iter_mut().enumerate() {
                 if is_needed(group) {
                     *loaded = l.gather(&prepared.records, &numbers, group);

@@ -6,7 +6,7 @@ use crate::kernel::{EYE, LoadShading, NEAR_ZERO, parts};
 use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::{CameraRays, lens_ray, pinhole_ray};
-use crate::render_cpu::lanes::{Lanes, V3, dot, mul_add3, select3};
+use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3};
 use crate::render_cpu::material::{
     Incidence, Scatter, Surface, hemisphere, incidence_of, incidence_of_sine2, refracted, scatter, surface_of,
 };
@@ -24,25 +24,25 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(
     let (hit, ended) = (packet.nearest.sphere, packet.ended);
     let bounced = scatter_path::<L, PARTS>(l, broadcast, packet);
     let camera = generate_camera_ray::<L, PARTS>(l, broadcast, packet);
-    let next = select3::<L>(ended, camera.direction, bounced.direction);
-    let length2 = dot::<L>(next, next);
-    let vanishes = L::lt(length2, l.constant(NEAR_ZERO));
-    let next = select3::<L>(vanishes, bounced.normal, next);
-    let next = next.scale(one / L::sqrt(L::select(vanishes, one, length2)));
+    let next = ended.select(camera.direction, bounced.direction);
+    let length2 = next.dot(next);
+    let vanishes = length2.lt(l.constant(NEAR_ZERO));
+    let next = vanishes.select(bounced.normal, next);
+    let next = next.scale(one / vanishes.select(one, length2).sqrt());
     // Metal absorbs a fuzzy reflection that points into the surface.
-    packet.absorbed = bounced.is_metal & !L::lt(l.constant(0.0), dot::<L>(next, bounced.normal)) & !ended;
+    packet.absorbed = bounced.is_metal & !l.constant(0.0).lt(next.dot(bounced.normal)) & !ended;
     let mut left = l.fill(ended | bounced.inward, hit);
     if PARTS & parts::EXTREMES != 0 && broadcast.prepared.features.eye_on_surface {
-        left = L::select_u(ended, l.splat_u(EYE), left);
+        left = ended.select(l.splat_u(EYE), left);
     }
     packet.rays = Rays {
-        origin: select3::<L>(ended, camera.origin, bounced.origin),
+        origin: ended.select(camera.origin, bounced.origin),
         direction: next,
         left,
         inside: l.fill(ended | !bounced.inward, hit),
     };
     let throughput = packet.throughput.times(bounced.albedo);
-    packet.throughput = select3::<L>(ended, V3 { x: one, y: one, z: one }, throughput);
+    packet.throughput = ended.select(V3 { x: one, y: one, z: one }, throughput);
 }
 
 /// The camera rays of new paths.
@@ -60,7 +60,7 @@ fn generate_camera_ray<L: Lanes, const PARTS: u32>(
         (true, true) => packet.draw.jitter,
     };
     if with_lens {
-        let lens_radius = L::sqrt(u0);
+        let lens_radius = u0.sqrt();
         let on_lens = [lens_radius * packet.draw.cosine, lens_radius * packet.draw.sine];
         lens_ray(l, &broadcast.camera, packet.screen, jitter, on_lens)
     } else {
@@ -97,19 +97,19 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
     // What was hit, where, and from which side.
     let record = HitRecords::load::<PARTS>(l, broadcast, packet);
     let point = hit_point::<L, PARTS>(l, broadcast, packet, &record);
-    let outward_cosine = dot::<L>(direction, point.outward);
-    let mut front = L::lt(outward_cosine, zero);
+    let outward_cosine = direction.dot(point.outward);
+    let mut front = outward_cosine.lt(zero);
     if !with_rules || features.surface == SurfaceRule::Exact {
-        front = front & !L::eq_u(packet.rays.inside, hit);
+        front = front & !packet.rays.inside.eq(hit);
     }
     if PARTS & parts::EXTREMES != 0 && features.cavity {
-        front = front & !L::lt(one, record.anchoring());
+        front = front & !one.lt(record.anchoring());
     }
-    let normal = point.outward.scale(L::select(front, one, l.constant(-1.0)));
+    let normal = point.outward.scale(front.select(one, l.constant(-1.0)));
 
     let [u0, _] = packet.draw.pair;
     let (sine, cosine) = (packet.draw.sine, packet.draw.cosine);
-    let rho = L::sqrt(u0 * (one - u0));
+    let rho = (u0 * (one - u0)).sqrt();
     let rho = rho + rho;
     let unit = V3 { x: rho * cosine, y: one - (u0 + u0), z: rho * sine };
 
@@ -126,8 +126,8 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
     let mut albedo = record.albedo();
     if with_rules {
         if features.hemisphere {
-            let is_lambertian = L::lt(zero, surface.weight);
-            bounced.direction = select3::<L>(is_lambertian, hemisphere(l, normal, unit), bounced.direction);
+            let is_lambertian = zero.lt(surface.weight);
+            bounced.direction = is_lambertian.select(hemisphere(l, normal, unit), bounced.direction);
         }
         if features.reflectance_strips {
             let reflectance = strip_reflectance(l, prepared, l.load_u(&packet.blocks.pixel));
@@ -153,17 +153,17 @@ fn scatter_steeply<L: Lanes>(
     unit: V3<L::F>,
 ) -> Scatter<L> {
     let direction = packet.rays.direction;
-    let across = mul_add3::<L>(normal, incidence.cosine, direction);
-    let runs_own_chord = L::eq_u(packet.rays.inside, packet.nearest.sphere);
-    let is_known = runs_own_chord & L::lt(l.constant(0.0), surface.refraction_index);
-    let incidence = incidence_of_sine2(l, L::select(is_known, packet.sine2, dot::<L>(across, across)));
+    let across = normal.mul_add(incidence.cosine, direction);
+    let runs_own_chord = packet.rays.inside.eq(packet.nearest.sphere);
+    let is_known = runs_own_chord & l.constant(0.0).lt(surface.refraction_index);
+    let incidence = incidence_of_sine2(l, is_known.select(packet.sine2, across.dot(across)));
     let coin = packet.draw.pair[0];
     let laws = prepared.features.dielectric_laws;
     let mut bounced = scatter::<L, true>(l, surface, laws, direction, normal, &incidence, front, unit, coin);
     let through = refracted(l, across, normal, bounced.ratio, incidence.sine2);
-    bounced.direction = select3::<L>(bounced.refracts, through, bounced.direction);
+    bounced.direction = bounced.refracts.select(through, bounced.direction);
     let refracted_sine2 = bounced.ratio * bounced.ratio * incidence.sine2;
-    packet.sine2 = L::select(bounced.refracts, refracted_sine2, incidence.sine2);
+    packet.sine2 = bounced.refracts.select(refracted_sine2, incidence.sine2);
     bounced
 }
 
@@ -173,6 +173,6 @@ fn strip_reflectance<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, pixel: L
     let [x, _] = pixel_position(l, pixel);
     let strips = l.constant(5.0 / f64::from(prepared.settings.width));
     let strip = (x + l.constant(0.5)) * strips - l.constant(0.5);
-    let strip = L::float_of(l.fixed_point(L::max(l.constant(0.0), strip)));
-    L::mul_add(strip, l.constant(0.2), l.constant(0.1))
+    let strip = L::float_of(l.fixed_point(l.constant(0.0).max(strip)));
+    strip.mul_add(l.constant(0.2), l.constant(0.1))
 }

@@ -4,7 +4,7 @@ use super::{Packet, intersect, parts, shade};
 use crate::kernel::Real;
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::bvh::{EMPTY_STACK, Stack};
-use crate::render_cpu::lanes::{Lanes, V3, Wide, WideU};
+use crate::render_cpu::lanes::{Lanes, Mask, V3, Wide, WideU};
 use crate::render_cpu::work::{TileStats, Work};
 
 /// A packet of one lane, used to record what a path does.
@@ -30,12 +30,12 @@ impl<L: Lanes> SinglePath<L> {
 
     /// Whether there is a ray left to trace.
     pub fn is_alive(&self) -> bool {
-        L::bits(self.packet.alive) != 0
+        self.packet.alive.bits() != 0
     }
 
     /// Whether the path was absorbed at its last hit.
     pub fn is_absorbed(&self) -> bool {
-        L::bits(self.packet.absorbed) != 0
+        self.packet.absorbed.bits() != 0
     }
 
     /// Start of the current ray.
