@@ -234,7 +234,7 @@ features! {
     /// The sampler, which generates the numbers of a sample.
     sampler: SamplerKind [off SamplerKind::Sobol] = job.settings().sampler;
     /// Samples are spread over the pixel.
-    antialiasing: bool [off true] = job.rules().antialiasing;
+    antialiasing: bool [off true, cpu RULES] = job.rules().antialiasing;
     /// Any rays are traced.
     rays: bool [off true] = job.rules().shading != Shading::ImageGradient;
     /// How rays leave the surface that they start on.
@@ -309,7 +309,8 @@ mod tests {
             ..Features::default()
         };
         assert_eq!(none.parts(), parts::NONE);
-        assert_eq!(Features { metal: true, antialiasing: false, ..none }.parts(), parts::NONE);
+        assert_eq!(Features { metal: true, ..none }.parts(), parts::NONE);
+        assert_eq!(Features { antialiasing: false, ..none }.parts(), parts::RULES);
         assert_eq!(Features { two_root: true, ..none }.parts(), parts::GLASS);
         assert_eq!(Features { specks: true, lens: true, ..none }.parts(), parts::EXTREMES | parts::LENS);
         assert_eq!(Features { surface: Surface::Book, ..none }.parts(), parts::RULES);

@@ -1,10 +1,11 @@
 //! A job's prepared scene as packets read it: values that every lane needs are broadcast in memory, so that an
 //! instruction can use them as a memory operand.
 
-use super::lanes::{MAX_LANES, Wide};
+use super::lanes::{MAX_LANES, Wide, WideU};
 use super::sphere::BroadcastSphere;
 use crate::kernel::{CameraTable, RECORD_COLUMNS, Real};
 use crate::prepared::PreparedScene;
+use crate::sampling::stream_stride;
 
 /// A prepared scene, with broadcast copies of the parts that are read in every step.
 #[derive(Clone, Debug)]
@@ -21,6 +22,10 @@ pub struct BroadcastScene<R> {
     pub sky_middle: [Wide<R>; 3],
     /// `PreparedScene::sky_slope`, broadcast.
     pub sky_slope: [Wide<R>; 3],
+    /// The difference between the sampler's streams of consecutive rays.
+    pub stream_stride: WideU,
+    /// The difference between the sampler's streams of a path's first and last ray.
+    pub last_stream: WideU,
     /// The first of `PreparedScene::records` by column, for kernels that hold a column in a register.
     pub columns: Box<[Wide<R>; RECORD_COLUMNS]>,
 }
@@ -40,7 +45,10 @@ impl<R: Real> BroadcastScene<R> {
                 column.0[index] = number;
             }
         }
+        let stride = stream_stride(prepared.settings.sampler);
         BroadcastScene {
+            stream_stride: Wide::splat(stride),
+            last_stream: Wide::splat(stride.wrapping_mul(prepared.settings.max_depth - 1)),
             opaque: numbered(&prepared.opaque, 0),
             two_root: numbered(listed, prepared.opaque.len()),
             camera: prepared.camera.map(Wide::splat),

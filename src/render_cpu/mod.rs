@@ -30,7 +30,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tiles::{Tile, tile_side, tiles};
-use work::{RefillBlock, TileStats, Work, refill_order};
+use work::{RefillBlock, RefillOrder, TileStats, Work};
 
 /// The nice value added to low-priority threads. Under contention each step costs about a tenth of the time.
 #[cfg(target_os = "linux")]
@@ -324,10 +324,17 @@ impl CpuRenderer {
     ) -> Vec<TracedTile> {
         let settings = &prepared.prepared.settings;
         let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
-        let order = refill_order(pass.side);
         let tiles = tiles(film.halves_mut(), settings.width, pass.side);
+        let mut orders: Vec<RefillOrder> = Vec::new();
+        for tile in &tiles {
+            if !orders.iter().any(|order| order.size() == tile.size()) {
+                let [width, height] = tile.size();
+                orders.push(RefillOrder::new(width, height));
+            }
+        }
         let trace_tile = |(index, tile): (usize, Tile)| {
-            let mut work = Work::new(&blocks, &order, tile.corner, tile.height, tile.rows);
+            let order = orders.iter().find(|order| order.size() == tile.size()).unwrap_or(&orders[0]);
+            let mut work = Work::new(&blocks, order, tile.corner, tile.rows);
             let expected = work.expected();
             if let Some(taken_away) = pass.taken_away {
                 work = work.taking_away(taken_away[index]);

@@ -6,7 +6,7 @@ use super::broadcast::BroadcastScene;
 use super::lanes::{Lanes, Scalar, V3, Wide};
 use super::path::SinglePath;
 use super::sphere::NONE;
-use super::work::{RefillBlock, Work};
+use super::work::{RefillBlock, RefillOrder, Work};
 use crate::film::PixelSum;
 use crate::kernel::Real;
 use crate::prepared::PreparedScene;
@@ -82,7 +82,8 @@ pub(super) fn record<L: Lanes>(
     let blocks = RefillBlock::of_range(index..index + 1, &prepared.settings, 1);
     let mut sums = vec![PixelSum::default(); prepared.settings.half_count()];
     let rows = sums.iter_mut().map(std::slice::from_mut).collect();
-    let mut work = Work::new(&blocks, &[0], pixel, 1, rows);
+    let order = RefillOrder::new(1, 1);
+    let mut work = Work::new(&blocks, &order, pixel, rows);
     let mut path = SinglePath::start(l, broadcast, &mut work);
     let in_scene = |position: V3<L::F>| {
         let [x, y, z] = first_lane::<L>(position);

@@ -4,7 +4,7 @@
 
 use super::lanes::Lanes;
 use crate::render::{RenderSettings, SamplerKind};
-use crate::sampling::{GOLDEN_RATIO, LENS_BLOCK};
+use crate::sampling::{GOLDEN_RATIO, HalfKey, LENS_BLOCK};
 
 /// Hashes 32 bits to 32 bits; a bijection.
 #[inline(always)]
@@ -56,6 +56,15 @@ pub fn pascal<L: Lanes>(l: L, u: L::U) -> L::U {
 pub fn sobol_pair<L: Lanes>(l: L, counter: L::U, stream: L::U) -> [L::U; 2] {
     let u = laine_karras(l, counter, mix32(l, stream));
     [u, pascal(l, u)]
+}
+
+/// The stream of a pixel's camera rays, lane by lane: [`HalfKey::of_pixel`].
+#[inline(always)]
+pub fn stream_of_pixel<L: Lanes>(l: L, half_key: HalfKey, pixel: L::U) -> L::U {
+    match half_key.bits() {
+        Some(half_key) => mix32(l, pixel ^ l.splat_u(half_key)),
+        None => l.splat_u(0),
+    }
 }
 
 /// The stream of the second pair of dimensions of the same ray, which supplies the point in the pixel when the first

@@ -22,6 +22,13 @@ pub struct Tile<'film> {
     pub rows: TileRows<'film>,
 }
 
+impl Tile<'_> {
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.rows.first().map_or(0, |row| row.len() as u32), self.height]
+    }
+}
+
 /// The side of the tiles for a picture and a number of threads, a power of two.
 pub fn tile_side(width: u32, height: u32, threads: usize) -> u32 {
     let count = |side: u32| width.div_ceil(side) * height.div_ceil(side);

@@ -1,6 +1,7 @@
 //! The work of a tile: blocks of samples of its pixels, from which lanes are refilled.
 
-use super::lanes::WideU;
+use super::lanes::{Lanes, MAX_LANES, Mask, WideU};
+use super::rng;
 use crate::film::PixelSum;
 use crate::render::RenderSettings;
 use crate::sampling::{HalfKey, SampleBlock};
@@ -61,63 +62,84 @@ impl RefillBlock {
     }
 }
 
-/// Refill state of a packet's lanes: stored per lane, loaded as a vector.
-#[derive(Clone)]
-pub struct LaneBlocks {
-    /// The sampler's counter at the block's first sample.
-    pub start: WideU,
+/// What a packet's lanes work on: a block of samples of a pixel each.
+#[derive(Clone, Copy)]
+pub struct LaneBlocks<L: Lanes> {
     /// The increment of the counter.
-    pub step: WideU,
+    pub step: L::U,
     /// The counter after the block's last sample.
-    pub end: WideU,
+    pub end: L::U,
     /// The sampler's stream for the camera ray.
-    pub key: WideU,
+    pub key: L::U,
     /// `x | y << 16`.
-    pub pixel: WideU,
+    pub pixel: L::U,
     /// Sums of the block so far, RGB.
-    pub sums: [WideU; 3],
-    /// Destination of the sums: `row << 8 | column` of the tile's rows, or [`NOWHERE`].
-    slot: WideU,
+    pub sums: [L::U; 3],
+    /// Destination of the sums: `column | row << 16` of the tile's rows.
+    slot: L::U,
+    /// Lanes that have a block, as bits. The others go on tracing, but nobody looks at what they do.
+    pub busy: u32,
 }
 
-/// The slot of a lane that has had no block yet.
-const NOWHERE: u32 = u32::MAX;
-
-impl Default for LaneBlocks {
-    fn default() -> Self {
-        let zero = WideU::default();
-        let mut slot = WideU::default();
-        slot.0.fill(NOWHERE);
-        LaneBlocks { start: zero, step: zero, end: zero, key: zero, pixel: zero, sums: [zero; 3], slot }
+impl<L: Lanes> LaneBlocks<L> {
+    /// No lane has a block.
+    #[inline(always)]
+    pub fn none(l: L) -> Self {
+        let zero = l.splat_u(0);
+        LaneBlocks { step: zero, end: zero, key: zero, pixel: zero, sums: [zero; 3], slot: zero, busy: 0 }
     }
 }
 
-/// The pixels of a square tile with `side` pixels (at most 256) in refill order, as `y << 8 | x`. They are ordered in
-/// squares of four by four, so that a packet's first rays are close together.
-pub fn refill_order(side: u32) -> Vec<u16> {
-    const SQUARE: u32 = 4;
-    let starts = || (0..side).step_by(SQUARE as usize);
-    let within = |start: u32| start..(start + SQUARE).min(side);
-    let mut order = Vec::with_capacity((side * side) as usize);
-    for top in starts() {
-        for left in starts() {
-            for y in within(top) {
-                order.extend(within(left).map(|x| (y << 8 | x) as u16));
+/// The pixels of a tile in the order in which lanes take them.
+pub struct RefillOrder {
+    width: u32,
+    height: u32,
+    /// `x | y << 16` within the tile, padded so that a row of lanes can be loaded at every pixel.
+    places: Vec<u32>,
+}
+
+impl RefillOrder {
+    /// Orders the pixels of a tile in squares of four by four, so that a packet's first rays are close together.
+    pub fn new(width: u32, height: u32) -> Self {
+        const SQUARE: u32 = 4;
+        let starts = |size: u32| (0..size).step_by(SQUARE as usize);
+        let within = |start: u32, size: u32| start..(start + SQUARE).min(size);
+        let mut places = Vec::with_capacity((width * height) as usize + MAX_LANES);
+        for top in starts(height) {
+            for left in starts(width) {
+                for y in within(top, height) {
+                    places.extend(within(left, width).map(|x| x | y << 16));
+                }
             }
         }
+        places.resize(places.len() + MAX_LANES, 0);
+        RefillOrder { width, height, places }
     }
-    order
+
+    /// Width and height of the tile.
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// Number of pixels.
+    fn len(&self) -> usize {
+        self.places.len() - MAX_LANES
+    }
+
+    /// As many pixels from number `first` on as a packet can have lanes. The last ones may be padding.
+    #[inline(always)]
+    fn row(&self, first: usize) -> &[u32; MAX_LANES] {
+        const PADDING: &[u32; MAX_LANES] = &[0; MAX_LANES];
+        self.places[first..].first_chunk().unwrap_or(PADDING)
+    }
 }
 
 /// A tile's pixels, blocks and sums.
 pub struct Work<'film> {
     blocks: &'film [RefillBlock],
-    /// Pixels in [`refill_order`]; those outside the tile are skipped.
-    order: &'film [u16],
+    order: &'film RefillOrder,
     /// Position of the tile's upper left pixel in the picture.
     corner: [u32; 2],
-    width: u32,
-    height: u32,
     rows: TileRows<'film>,
     next_block: usize,
     next_place: usize,
@@ -127,27 +149,14 @@ pub struct Work<'film> {
 }
 
 impl<'film> Work<'film> {
-    /// Creates the work for a tile with `height` rows in each half.
+    /// Creates the work for a tile whose pixels are taken in `order`.
     pub fn new(
         blocks: &'film [RefillBlock],
-        order: &'film [u16],
+        order: &'film RefillOrder,
         corner: [u32; 2],
-        height: u32,
         rows: TileRows<'film>,
     ) -> Self {
-        let width = rows.first().map_or(0, |row| row.len() as u32);
-        Work {
-            blocks,
-            order,
-            corner,
-            width,
-            height,
-            rows,
-            next_block: 0,
-            next_place: 0,
-            finished: 0,
-            taken_away: None,
-        }
+        Work { blocks, order, corner, rows, next_block: 0, next_place: 0, finished: 0, taken_away: None }
     }
 
     /// Subtracts the first `count` finished blocks from the film instead of adding all. A kernel finishes a tile's
@@ -163,7 +172,7 @@ impl<'film> Work<'film> {
 
     /// Blocks in total, over all pixels.
     pub fn expected(&self) -> u64 {
-        self.blocks.len() as u64 * u64::from(self.width) * u64::from(self.height)
+        self.blocks.len() as u64 * self.order.len() as u64
     }
 
     /// Drops the last row, so that a kernel panics in the middle of the tile (fault injection).
@@ -172,61 +181,90 @@ impl<'film> Work<'film> {
         self
     }
 
-    /// The next block, and its pixel's position in the tile.
+    /// Collects the sums of the lanes `done` and gives each lane its next block. Returns the lanes' counters, which are
+    /// at the first sample where there is a new block.
     #[inline(always)]
-    fn next(&mut self) -> Option<(&'film RefillBlock, [u32; 2])> {
-        loop {
-            let block = self.blocks.get(self.next_block)?;
-            let Some(&place) = self.order.get(self.next_place) else {
+    pub fn refill<L: Lanes>(
+        &mut self,
+        l: L,
+        done: u32,
+        lanes: &mut LaneBlocks<L>,
+        mut counter: L::U,
+    ) -> L::U {
+        self.add_sums::<L>(done & lanes.busy, lanes);
+        let is_done = l.mask(done);
+        let [red, green, blue] = lanes.sums;
+        lanes.sums = [l.keep(!is_done, red), l.keep(!is_done, green), l.keep(!is_done, blue)];
+        let mut idle = done;
+        while idle != 0 {
+            let Some(block) = self.blocks.get(self.next_block) else { break };
+            let given = lowest(idle, self.order.len() - self.next_place);
+            idle &= !given;
+            let m = l.mask(given);
+            let place = l.expand(m, self.order.row(self.next_place));
+            let pixel = place + l.splat_u(self.corner[0] | self.corner[1] << 16);
+            let row = place + l.splat_u((block.half * self.order.height) << 16);
+            lanes.slot = m.select(row, lanes.slot);
+            lanes.pixel = m.select(pixel, lanes.pixel);
+            lanes.step = m.select(l.splat_u(block.step), lanes.step);
+            lanes.end = m.select(l.splat_u(block.end), lanes.end);
+            lanes.key = m.select(rng::stream_of_pixel(l, block.half_key, pixel), lanes.key);
+            counter = m.select(l.splat_u(block.counter), counter);
+            self.next_place += given.count_ones() as usize;
+            if self.next_place == self.order.len() {
                 self.next_place = 0;
                 self.next_block += 1;
-                continue;
-            };
-            self.next_place += 1;
-            let [x, y] = [u32::from(place & 0xFF), u32::from(place >> 8)];
-            if x < self.width && y < self.height {
-                return Some((block, [x, y]));
             }
         }
+        if idle != 0 {
+            // A counter that stands still before its end never asks for another block.
+            let m = l.mask(idle);
+            lanes.step = l.keep(!m, lanes.step);
+            lanes.end = m.select(counter + l.splat_u(1), lanes.end);
+        }
+        lanes.busy = (lanes.busy | done) & !idle;
+        counter
     }
 
-    /// Collects the sums of the lanes `done` and gives each lane its next block. Returns the lanes for which no block
-    /// is left.
+    /// Adds the sums of the lanes `done` to the film.
     #[inline(always)]
-    pub fn refill(&mut self, done: u32, lanes: &mut LaneBlocks) -> u32 {
-        let mut retired = 0;
+    fn add_sums<L: Lanes>(&mut self, done: u32, lanes: &LaneBlocks<L>) {
+        let slots = stored::<L>(lanes.slot);
+        let [red, green, blue] = lanes.sums;
+        let (red, green, blue) = (stored::<L>(red), stored::<L>(green), stored::<L>(blue));
         let mut left = done;
         while left != 0 {
-            let lane = left.trailing_zeros() as usize;
+            let lane = left.trailing_zeros() as usize % MAX_LANES;
             left &= left - 1;
-            let slot = lanes.slot.0[lane];
-            if slot != NOWHERE {
-                let sums = [0, 1, 2].map(|channel| u64::from(lanes.sums[channel].0[lane]));
-                let pixel = &mut self.rows[(slot >> 8) as usize][(slot & 0xFF) as usize];
-                match self.taken_away {
-                    None => pixel.add(PixelSum(sums)),
-                    Some(count) if self.finished < count => take_away(pixel, sums),
-                    Some(_) => {}
-                }
-                self.finished += 1;
+            let slot = slots[lane];
+            let sums = [u64::from(red[lane]), u64::from(green[lane]), u64::from(blue[lane])];
+            let pixel = &mut self.rows[(slot >> 16) as usize][(slot & 0xFFFF) as usize];
+            match self.taken_away {
+                None => pixel.add(PixelSum(sums)),
+                Some(count) if self.finished < count => take_away(pixel, sums),
+                Some(_) => {}
             }
-            for channel in &mut lanes.sums {
-                channel.0[lane] = 0;
-            }
-            let Some((block, [x, y])) = self.next() else {
-                retired |= 1 << lane;
-                continue;
-            };
-            let pixel = (self.corner[0] + x) | (self.corner[1] + y) << 16;
-            lanes.slot.0[lane] = (block.half * self.height + y) << 8 | x;
-            lanes.start.0[lane] = block.counter;
-            lanes.step.0[lane] = block.step;
-            lanes.end.0[lane] = block.end;
-            lanes.pixel.0[lane] = pixel;
-            lanes.key.0[lane] = block.half_key.of_pixel(pixel);
+            self.finished += 1;
         }
-        retired
     }
+}
+
+/// The numbers of a row.
+#[inline(always)]
+fn stored<L: Lanes>(row: L::U) -> [u32; MAX_LANES] {
+    let mut wide = WideU::default();
+    L::store_u(row, &mut wide);
+    wide.0
+}
+
+/// The lowest `count` of the bits that are set.
+#[inline(always)]
+fn lowest(bits: u32, count: usize) -> u32 {
+    if bits.count_ones() as usize <= count {
+        return bits;
+    }
+    let above = (0..count).fold(bits, |above, _| above & above.wrapping_sub(1));
+    bits & !above
 }
 
 fn take_away(pixel: &mut PixelSum, sums: [u64; 3]) {
@@ -240,13 +278,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pixel_is_dealt_once() {
-        for side in [1, 3, 8, 64, 256] {
-            let mut order = refill_order(side);
-            order.sort_unstable();
-            let expected: Vec<u16> =
-                (0..side).flat_map(|y| (0..side).map(move |x| (y << 8 | x) as u16)).collect();
-            assert_eq!(order, expected, "side {side}");
+    fn every_pixel_has_its_turn_once() {
+        for [width, height] in [[1, 1], [3, 5], [8, 8], [64, 7], [256, 256]] {
+            let order = RefillOrder::new(width, height);
+            let mut places = order.places[..order.len()].to_vec();
+            places.sort_unstable();
+            let expected: Vec<u32> =
+                (0..height).flat_map(|y| (0..width).map(move |x| x | y << 16)).collect();
+            assert_eq!(places, expected, "{width}x{height}");
         }
+    }
+
+    #[test]
+    fn rows_of_pixels_can_be_loaded_up_to_the_last() {
+        let order = RefillOrder::new(5, 3);
+        assert_eq!(order.row(0)[..5], [0, 1, 2, 3, 1 << 16]);
+        assert_eq!(order.row(14)[..2], [4 | 2 << 16, 0]);
+    }
+
+    #[test]
+    fn lowest_bits() {
+        assert_eq!(lowest(0b1011_0100, 2), 0b1_0100);
+        assert_eq!(lowest(0b1011_0100, 4), 0b1011_0100);
+        assert_eq!(lowest(0b1011_0100, 9), 0b1011_0100);
+        assert_eq!(lowest(0b1011_0100, 0), 0);
     }
 }

@@ -65,6 +65,12 @@ impl HalfKey {
         }
     }
 
+    /// The number that the keys of all pixels have in common; `None` for the sampler that hashes the pixel itself.
+    #[inline(always)]
+    pub fn bits(self) -> Option<u32> {
+        self.0
+    }
+
     /// The stream of a pixel's camera rays: [`pixel_key`] for the Sobol sampler, 0 for the sampler that hashes the
     /// pixel itself.
     #[inline(always)]

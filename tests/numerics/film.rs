@@ -9,7 +9,7 @@ use weekender::render::{RenderJob, RenderSettings};
 use weekender::render_cpu::broadcast::BroadcastScene;
 use weekender::render_cpu::lanes::Scalar;
 use weekender::render_cpu::path::trace;
-use weekender::render_cpu::work::{RefillBlock, TileStats, Work, refill_order};
+use weekender::render_cpu::work::{RefillBlock, RefillOrder, TileStats, Work};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
 use weekender::scene::{Camera, Sky};
 
@@ -21,10 +21,10 @@ pub fn trace_tables(
 ) -> TileStats {
     let settings = prepared.settings;
     let blocks = RefillBlock::of_range(samples.clone(), &settings, prepared.block_limit);
-    let order = refill_order(256);
+    let order = RefillOrder::new(settings.width, settings.height);
     let rows =
         film.halves_mut().iter_mut().flat_map(|half| half.chunks_mut(settings.width as usize)).collect();
-    let mut work = Work::new(&blocks, &order, [0, 0], settings.height, rows);
+    let mut work = Work::new(&blocks, &order, [0, 0], rows);
     let stats =
         trace::<_, { parts::ALL }>(Scalar::<false>, &BroadcastScene::new(prepared.clone()), &mut work);
     film.record(samples, stats.rejected).unwrap();

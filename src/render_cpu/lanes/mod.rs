@@ -146,6 +146,8 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn mask(self, bits: u32) -> Self::M;
     /// Loads the first [`Lanes::WIDTH`] numbers of a buffer.
     fn load_u(self, from: &WideU) -> Self::U;
+    /// Spreads the first numbers of `from`, in order, over the lanes where `m` is true. The other lanes get any number.
+    fn expand(self, m: Self::M, from: &[u32; MAX_LANES]) -> Self::U;
     /// Stores to the first [`Lanes::WIDTH`] numbers of a buffer.
     fn store_u(u: Self::U, to: &mut WideU);
     /// Stores to the first [`Lanes::WIDTH`] numbers of a buffer.
@@ -166,7 +168,7 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn key(negated: Self::F) -> Self::Key;
     /// The negated distance of a key.
     fn from_key(k: Self::Key) -> Self::F;
-    /// A key that loses every comparison where `m` is true, else `k`.
+    /// 0 where `m` is true, else `k`. Keys of hits are negative, so 0 loses every comparison with them.
     fn exclude(self, m: Self::M, k: Self::Key) -> Self::Key;
 
     /// Converts an integer below `2^31` to a float.

@@ -1,6 +1,6 @@
 //! One lane: scalar code in the packets' precision, and the `f64` reference.
 
-use super::{Float, Key, Lanes, Mask, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns};
+use super::{Float, Key, Lanes, MAX_LANES, Mask, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns};
 use crate::kernel::RecordColumns;
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Shl, Shr, Sub};
 
@@ -197,6 +197,10 @@ macro_rules! scalar_lanes {
             Word(from.0[0])
         }
         #[inline(always)]
+        fn expand(self, _m: bool, from: &[u32; MAX_LANES]) -> Word {
+            Word(from[0])
+        }
+        #[inline(always)]
         fn store_u(u: Word, to: &mut WideU) {
             to.0[0] = u.0;
         }
@@ -214,7 +218,7 @@ macro_rules! scalar_lanes {
         }
         #[inline(always)]
         fn exclude(self, m: bool, k: $signed) -> $signed {
-            if m { $signed::MAX } else { k }
+            if m { 0 } else { k }
         }
         #[inline(always)]
         fn float_of(u: Word) -> Self::F {

@@ -1,7 +1,7 @@
 //! Packets: rows in one register, or in several where a level's registers are shorter.
 
 use super::instructions::{Instructions, transpose4};
-use super::{Float, Key, Lanes, Mask, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns};
+use super::{Float, Key, Lanes, MAX_LANES, Mask, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns};
 use crate::kernel::RecordColumns;
 use fearless_simd::prelude::*;
 use fearless_simd::{
@@ -48,6 +48,10 @@ macro_rules! simd_lanes {
                 $u::from_slice(self.0, &from.0[..$width])
             }
             #[inline(always)]
+            fn expand(self, m: $m<S>, from: &[u32; MAX_LANES]) -> $u<S> {
+                $u::from_slice(self.0, &from[..$width]).expand(m)
+            }
+            #[inline(always)]
             fn store_u(u: $u<S>, to: &mut WideU) {
                 u.store_slice(&mut to.0[..$width]);
             }
@@ -73,9 +77,8 @@ macro_rules! simd_lanes {
             }
             #[inline(always)]
             fn exclude(self, m: $m<S>, k: $i<S>) -> $i<S> {
-                // The bits of -1 are a NaN.
                 let bits: $u<S> = k.bitcast();
-                self.fill(m, bits).bitcast()
+                self.keep(!m, bits).bitcast()
             }
             #[inline(always)]
             fn float_of(u: $u<S>) -> $f<S> {

@@ -22,26 +22,28 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
 ) {
     let prepared = &broadcast.prepared;
     let miss = packet.nearest.sphere.eq(l.splat_u(NONE));
-    let is_last = packet.stream.eq(last_stream(l, prepared, packet));
+    let is_last = packet.stream.eq(last_stream(l, broadcast, packet));
     let mut ended = miss | is_last | packet.absorbed;
     let mut lit = miss & !packet.absorbed;
     let mut light = shade_miss(l, broadcast, packet.rays.direction.y);
     if PARTS & parts::RULES != 0 && prepared.features.shading != Shading::Path {
         light = shade_hit::<L, PARTS>(l, broadcast, packet, miss, light);
-        lit = packet.alive;
-        ended = packet.alive;
+        lit = l.mask(u32::MAX);
+        ended = lit;
     }
     add_radiance(l, packet, lit, light, stats);
 
     // Lanes whose path has ended go on to the next sample or the next block.
-    let next = packet.counter + l.load_u(&packet.blocks.step);
+    let next = packet.counter + packet.blocks.step;
     packet.counter = ended.select(next, packet.counter);
-    let at_end = packet.counter.eq(l.load_u(&packet.blocks.end));
-    let done = (ended & packet.alive & at_end).bits();
+    let at_end = packet.counter.eq(packet.blocks.end);
+    let done = (ended & at_end).bits();
     if done != 0 {
-        enter_block(l, broadcast, packet, work, done);
+        packet.counter = work.refill(l, done, &mut packet.blocks, packet.counter);
+        let [x, y] = pixel_position(l, packet.blocks.pixel);
+        packet.screen = screen(l, &broadcast.camera, x, y);
     }
-    packet.stream = ended.select(l.load_u(&packet.blocks.key), next_stream(l, prepared, packet));
+    packet.stream = ended.select(packet.blocks.key, next_stream(l, broadcast, packet));
     packet.ended = ended;
     packet.draw = draw::<L, PARTS>(l, prepared, packet);
 }
@@ -70,7 +72,7 @@ fn shade_hit<L: Lanes, const PARTS: u32>(
     let (zero, full) = (l.constant(0.0), l.constant(FIXED_POINT_SCALE));
     let shown = match prepared.features.shading {
         Shading::ImageGradient => {
-            let position = pixel_position(l, l.load_u(&packet.blocks.pixel));
+            let position = pixel_position(l, packet.blocks.pixel);
             // A single column or row has no far end, so its share is 0.
             let share = |position: L::F, pixels: u32| {
                 position / l.constant(f64::from(pixels.saturating_sub(1).max(1))) * full
@@ -101,33 +103,16 @@ fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::
     let radiance = light.times(packet.throughput);
     let total = radiance.x + radiance.y + radiance.z;
     let is_valid = total.lt(l.constant(RADIANCE_TOTAL_LIMIT));
-    let counted = lit & packet.alive;
-    let invalid = (counted & !is_valid).bits();
+    let invalid = (lit & !is_valid).bits() & packet.blocks.busy;
     if invalid != 0 {
         stats.rejected += u64::from(invalid.count_ones());
     }
-    let added = counted & is_valid;
+    let added = lit & is_valid;
     let mut add = |channel: usize, x: L::F| {
         let sum = &mut packet.blocks.sums[channel];
-        L::store_u(l.load_u(sum) + l.keep(added, l.fixed_point(x)), sum);
+        *sum = *sum + l.keep(added, l.fixed_point(x));
     };
     add(0, radiance.x);
     add(1, radiance.y);
     add(2, radiance.z);
-}
-
-/// Refills the lanes `done` with their next blocks of samples.
-#[inline(always)]
-fn enter_block<L: Lanes>(
-    l: L,
-    broadcast: &BroadcastScene<L::Real>,
-    packet: &mut Packet<L>,
-    work: &mut Work,
-    done: u32,
-) {
-    let retired = work.refill(done, &mut packet.blocks);
-    packet.counter = l.mask(done).select(l.load_u(&packet.blocks.start), packet.counter);
-    packet.alive = packet.alive & !l.mask(retired);
-    let [x, y] = pixel_position(l, l.load_u(&packet.blocks.pixel));
-    packet.screen = screen(l, &broadcast.camera, x, y);
 }

@@ -3,9 +3,9 @@
 use super::Packet;
 use crate::kernel::parts;
 use crate::prepared::PreparedScene;
+use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::lanes::{Lanes, unit_float};
 use crate::render_cpu::rng::numbers;
-use crate::sampling::stream_stride;
 
 /// The numbers for a packet's next rays.
 #[derive(Clone, Copy)]
@@ -28,7 +28,7 @@ pub(super) fn draw<L: Lanes, const PARTS: u32>(
     packet: &Packet<L>,
 ) -> Draw<L> {
     let with_lens = has_lens::<L, PARTS>(prepared);
-    let (pixel, settings) = (l.load_u(&packet.blocks.pixel), &prepared.settings);
+    let (pixel, settings) = (packet.blocks.pixel, &prepared.settings);
     let [first, second] = numbers(l, settings, pixel, packet.counter, packet.stream, with_lens);
     let unit = |u: [L::U; 2]| [unit_float(l, u[0]), unit_float(l, u[1])];
     let pair = unit(first);
@@ -45,13 +45,12 @@ pub(super) fn has_lens<L: Lanes, const PARTS: u32>(prepared: &PreparedScene<L::R
 
 /// The sampler's stream for a path's next ray.
 #[inline(always)]
-pub(super) fn next_stream<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, packet: &Packet<L>) -> L::U {
-    packet.stream + l.splat_u(stream_stride(prepared.settings.sampler))
+pub(super) fn next_stream<L: Lanes>(l: L, broadcast: &BroadcastScene<L::Real>, packet: &Packet<L>) -> L::U {
+    packet.stream + l.load_u(&broadcast.stream_stride)
 }
 
 /// The sampler's stream for a path's last ray.
 #[inline(always)]
-pub(super) fn last_stream<L: Lanes>(l: L, prepared: &PreparedScene<L::Real>, packet: &Packet<L>) -> L::U {
-    let stride = stream_stride(prepared.settings.sampler);
-    l.load_u(&packet.blocks.key) + l.splat_u(stride.wrapping_mul(prepared.settings.max_depth - 1))
+pub(super) fn last_stream<L: Lanes>(l: L, broadcast: &BroadcastScene<L::Real>, packet: &Packet<L>) -> L::U {
+    packet.blocks.key + l.load_u(&broadcast.last_stream)
 }

@@ -46,14 +46,12 @@ struct Packet<L: Lanes> {
     /// The sampler's stream, which selects the ray of the sample.
     stream: L::U,
     screen: [L::F; 2],
-    /// Lanes that have work.
-    alive: L::M,
     /// Lanes whose path was absorbed: it ends at its next shading, adds nothing and does not count as a ray.
     absorbed: L::M,
     /// Lanes whose path ends here; their next ray starts at the camera.
     ended: L::M,
     draw: Draw<L>,
-    blocks: LaneBlocks,
+    blocks: LaneBlocks<L>,
 }
 
 impl<L: Lanes> Packet<L> {
@@ -72,11 +70,10 @@ impl<L: Lanes> Packet<L> {
             counter: nought,
             stream: nought,
             screen: [zero; 2],
-            alive: l.mask(u32::MAX >> (32 - L::WIDTH)),
             absorbed: l.mask(0),
             ended: l.mask(0),
             draw: Draw { pair: [zero; 2], sine: zero, cosine: zero, jitter: [zero; 2] },
-            blocks: LaneBlocks::default(),
+            blocks: LaneBlocks::none(l),
         }
     }
 }
@@ -94,11 +91,12 @@ pub fn trace<L: Lanes, const PARTS: u32>(
     let mut stack = EMPTY_STACK;
     shade::<L, PARTS>(l, broadcast, &mut packets, work, &mut stats);
     loop {
-        let mut alive = 0;
+        let mut busy = 0;
         for packet in &mut packets {
-            alive |= intersect::<L, PARTS>(l, broadcast, packet, &mut stack, &mut stats);
+            intersect::<L, PARTS>(l, broadcast, packet, &mut stack, &mut stats);
+            busy |= packet.blocks.busy;
         }
-        if alive == 0 {
+        if busy == 0 {
             return stats;
         }
         stats.offered_lanes += (PACKETS * L::WIDTH) as u64;
@@ -123,7 +121,7 @@ fn shade<L: Lanes, const PARTS: u32>(
     }
 }
 
-/// Finds the nearest hit of each ray in a packet. Returns the lanes that are alive.
+/// Finds the nearest hit of each ray in a packet.
 #[inline(always)]
 fn intersect<L: Lanes, const PARTS: u32>(
     l: L,
@@ -131,13 +129,12 @@ fn intersect<L: Lanes, const PARTS: u32>(
     packet: &mut Packet<L>,
     stack: &mut Stack,
     stats: &mut TileStats,
-) -> u32 {
-    let alive = packet.alive.bits();
-    if alive == 0 {
-        return 0;
+) {
+    if packet.blocks.busy == 0 {
+        return;
     }
-    let active = packet.alive & !packet.absorbed;
-    stats.rays += u64::from(active.bits().count_ones());
+    let active = packet.blocks.busy & !packet.absorbed.bits();
+    stats.rays += u64::from(active.count_ones());
     let (rays, prepared) = (&packet.rays, &broadcast.prepared);
     let mut nearest = Nearest::nothing(l);
     let book_t_min =
@@ -155,7 +152,7 @@ fn intersect<L: Lanes, const PARTS: u32>(
         }
         match &prepared.hierarchy {
             Some(hierarchy) if PARTS & parts::HIERARCHY != 0 => {
-                traverse(l, hierarchy, &prepared.two_root, rays, active, stack, &mut nearest);
+                traverse(l, hierarchy, &prepared.two_root, rays, l.mask(active), stack, &mut nearest);
             }
             _ if PARTS & parts::GLASS != 0 => {
                 for sphere in &broadcast.two_root {
@@ -175,7 +172,6 @@ fn intersect<L: Lanes, const PARTS: u32>(
         }
     }
     packet.nearest = nearest;
-    alive
 }
 
 /// The points of the hits; meaningless for lanes without one.

@@ -11,7 +11,7 @@ use crate::render_cpu::material::{
     Incidence, Scatter, Surface, hemisphere, incidence_of, incidence_of_sine2, refracted, scatter, surface_of,
 };
 use crate::render_cpu::sphere::Rays;
-use crate::stages::Surface as SurfaceRule;
+use crate::stages::{DielectricLaws, Surface as SurfaceRule};
 
 /// Continues paths from their hits, and starts new ones at the camera where a path has ended.
 #[inline(always)]
@@ -25,10 +25,7 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(
     let bounced = scatter_path::<L, PARTS>(l, broadcast, packet);
     let camera = generate_camera_ray::<L, PARTS>(l, broadcast, packet);
     let next = ended.select(camera.direction, bounced.direction);
-    let length2 = next.dot(next);
-    let vanishes = length2.lt(l.constant(NEAR_ZERO));
-    let next = vanishes.select(bounced.normal, next);
-    let next = next.scale(one / vanishes.select(one, length2).sqrt());
+    let next = normalised_or(l, next, bounced.normal);
     // Metal absorbs a fuzzy reflection that points into the surface.
     packet.absorbed = bounced.is_metal & !l.constant(0.0).lt(next.dot(bounced.normal)) & !ended;
     let mut left = l.fill(ended | bounced.inward, hit);
@@ -45,6 +42,16 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(
     packet.throughput = ended.select(V3 { x: one, y: one, z: one }, throughput);
 }
 
+/// The direction of `v` with length 1, or `substitute` where `v` is too short to have a direction.
+#[inline(always)]
+fn normalised_or<L: Lanes>(l: L, v: V3<L::F>, substitute: V3<L::F>) -> V3<L::F> {
+    let length2 = v.dot(v);
+    let unit = v.scale(l.constant(1.0) / length2.sqrt());
+    let vanishes = length2.lt(l.constant(NEAR_ZERO));
+    // So rare that a jump costs less than a selection.
+    if vanishes.bits() == 0 { unit } else { vanishes.select(substitute, unit) }
+}
+
 /// The camera rays of new paths.
 #[inline(always)]
 fn generate_camera_ray<L: Lanes, const PARTS: u32>(
@@ -54,7 +61,8 @@ fn generate_camera_ray<L: Lanes, const PARTS: u32>(
 ) -> CameraRays<L> {
     let with_lens = has_lens::<L, PARTS>(&broadcast.prepared);
     let [u0, u1] = packet.draw.pair;
-    let jitter = match (broadcast.prepared.features.antialiasing, with_lens) {
+    let antialiasing = PARTS & parts::RULES == 0 || broadcast.prepared.features.antialiasing;
+    let jitter = match (antialiasing, with_lens) {
         (false, _) => [l.constant(0.5); 2],
         (true, false) => [u0, u1],
         (true, true) => packet.draw.jitter,
@@ -115,11 +123,11 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
 
     let incidence = incidence_of(l, outward_cosine);
     let surface = surface_of(&record);
-    let laws = features.dielectric_laws;
+    let laws = if with_rules { features.dielectric_laws } else { DielectricLaws::Schlick };
     let mut bounced = if PARTS & parts::GLASS == 0 {
         scatter::<L, false>(l, &surface, laws, direction, normal, &incidence, front, unit, u0)
     } else if PARTS & parts::EXTREMES != 0 && features.steep_glass {
-        scatter_steeply(l, prepared, packet, &surface, normal, &incidence, front, unit)
+        scatter_steeply(l, laws, packet, &surface, normal, &incidence, front, unit)
     } else {
         scatter::<L, true>(l, &surface, laws, direction, normal, &incidence, front, unit, u0)
     };
@@ -130,7 +138,7 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
             bounced.direction = is_lambertian.select(hemisphere(l, normal, unit), bounced.direction);
         }
         if features.reflectance_strips {
-            let reflectance = strip_reflectance(l, prepared, l.load_u(&packet.blocks.pixel));
+            let reflectance = strip_reflectance(l, prepared, packet.blocks.pixel);
             albedo = V3 { x: reflectance, y: reflectance, z: reflectance };
         }
     }
@@ -144,7 +152,7 @@ fn scatter_path<L: Lanes, const PARTS: u32>(
 #[inline(always)]
 fn scatter_steeply<L: Lanes>(
     l: L,
-    prepared: &PreparedScene<L::Real>,
+    laws: DielectricLaws,
     packet: &mut Packet<L>,
     surface: &Surface<L>,
     normal: V3<L::F>,
@@ -158,7 +166,6 @@ fn scatter_steeply<L: Lanes>(
     let is_known = runs_own_chord & l.constant(0.0).lt(surface.refraction_index);
     let incidence = incidence_of_sine2(l, is_known.select(packet.sine2, across.dot(across)));
     let coin = packet.draw.pair[0];
-    let laws = prepared.features.dielectric_laws;
     let mut bounced = scatter::<L, true>(l, surface, laws, direction, normal, &incidence, front, unit, coin);
     let through = refracted(l, across, normal, bounced.ratio, incidence.sine2);
     bounced.direction = bounced.refracts.select(through, bounced.direction);

@@ -30,7 +30,7 @@ impl<L: Lanes> SinglePath<L> {
 
     /// Whether there is a ray left to trace.
     pub fn is_alive(&self) -> bool {
-        self.packet.alive.bits() != 0
+        self.packet.blocks.busy != 0
     }
 
     /// Whether the path was absorbed at its last hit.
