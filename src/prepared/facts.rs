@@ -15,7 +15,7 @@ const LAYER_UNITS: f64 = 16.0;
 
 /// ... and than this many rounding units of its distance from the eye: surfaces closer than that have the same
 /// distance.
-const DISTANCE_UNITS: f64 = 4.0;
+const DISTANCE_UNITS: f64 = 8.0;
 
 /// Where the surfaces of a layer touch or cross, it is too thin somewhere, however thick it is elsewhere. Such a layer
 /// is reported only if its greatest thickness is at most this many times the required one: a path that hits the wrong

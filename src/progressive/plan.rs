@@ -58,7 +58,7 @@ impl Plan {
     pub const INTERACTIVE_PASS: Duration = Duration::from_millis(50);
 
     /// A pass duration so long that the overhead between passes is negligible.
-    pub const BATCH_PASS: Duration = Duration::from_millis(300);
+    pub const BATCH_PASS: Duration = Duration::from_millis(900);
 
     /// All samples until `stop`, in interactive passes.
     pub fn until(stop: Stop) -> Self {

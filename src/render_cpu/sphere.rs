@@ -144,7 +144,7 @@ fn chord<L: Lanes>(rays: &Rays<L>, sphere: &Spheres<L>) -> (L::F, L::F) {
 #[inline(always)]
 pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
     let (h, s) = chord(rays, sphere);
-    l.exclude(rays.left.eq(sphere.number), L::key(h + s))
+    l.key_unless(rays.left.eq(sphere.number), h + s)
 }
 
 /// Distance to a sphere from inside or outside.
@@ -153,7 +153,7 @@ pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::K
     let (h, s) = chord(rays, sphere);
     let leaves = rays.left.eq(sphere.number);
     let enters = rays.inside.eq(sphere.number);
-    let near = l.exclude(enters, L::key(h + s));
+    let near = l.key_unless(enters, h + s);
     // A ray that enters the sphere from its surface travels the chord 2h. The negation comes last, so that a chord of
     // length 0 is a hit at -0.
     let far = L::key(-(enters.select(h.abs(), s) - h));

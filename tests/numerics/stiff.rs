@@ -432,12 +432,54 @@ fn coats_seen_from_afar_are_told_or_right() {
         let is_told = !PreparedScene::<f32>::new(&job).warnings().is_empty();
         (is_told, paired(&job, 64, &mut widest(), &mut reference()).bias.abs())
     };
-    for units in [1.0, 2.0, 4.5, 8.0, 32.0] {
+    for units in [1.0, 2.0, 4.5, 8.5, 32.0] {
         let (is_told, bias) = coated(units * center.length() * f64::from(f32::EPSILON) / 2.0);
         println!("{units} ({is_told}): {bias:e}");
         assert!(is_told || bias < 1e-4, "{units}: {bias:e}");
-        assert_eq!(is_told, units < 4.0, "{units}");
+        assert_eq!(is_told, units < 8.0, "{units}");
     }
+}
+
+/// Just above a power of two, the distances of surfaces are rounded most coarsely: glass that a matte ball hides would
+/// show through.
+#[test]
+fn hidden_glass_seen_from_afar_is_told_or_right() {
+    let center = DVec3::new(-0.332_889_082_107, 0.057_077_657_354, -0.434_654_799_599);
+    let radius = 0.012_538_616_9;
+    for thickness in [1.444e-7, 2e-7, 5e-7] {
+        let balls = [
+            (center, radius, lambertian(0.5)),
+            (center, radius - thickness, glass(2.0 / 3.0)),
+            (DVec3::new(-0.34, 0.0605, -0.445), 7e-4, lambertian(0.5)),
+        ];
+        let camera = Camera { look_from: DVec3::ZERO, look_at: center, vfov_degrees: 1.0, ..Camera::BOOK };
+        let settings = RenderSettings { max_depth: 2, ..size(16, 12) };
+        let job = job(&under_white_sky(&balls), camera, settings);
+        let is_told = !PreparedScene::<f32>::new(&job).warnings().is_empty();
+        let bias = paired(&job, 256, &mut widest(), &mut reference()).bias.abs();
+        println!("{thickness:e} ({is_told}): {bias:e}");
+        assert!(is_told || bias < 1e-4, "{thickness:e}: {bias:e}");
+    }
+}
+
+/// What an eye is close to is resolved there, even where a small ball lies near the far side of the same planet.
+#[test]
+fn a_planet_is_resolved_at_the_eye_whatever_lies_beyond() {
+    let (radius, height) = (8.8e9, 5.6e4);
+    let toward = DVec3::new(-0.181, 0.734, -0.6546).normalize();
+    let planet = (toward * (radius + height), radius, lambertian(0.5));
+    let beyond = (toward * (radius + height) + DVec3::Y * (radius + 640.0), 600.0, lambertian(0.5));
+    let camera = Camera {
+        look_from: DVec3::ZERO,
+        look_at: DVec3::new(-1.6e9, 1.5e10, -5.8e9),
+        vfov_degrees: 100.0,
+        defocus_angle_degrees: 0.0016,
+        ..Camera::BOOK
+    };
+    let settings = RenderSettings { max_depth: 3, ..size(16, 12) };
+    let job = job(&under_white_sky(&[planet, beyond]), camera, settings);
+    let found = paired(&job, 256, &mut widest(), &mut reference());
+    assert!(found.bias.abs() < 1e-5, "{found:?}");
 }
 
 /// Where glass touches a ball hundreds of times larger, a ray that leaves the glass may start below the ball's surface: it

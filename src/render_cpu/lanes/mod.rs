@@ -168,6 +168,11 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn key(negated: Self::F) -> Self::Key;
     /// The negated distance of a key.
     fn from_key(k: Self::Key) -> Self::F;
+    /// The key of a negated distance, or 0 where `m` is true.
+    #[inline(always)]
+    fn key_unless(self, m: Self::M, negated: Self::F) -> Self::Key {
+        Self::key(m.select(self.constant(0.0), negated))
+    }
     /// 0 where `m` is true, else `k`. Keys of hits are negative, so 0 loses every comparison with them.
     fn exclude(self, m: Self::M, k: Self::Key) -> Self::Key;
 
