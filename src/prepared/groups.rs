@@ -236,8 +236,8 @@ fn anchored<'a, I: Iterator<Item = (usize, &'a Sphere)>>(
             // An anchor far away would leave the eye itself unresolved.
             let is_eye_resolved =
                 |place: DVec3| HALF_EPSILON * eye.position.distance(place) <= ANCHOR_SHARE * height;
-            let near =
-                detail.filter(|detail| !under_eye && detail.length <= height && is_eye_resolved(detail.place));
+            let near = detail
+                .filter(|detail| !under_eye && detail.length <= height && is_eye_resolved(detail.place));
             let near = near.map_or(eye.position, |detail| detail.place);
             Some((gain(sphere, length), Anchored { index: index as u32, roots, under_eye, near }))
         })

@@ -181,17 +181,17 @@ impl<'film> Work<'film> {
         self
     }
 
-    /// Collects the sums of the lanes `done` and gives each lane its next block. Returns the lanes' counters, which are
-    /// at the first sample where there is a new block.
+    /// Collects the sums of the lanes `done` and gives each lane its next block. Returns the blocks, and the lanes'
+    /// counters, which are at the first sample where there is a new block.
     #[inline(always)]
     pub fn refill<L: Lanes>(
         &mut self,
         l: L,
         done: u32,
-        lanes: &mut LaneBlocks<L>,
+        mut lanes: LaneBlocks<L>,
         mut counter: L::U,
-    ) -> L::U {
-        self.add_sums::<L>(done & lanes.busy, lanes);
+    ) -> (LaneBlocks<L>, L::U) {
+        self.add_sums::<L>(done & lanes.busy, &lanes);
         let is_done = l.mask(done);
         let [red, green, blue] = lanes.sums;
         lanes.sums = [l.keep(!is_done, red), l.keep(!is_done, green), l.keep(!is_done, blue)];
@@ -223,7 +223,7 @@ impl<'film> Work<'film> {
             lanes.end = m.select(counter + l.splat_u(1), lanes.end);
         }
         lanes.busy = (lanes.busy | done) & !idle;
-        counter
+        (lanes, counter)
     }
 
     /// Adds the sums of the lanes `done` to the film.
@@ -283,8 +283,7 @@ mod tests {
             let order = RefillOrder::new(width, height);
             let mut places = order.places[..order.len()].to_vec();
             places.sort_unstable();
-            let expected: Vec<u32> =
-                (0..height).flat_map(|y| (0..width).map(move |x| x | y << 16)).collect();
+            let expected: Vec<u32> = (0..height).flat_map(|y| (0..width).map(move |x| x | y << 16)).collect();
             assert_eq!(places, expected, "{width}x{height}");
         }
     }

@@ -39,8 +39,9 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     let at_end = packet.counter.eq(packet.blocks.end);
     let done = (ended & at_end).bits();
     if done != 0 {
-        packet.counter = work.refill(l, done, &mut packet.blocks, packet.counter);
-        let [x, y] = pixel_position(l, packet.blocks.pixel);
+        let (blocks, counter) = work.refill(l, done, packet.blocks, packet.counter);
+        (packet.blocks, packet.counter) = (blocks, counter);
+        let [x, y] = pixel_position(l, blocks.pixel);
         packet.screen = screen(l, &broadcast.camera, x, y);
     }
     packet.stream = ended.select(packet.blocks.key, next_stream(l, broadcast, packet));
