@@ -156,7 +156,7 @@ fn what_does_not_fit_into_memory_is_refused_before_it_is_asked_for() {
     let materials = "[materials]\nm = { kind = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n";
     fs::write(at.join("many.toml"), format!("{scene}{materials}{}", sphere.repeat(400_000))).unwrap();
     let batch = ["--batch", "--device", "cpu", "--progress", "off", "--samples", "1", "--out", "a.png"];
-    let words = ["needs", "of memory, but", "are free"];
+    let words = ["needs", "of memory, but", "is free"];
     let large = ["--size", "16384x16384"];
     assert_refused(Some(4_000_000), &[&batch[..], &large].concat(), at, &words);
     for scene in ["field:3000000", "field:10000000", "many.toml"] {
