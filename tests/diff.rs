@@ -147,7 +147,7 @@ fn equal_sides_agree_to_the_bit() {
 fn the_cpu_and_the_reference_agree_within_the_tolerance() {
     let (code, text, errors) = diff(&["--sides", "cpu,reference", "--pixel", "400,220"]);
     assert_eq!(code, 0, "{text}{errors}");
-    assert!(text.contains("the paths agree: nothing differs by more than") && text.contains('≈'), "{text}");
+    assert!(text.contains("the paths agree: the largest difference is") && text.contains('≈'), "{text}");
     let (code, text, _) = diff(&["--sides", "cpu,reference", "--pixel", "400,220", "--tolerance", "0"]);
     assert_eq!(code, 1, "{text}");
 }
@@ -185,7 +185,7 @@ fn what_cannot_be_compared_is_refused() {
         (&["--pixel", "1,1", "--find"], &["--find"]),
         (
             &["--pixel", "1,1", "--sides", "cpu,reference", "--adapter", "x"],
-            &["--adapter", "gpu among --sides"],
+            &["--adapter", "the side gpu in --sides"],
         ),
         (&["--pixel", "1,1", "--adapter", "no such adapter"], &["the side gpu", "--sides cpu,reference"]),
         (&["--pixel", "1,1", "--stage", "all"], &["--stage all", "choose one stage"]),

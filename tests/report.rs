@@ -265,7 +265,7 @@ mod interrupted {
             let code = child.wait().unwrap().code().unwrap();
             match checkpoint::load(film) {
                 Ok(kept) if kept.film.sample_count() < samples => {
-                    assert!(code == 130 && rest.contains("goes on from here"), "{code}: {rest}");
+                    assert!(code == 130 && rest.contains("run the same command again"), "{code}: {rest}");
                     return kept;
                 }
                 Ok(_) => fs::remove_dir_all(directory.join("found")).unwrap(),
@@ -317,7 +317,7 @@ fn what_cannot_be_measured_is_refused_before_anything_is_rendered() {
         (&[], &["--out"]),
         (&["--out", "file"], &["file", "choose another"]),
         (&["--out", "o", "--scenes", "three-sphere"], &["three-sphere", "three-spheres"]),
-        (&["--out", "o", "--scenes", "book,metals,book"], &["two of the name book", "leave one out"]),
+        (&["--out", "o", "--scenes", "book,metals,book"], &["two scenes called book", "leave one out"]),
         (&["--out", "o", "--backends", "cpu,tpu"], &["tpu", "scalar", "c89"]),
         (&["--out", "o", "--reference", "x.exr"], &["--reference", "--scenes"]),
         (&["--out", "o", "--scenes", "book", "--reference", "x.exr"], &["x.exr"]),
