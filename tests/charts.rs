@@ -1,4 +1,4 @@
-//! Charts in files.
+//! Charts written to files.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! Paths as backends record them, and `weekender diff`, which compares two.
+//! Recorded paths of the backends, and `weekender diff`, which compares two of them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -97,7 +97,7 @@ fn the_gpu_and_the_cpu_record_the_same_paths() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     for (name, job) in jobs(16, 9) {
         if job.rules().surface != Surface::Exact {
-            // What is seen there is rounding itself.
+            // These stages show rounding errors on purpose.
             continue;
         }
         let mut parted = 0;
@@ -127,7 +127,7 @@ fn a_difference_is_found_marked_and_told() {
         assert!(found.contains(part), "{part}: {found}");
     }
     assert!(!found.contains('\x1b'), "no colours in a file");
-    // The line "again" names the same path.
+    // The line "again" leads to the same path.
     let again = found.lines().find_map(|line| line.strip_prefix("again")).unwrap();
     let (code, repeated, _) = diff(&[&sides[..], &again.split_whitespace().collect::<Vec<_>>()].concat());
     assert_eq!(code, 1);

@@ -1,4 +1,4 @@
-//! The suite of stiff scenes: its quick part on every class of arithmetic of the CPU, and the program around it.
+//! The suite of stiff scenes: its quick part on every class of CPU arithmetic, and the program around it.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::process::Command;
@@ -18,7 +18,7 @@ fn suite() -> Suite {
     Suite::new(backends, Backend::new("f64", BackendChoice::Reference { threads: Some(1) }))
 }
 
-/// The case with fewer samples: what is wrong here is wrong in many of them.
+/// The case with fewer samples: an error in these cases affects many samples.
 fn small(case: &Case) -> Case {
     let mut case = case.clone();
     case.recipe.samples_per_pixel = case.recipe.samples_per_pixel.min(8);
@@ -50,7 +50,7 @@ fn the_quick_cases_are_right_on_every_level() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Cases that fail today.
+/// Cases that are known to fail.
 const NOT_YET: &[&str] = &[];
 
 #[test]
