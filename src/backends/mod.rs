@@ -157,7 +157,7 @@ pub fn list() -> Vec<BackendListing> {
         let chosen = isa.native_lanes();
         BackendListing {
             device: "cpu",
-            about: format!("--isa {isa}: --simd {} lanes, {chosen} by default", lanes.join(", ")),
+            about: format!("--isa {isa}: --simd {}; default {chosen}", lanes.join(", ")),
             is_auto: auto_adapter.is_none() && Some(isa) == best,
         }
     });

@@ -88,7 +88,7 @@ fn scale(report: &Report) -> Figure {
         look: Look::Measured,
     };
     Figure {
-        title: "Fields of a thousand spheres and more".to_owned(),
+        title: "Fields of a thousand or more spheres".to_owned(),
         about: report.machine.words(),
         size: [1350, 480],
         columns: 3,

@@ -29,7 +29,7 @@ pub(super) struct RawBench {
     #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
           allow_hyphen_values = true, help_heading = "Scenes")]
     pub samples: Option<u64>,
-    /// Where random numbers come from [default: sobol, or the scene's]
+    /// Source of random numbers [default: sobol, or the scene's]
     #[arg(long, value_enum, help_heading = "Scenes")]
     pub sampler: Option<SamplerKind>,
 

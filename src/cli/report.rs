@@ -68,7 +68,7 @@ pub(super) struct RawReport {
     #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
           allow_hyphen_values = true, help_heading = "How it is measured")]
     pub max_samples: Option<u64>,
-    /// Keep samples in two halves, which is needed to estimate the error; off makes one point set of them
+    /// Keep samples in two halves, which is needed to estimate the error; off keeps them as a single point set
     #[arg(
         long,
         value_enum,

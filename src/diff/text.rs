@@ -129,6 +129,7 @@ pub fn closing(told: &Told, comparison: &Comparison, paint: Paint) -> String {
     let [a, b] = told.paths.map(|path| path.radiance);
     let by = vector([b[0] - a[0], b[1] - a[1], b[2] - a[2]]);
     let share = match comparison.radiance {
+        0.0 => "0 of the larger".to_owned(),
         share if share < 1e-3 => format!("{share:.1e} of the larger"),
         share => format!("{:.1} % of the larger", 100.0 * share),
     };

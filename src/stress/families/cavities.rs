@@ -26,11 +26,12 @@ pub fn cavities() -> Vec<Case> {
     ];
     let mut cases = Vec::new();
     for (material_name, material) in materials {
+        let words = if material_name == "fuzzy" { "fuzzy metal" } else { material_name };
         for (place, ground) in [("alone", None), ("touching", Some(-1001.0)), ("cut", Some(-1000.4))] {
             let stiff = match place {
-                "alone" => format!("the eye in a closed {material_name} ball"),
-                "touching" => format!("the eye in a {material_name} ball that stands on the ground"),
-                _ => format!("the eye in a {material_name} ball that the ground cuts"),
+                "alone" => format!("the eye in a closed {words} ball"),
+                "touching" => format!("the eye in a {words} ball that stands on the ground"),
+                _ => format!("the eye in a {words} ball that the ground cuts"),
             };
             let case =
                 Case::new(&CAVITIES, format!("{material_name}-{place}"), stiff, room(material, ground))

@@ -18,7 +18,7 @@ pub const MOVED: Family = Family {
 pub const SCALED: Family = Family {
     id: "scaled",
     title: "The whole scene larger or smaller",
-    lesson: "A picture does not depend on the unit of length. A threshold that is a length does.",
+    lesson: "A picture does not depend on the unit of length; a threshold that is a length does.",
 };
 
 /// Extreme cameras.
@@ -59,7 +59,7 @@ pub fn scaled_scenes() -> Vec<Case> {
         .into_iter()
         .map(|exponent| {
             let factor = 10.0_f64.powi(exponent);
-            let stiff = format!("three balls on a ground, times 1e{exponent}");
+            let stiff = format!("three balls on a ground, scaled by 1e{exponent}");
             let why = "a picture does not depend on the unit of length";
             let expected = Expected::Same { other: Box::new(tame()), why };
             let recipe = moved(&tame(), factor, DVec3::ZERO);
