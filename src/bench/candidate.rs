@@ -1,6 +1,7 @@
 //! The candidates to measure: the baseline, instruction levels and lane counts of the CPU, and a GPU.
 
 use super::figures::{Kind, Row, Run};
+use super::machine::counted;
 use crate::backends::{self, BackendChoice};
 use crate::baseline::{Baseline, BaselineError};
 use crate::cli::BenchOptions;
@@ -30,11 +31,6 @@ enum Runner {
 /// The run was cancelled.
 #[derive(Debug)]
 pub struct Cancelled;
-
-/// A number with its noun: `1 lane`, `8 lanes`.
-pub fn counted(number: usize, noun: &str) -> String {
-    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
-}
 
 /// All candidates for a job, in the order of the table.
 pub fn candidates(

@@ -1,6 +1,5 @@
 //! The machine that is measured, and whether it was idle.
 
-use super::candidate::counted;
 use crate::render_cpu::Isa;
 use serde::Serialize;
 use std::fs;
@@ -55,6 +54,11 @@ fn processor() -> String {
 
 fn load() -> Option<f64> {
     fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
+}
+
+/// A number with its noun: `1 lane`, `8 lanes`.
+pub fn counted(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
 /// Peak memory of this process since [`forget_peak_memory`], bytes; `None` if the system does not tell.

@@ -1,7 +1,7 @@
 //! The measurements as text of at most 100 columns.
 
-use super::candidate::counted;
 use super::figures::{Report, Row, ScaleFigures, SceneFigures};
+use super::machine::counted;
 
 /// Longest name of a row.
 const NAME_WIDTH: usize = 34;

@@ -195,7 +195,7 @@ fn by_baseline(
         Err(BaselineError::Cancelled) => return Ok(None),
         ran => ran?,
     };
-    // The encoding is that of whole numbers, of which a PFM has none.
+    // The encoding applies only to integers, and a PFM has none.
     let errors = reference.errors(&read_picture(&out, Encoding::Srgb)?.pixels);
     Ok(Some(Measured {
         samples,
