@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Measures the GPU backend on this machine and prints tables for docs/benchmarks.md.
-# On a software adapter the sizes are small and the figures good for comparisons only.
+# On a software adapter, pictures are small and the figures only serve for comparisons.
 # Usage: benches/gpu.sh [adapter]
-# RUNS, FIELD (spheres of the large field) and SIZE ("WIDTH HEIGHT" of all pictures) in the environment override
-# what it would choose.
+# The environment variables RUNS, FIELD (number of spheres in the large field) and SIZE ("WIDTH HEIGHT" of all
+# pictures) override the defaults.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -23,36 +23,36 @@ runs=${RUNS:-$runs} three=${SIZE:-$three} book=${SIZE:-$book} field_size=${SIZE:
 
 header() {
     printf '\n%s\n\n' "$1"
-    echo "| scene, width, height, samples, depth, runs | median ms | M paths/s | M rays/s | least ms | dispatches | ms in dispatches |"
+    echo "| scene, width, height, samples, depth, runs | median ms | Mpaths/s | Mrays/s | min ms | dispatches | ms in dispatches |"
     echo "|---|---|---|---|---|---|---|"
 }
 trace() { "$bench" trace "$@" "${adapter[@]}" 2> /dev/null; }
 pair() { "$bench" pair "$@" "${adapter[@]}" 2> /dev/null; }
 
-header "Scenes, tracing alone"
+header "Scenes (tracing only)"
 # shellcheck disable=SC2086
 {
     trace three-spheres $three $three_spp 24 $runs
     trace book $book $book_spp 50 $runs
     trace $field $field_size $field_spp 24 $runs
 
-    header "General kernel, to compare with the specialised above"
+    header "The general kernel, for comparison with the specialised ones above"
     trace three-spheres $three $three_spp 24 $runs general
     trace book $book $book_spp 50 $runs general
 
-    header "Samples of a dispatch"
+    header "Samples per dispatch"
     for samples in 1 2 4 8 16 64 200; do
         [ "$samples" -le "$three_spp" ] && trace three-spheres $three $three_spp 24 $runs samples=$samples
     done
 
-    header "Time that a dispatch aims for"
+    header "Target time of a dispatch"
     for target in 2 8 50 200; do
         trace three-spheres $three $three_spp 24 $runs target_ms=$target
     done
 }
 
-printf '\nHierarchies, run in turn\n\n'
-echo "| scene, width, height, samples, depth, runs | BVH2 ns a path | CWBVH ns a path | median of the ratios |"
+printf '\nThe two hierarchies, run in turn\n\n'
+echo "| scene, width, height, samples, depth, runs | BVH2 ns per path | CWBVH ns per path | median of the ratios |"
 echo "|---|---|---|---|"
 # shellcheck disable=SC2086
 {
@@ -60,23 +60,23 @@ echo "|---|---|---|---|"
     pair $field $field_size $field_spp 24 $runs
 }
 
-printf '\nHierarchies in memory, built on one core\n\n'
-echo "| scene | BVH2 bytes a sphere | CWBVH bytes a sphere | BVH2 ms | CWBVH ms |"
+printf '\nSize and build time of the hierarchies, on one core\n\n'
+echo "| scene | BVH2 bytes per sphere | CWBVH bytes per sphere | BVH2 build ms | CWBVH build ms |"
 echo "|---|---|---|---|---|"
 "$bench" hierarchy book "$field"
 
-printf '\nOperations of the kernel\n\n| scene | general | specialised | what is in it |\n|---|---|---|---|\n'
+printf '\nSize of the kernel in operations\n\n| scene | general | specialised | features |\n|---|---|---|---|\n'
 "$bench" size touching-spheres metals three-spheres close-up book
 
-printf '\nPasses: films read at once, and films that stay on the device\n\n'
-echo "| scene, width, height, samples, depth, passes | ms a pass, at once | ms a pass, stays | reads | reads | ms to add one, host |"
+printf '\nPasses, with films that are read at once and films that stay on the device\n\n'
+echo "| scene, width, height, samples, depth, passes | ms per pass, read at once | ms per pass, film stays | reads, read at once | reads, film stays | ms to add one film, host |"
 echo "|---|---|---|---|---|---|"
 # shellcheck disable=SC2086
 "$bench" passes three-spheres $three 2 24 32 "${adapter[@]}" 2> /dev/null
 
-printf '\nFrom a change to its first picture\n\n| scene, width, height, depth | ms | ms of it to prepare |\n|---|---|---|\n'
+printf '\nTime from a change to its first picture\n\n| scene, width, height, depth | ms | of which ms to prepare |\n|---|---|---|\n'
 # shellcheck disable=SC2086
 for scene in three-spheres book; do "$bench" first $scene $three 24 "${adapter[@]}" 2> /dev/null; done
 
-printf '\nWork of a turn of the path loop\n\n| scene | float | integer | special | together |\n|---|---|---|---|---|\n'
+printf '\nOperations per iteration of the path loop\n\n| scene | float | integer | special | total |\n|---|---|---|---|---|\n'
 "$bench" work touching-spheres metals three-spheres close-up

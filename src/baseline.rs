@@ -12,10 +12,10 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// The source, `reference/rt_weekend.c`.
+/// The C source, `reference/rt_weekend.c`.
 pub const SOURCE: &str = include_str!("../reference/rt_weekend.c");
 
-/// The compiler's arguments.
+/// Flags for the C compiler.
 pub const FLAGS: [&str; 5] = ["-std=c89", "-pedantic", "-Wall", "-Wextra", "-O2"];
 
 /// How often the program checks whether the caller wants to stop.
@@ -27,37 +27,37 @@ pub enum BaselineError {
     /// There is no C compiler.
     #[error("there is no C compiler {compiler:?} ({reason}); install one or name it in CC")]
     NoCompiler {
-        /// As CC has it, or cc.
+        /// From CC, or `cc`.
         compiler: String,
-        /// What the system said.
+        /// The system's error.
         reason: io::Error,
     },
     /// The compiler rejected the source.
-    #[error("{compiler} cannot compile it: {message}")]
+    #[error("{compiler} cannot compile the baseline: {message}")]
     Compile {
-        /// As CC has it, or cc.
+        /// From CC, or `cc`.
         compiler: String,
-        /// Its first words.
+        /// The first lines of its output.
         message: String,
     },
     /// The job needs something that the baseline does not support.
     #[error("{0}")]
     Unfit(&'static str),
     /// The run ended without figures.
-    #[error("it failed: {0}")]
+    #[error("the baseline failed: {0}")]
     Run(String),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
-    /// Files.
-    #[error("its files cannot be written: {0}")]
+    /// A temporary file cannot be written.
+    #[error("cannot write the baseline's files: {0}")]
     Files(#[from] io::Error),
 }
 
 /// The compiled baseline.
 pub struct Baseline {
     directory: TempDir,
-    /// The compiler.
+    /// The C compiler.
     pub compiler: String,
 }
 
@@ -75,7 +75,7 @@ pub struct ControlRun {
 }
 
 impl Baseline {
-    /// Compiles it with the compiler that the environment's CC names, or cc.
+    /// Compiles the baseline with the C compiler that the environment variable CC names, or with `cc`.
     ///
     /// # Errors
     /// [`BaselineError::NoCompiler`], [`BaselineError::Compile`] or [`BaselineError::Files`].
@@ -103,13 +103,13 @@ impl Baseline {
         Ok(Baseline { directory, compiler })
     }
 
-    /// Writes the scene that the baseline is to render.
+    /// Writes the scene file for the baseline.
     ///
     /// # Errors
-    /// [`BaselineError::Unfit`] for a stage's rules, [`BaselineError::Files`].
+    /// [`BaselineError::Unfit`] for the rules of a stage, [`BaselineError::Files`].
     pub fn write_scene(&self, job: &RenderJob, name: &str) -> Result<PathBuf, BaselineError> {
         if !job.rules().are_finished() {
-            return Err(BaselineError::Unfit("it has the rules of the finished renderer alone"));
+            return Err(BaselineError::Unfit("the baseline has only the rules of the finished renderer"));
         }
         let path = self.directory.path().join(format!("{name}.txt"));
         fs::write(&path, scene_text(job.scene(), job.camera()))?;
@@ -121,8 +121,8 @@ impl Baseline {
         self.directory.path().join(name)
     }
 
-    /// Renders `samples` of every pixel of a scene file, or of the three spheres. `out` gets the picture, .ppm as
-    /// shown or .pfm linear. Ends early when `is_cancelled` says so.
+    /// Renders `samples` of every pixel of a scene file, or of the three spheres if there is none. Writes the picture
+    /// to `out`: a .ppm as displayed or a linear .pfm. Stops early if `is_cancelled` returns true.
     ///
     /// # Errors
     /// [`BaselineError::Run`] or [`BaselineError::Cancelled`].
@@ -152,7 +152,7 @@ impl Baseline {
         let read = |pipe: std::process::ChildStdout| {
             move || {
                 for line in BufReader::new(pipe).lines().map_while(Result::ok) {
-                    // After cancellation nobody receives this.
+                    // After a cancellation, nobody receives this.
                     let _ = lines.send((Instant::now(), line));
                 }
             }
@@ -196,7 +196,7 @@ fn program_in(directory: &Path) -> PathBuf {
     directory.join(format!("rt_weekend{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Reads `trace_seconds S paths P rays R`, which came `wall` after the tracing began.
+/// Parses `trace_seconds S paths P rays R`, which arrived `wall` after tracing began.
 fn figures(line: &str, wall: Duration) -> Option<ControlRun> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let ["trace_seconds", processor, "paths", paths, "rays", rays] = words[..] else { return None };
@@ -211,7 +211,7 @@ fn figures(line: &str, wall: Duration) -> Option<ControlRun> {
 /// A scene in the baseline's format.
 fn scene_text(scene: &Scene, camera: &Camera) -> String {
     let three = |v: DVec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
-    // vup may be parallel to the view, which the baseline does not expect; the basis has been put right.
+    // vup may be parallel to the view, which the baseline does not expect; the basis has been corrected.
     let up = camera.basis().v;
     let mut text = format!(
         "camera {} {} {} {:?} {:?} {:?}\nsky {} {}\n",

@@ -9,29 +9,28 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Most characters of a line for a person. Longer ones lose their middle.
+/// Longest line for a person, in characters. The middle of longer lines is left out.
 const LINE_LIMIT: usize = 1200;
 
 /// Most lines of a message. Results may have more.
 const MESSAGE_LINES: usize = 60;
 
-/// Escape sequences that the program itself uses: bold, faint, green, bold red, and back.
+/// Escape sequences that the program itself uses: bold, faint, green, bold red, and reset.
 const OWN_SEQUENCES: [&str; 5] = ["\x1b[1m", "\x1b[2m", "\x1b[32m", "\x1b[1;31m", "\x1b[0m"];
 
-/// Says a line, or several, on standard error. Nothing happens if it cannot be written.
+/// Prints one or more lines to standard error. Nothing happens if that fails.
 pub fn note(text: &str) {
     let mut lines = text.trim_end_matches('\n').split('\n');
     let mut said: String = lines.by_ref().take(MESSAGE_LINES).map(|line| presentable(line) + "\n").collect();
     let left = lines.count();
     if left > 0 {
         // Writing to a string cannot fail.
-        let _ = writeln!(said, "... and {left} lines more");
+        let _ = writeln!(said, "... and {left} more lines");
     }
     say(&said);
 }
 
-/// As [`note`], for a text of any number of lines, which may have colours of the program's own: see
-/// [`print_painted`].
+/// As [`note`], for a text of any length that may contain the program's own colours: see [`print_painted`].
 pub fn note_painted(text: &str) {
     say(&painted(text));
 }
@@ -41,35 +40,34 @@ fn say(text: &str) {
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }
 
-/// Writes a result for a person to standard output.
+/// Prints a result for a person to standard output.
 ///
 /// # Errors
-/// A reader that has gone away, a full device.
+/// If the reader has gone away or the device is full.
 pub fn print(text: &str) -> io::Result<()> {
     write_out(&text.split_inclusive('\n').map(presentable).collect::<String>())
 }
 
-/// As [`print`], for a text with colours of the program's own. Names from outside in it must have gone through
-/// [`printable`].
+/// As [`print`], for a text with the program's own colours. Names from outside must have gone through [`printable`].
 ///
 /// # Errors
-/// As [`print`].
+/// As for [`print`].
 pub fn print_painted(text: &str) -> io::Result<()> {
     write_out(&painted(text))
 }
 
-/// Writes a result for another program to standard output, as it is.
+/// Prints a result for another program to standard output, unchanged.
 ///
 /// # Errors
-/// As [`print`].
+/// As for [`print`].
 pub fn write_out(text: &str) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(text.as_bytes())?;
     stdout.flush()
 }
 
-/// `text` in one line without what would steer a terminal: control characters and marks that turn the direction of
-/// writing become `\u{1b}` and the like, line ends too.
+/// `text` as one line that cannot control a terminal: control characters, line ends and marks that change the writing
+/// direction become `\u{1b}` and the like.
 pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.chars().any(|c| is_steering(c) || is_blank_control(c)) {
         return Cow::Borrowed(text);
@@ -80,17 +78,17 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.chars().map(escaped).collect())
 }
 
-/// A file's name as [`printable`] text.
+/// A path as [`printable`] text.
 pub fn printable_path(path: &Path) -> String {
     printable(&path.to_string_lossy()).into_owned()
 }
 
-/// A text as JSON may hold it and a terminal may show it: JSON leaves some control characters as they are.
+/// JSON that a terminal can show safely: some control characters are legal in JSON, and these are escaped.
 pub fn printable_json(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         if is_steering(c) {
-            // Such characters occur within strings only, and all of them are in the basic plane.
+            // Such characters occur only within strings, and all of them are in the basic plane.
             let _ = write!(shown, "\\u{:04x}", u32::from(c));
         } else {
             shown.push(c);
@@ -99,7 +97,7 @@ pub fn printable_json(text: &str) -> String {
     shown
 }
 
-/// A line, with or without its end, without what would steer a terminal and of a length that can be read.
+/// A line, with or without its end, that cannot control a terminal and is not too long to read.
 fn presentable(line: &str) -> String {
     let (line, end) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\n"));
     let escape = |c: char| if is_steering(c) { c.escape_default().to_string() } else { c.to_string() };
@@ -108,7 +106,7 @@ fn presentable(line: &str) -> String {
     shown
 }
 
-/// Without its middle, if it is longer than a person reads.
+/// The line without its middle if it is too long.
 fn shortened(line: &str) -> Cow<'_, str> {
     let count = line.chars().count();
     if count <= LINE_LIMIT {
@@ -120,7 +118,7 @@ fn shortened(line: &str) -> Cow<'_, str> {
     Cow::Owned(format!("{start} ... ({} characters left out) ... {end}", count - 2 * kept))
 }
 
-/// Everything but the program's own colours is made presentable.
+/// Makes everything but the program's own colours presentable.
 fn painted(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     let mut rest = text;
@@ -136,8 +134,8 @@ fn painted(text: &str) -> String {
     shown
 }
 
-/// Whether a terminal may obey it, or show what stands beside it in another order. Tabs and line ends are harmless
-/// where lines are expected.
+/// Whether a character can control a terminal or change the order in which text is shown. Tabs and line ends are
+/// harmless where lines are expected.
 fn is_steering(c: char) -> bool {
     let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let breaks = matches!(c, '\u{2028}' | '\u{2029}');

@@ -1,4 +1,4 @@
-//! What a picture says about itself, from its recipe, its film and how it was rendered.
+//! The description of a picture, from its recipe, its film and how it was rendered.
 
 use crate::film::{Description, Film, key};
 use crate::progressive::{Contribution, Status};
@@ -7,8 +7,8 @@ use crate::render::BackendInfo;
 use crate::scene::Camera;
 use crate::stages::Stage;
 
-/// The description of a film that `recipe` gave. `seconds_before` is what the film's earlier samples took, if
-/// that is known.
+/// The description of a film rendered from `recipe`. `seconds_before` is the time that the film's earlier samples
+/// took, if known.
 pub fn describe(
     recipe: &Recipe,
     stage: Option<&Stage>,
@@ -36,9 +36,16 @@ pub fn describe(
     description
 }
 
-/// Who rendered it: if several did, that at work first, each with its samples, and how many were there before.
+/// A number with its noun: `1 sample`, `8 samples`.
+pub fn counted(number: u64, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+/// The backend. If there were several, the current one comes first, each with its samples, and earlier runs come last.
 fn backend_words(film: &Film, status: &Status) -> Option<String> {
-    let words = |info: &BackendInfo| format!("{} {}, {} lanes", info.name, info.device, info.lanes);
+    let words =
+        |info: &BackendInfo| format!("{} {}, {}", info.name, info.device, counted(info.lanes as u64, "lane"));
+    let samples = |count: u64| counted(count, "sample");
     let mut parts: Vec<&Contribution> = status.contributions.iter().collect();
     let earlier = film.sample_count().saturating_sub(parts.iter().map(|part| part.samples_per_pixel).sum());
     match parts.as_slice() {
@@ -48,8 +55,8 @@ fn backend_words(film: &Film, status: &Status) -> Option<String> {
     }
     parts.sort_by_key(|part| Some(&part.backend) != status.backend.as_ref());
     let told =
-        parts.iter().map(|part| format!("{} ({} samples)", words(&part.backend), part.samples_per_pixel));
-    let before = (earlier > 0).then(|| format!("earlier runs ({earlier} samples)"));
+        parts.iter().map(|part| format!("{} ({})", words(&part.backend), samples(part.samples_per_pixel)));
+    let before = (earlier > 0).then(|| format!("earlier runs ({})", samples(earlier)));
     Some(told.chain(before).collect::<Vec<_>>().join("; "))
 }
 
@@ -93,7 +100,7 @@ mod tests {
         let two = [part("cpu", 8, 6), part("gpu", 64, 1)];
         assert_eq!(
             words(&two),
-            "gpu x, 64 lanes (1 samples); cpu x, 8 lanes (6 samples); earlier runs (3 samples)"
+            "gpu x, 64 lanes (1 sample); cpu x, 8 lanes (6 samples); earlier runs (3 samples)"
         );
     }
 }

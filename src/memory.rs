@@ -6,21 +6,21 @@
 
 use std::fs;
 
-/// Something that is too large for this machine.
+/// Something needs more memory than this machine has.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
-#[error("{what} needs {} of memory, but {} are free; {remedy}", words(*needed_bytes), words(*free_bytes))]
+#[error("{what} needs {} of memory, but only {} is free; {remedy}", words(*needed_bytes), words(*free_bytes))]
 pub struct MemoryError {
-    /// What it is for.
+    /// What the memory is for.
     pub what: String,
-    /// Bytes that it takes, with what the program takes besides.
+    /// Bytes needed, including what the rest of the program takes.
     pub needed_bytes: u64,
-    /// Bytes that can be had.
+    /// Bytes available.
     pub free_bytes: u64,
     /// What to do.
     pub remedy: &'static str,
 }
 
-/// A number of bytes in words.
+/// A number of bytes with a unit.
 pub fn words(bytes: u64) -> String {
     match bytes {
         0..1_000_000 => format!("{bytes} bytes"),
@@ -32,13 +32,13 @@ pub fn words(bytes: u64) -> String {
 /// What everything else takes: program, threads, files.
 const BASE_BYTES: u64 = 64 << 20;
 
-/// Less than this is not worth asking the system for, and [`filled`] notices if it cannot be had.
+/// Smaller sizes are not checked with the system; [`filled`] notices if the allocation fails.
 const SMALL_BYTES: u64 = 16 << 20;
 
-/// Refuses what does not fit, where the system says how much there is. `what` is what takes `bytes`.
+/// Returns an error if `bytes` do not fit, provided the system tells what is free. `what` names their purpose.
 ///
 /// # Errors
-/// [`MemoryError`], with `remedy` as what to do.
+/// [`MemoryError`] with this `remedy`.
 pub fn check(what: impl FnOnce() -> String, bytes: u64, remedy: &'static str) -> Result<(), MemoryError> {
     if bytes < SMALL_BYTES {
         return Ok(());
@@ -59,10 +59,10 @@ fn check_against(
     Ok(())
 }
 
-/// `count` copies of `value`, unless they do not fit.
+/// `count` copies of `value`.
 ///
 /// # Errors
-/// [`MemoryError`], with `remedy` as what to do.
+/// [`MemoryError`] with this `remedy` if they do not fit.
 pub fn filled<T: Clone>(
     count: usize,
     value: T,
@@ -86,8 +86,8 @@ pub fn filled<T: Clone>(
     })
 }
 
-/// Bytes that can be had: the least of what the system, the process's group and the process's own limits leave. `None`
-/// where the system does not say.
+/// Bytes available: the least of what the system, the process's control group and the process's own limits allow.
+/// `None` if the system does not tell.
 pub fn free_bytes() -> Option<u64> {
     let of_system =
         fs::read_to_string("/proc/meminfo").ok().and_then(|text| kilobytes(&text, "MemAvailable:"));
@@ -100,15 +100,15 @@ fn kilobytes(text: &str, name: &str) -> Option<u64> {
     line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// Address space that the system's allocator sets aside for a thread.
+/// Address space that the system's allocator reserves for each thread.
 #[cfg(target_os = "linux")]
 const ARENA_BYTES: u64 = 64 << 20;
 
-/// Threads beside one for each core: those of the program, the render and what it waits for.
+/// Threads besides one per core: those of the program and the render, and those that it waits for.
 #[cfg(target_os = "linux")]
 const OTHER_THREADS: u64 = 6;
 
-/// What `ulimit -v` and `ulimit -d` leave.
+/// What `ulimit -v` and `ulimit -d` still allow.
 #[cfg(target_os = "linux")]
 fn free_of_process() -> Option<u64> {
     use rustix::process::{Resource, getrlimit};
@@ -128,12 +128,12 @@ fn free_of_process() -> Option<u64> {
     None
 }
 
-/// What the limits of the process's control groups leave. Cached files do not count: they make room when need
-/// be.
+/// What the limits of the process's control groups still allow. Cached files do not count, because the system drops
+/// them if memory is needed.
 fn free_of_group() -> Option<u64> {
     let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
     let of_own = groups.lines().filter_map(|line| line.splitn(3, ':').nth(2));
-    // Within a container the own group is the root of what can be seen, whatever its name outside.
+    // Within a container, the process's own group is the visible root, whatever its name outside.
     of_own.chain(["/"]).flat_map(|group| [free_of_group_v2(group), free_of_group_v1(group)]).flatten().min()
 }
 
@@ -158,7 +158,7 @@ fn file_cache(stat: &str) -> u64 {
         line.trim().parse::<u64>().ok()
     };
     let sum = |names: [&str; 2]| names.into_iter().filter_map(value).sum::<u64>();
-    // The first version of control groups has sums over subgroups besides.
+    // Version 1 of control groups also has sums over subgroups.
     sum(["total_inactive_file ", "total_active_file "]).max(sum(["inactive_file ", "active_file "]))
 }
 
@@ -171,7 +171,7 @@ mod tests {
         let check = |bytes, free| check_against(|| "a film".to_owned(), bytes, free, "do less");
         assert_eq!(check(8 << 30, 9 << 30), Ok(()));
         let message = check(14_000_000_000, 8_000_000_000).unwrap_err().to_string();
-        assert_eq!(message, "a film needs 14.1 GB of memory, but 8.0 GB are free; do less");
+        assert_eq!(message, "a film needs 14.1 GB of memory, but only 8.0 GB is free; do less");
         assert!(check(u64::MAX, u64::MAX - 1).is_err());
     }
 

@@ -1,4 +1,4 @@
-//! `weekender bench` from outside: what it measures, writes and refuses.
+//! `weekender bench` as a program: what it measures, writes and refuses.
 
 #![allow(clippy::unwrap_used)]
 
@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 
 fn bench(directory: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    // Else some drivers complain.
+    // Otherwise, some drivers complain.
     command.env("XDG_RUNTIME_DIR", directory);
     command.current_dir(directory).arg("bench").args(arguments).stdin(Stdio::null()).output().unwrap()
 }
@@ -69,13 +69,13 @@ fn rows_have_sane_figures() {
             }
             assert!((0.0..=1.0).contains(&number(row, "lanes_in_use")), "{row}");
             if row["lanes"] == 1 {
-                // A path that is absorbed takes its lane through one more turn.
+                // A path that is absorbed costs its lane one more iteration.
                 assert!(number(row, "lanes_in_use") > 0.9, "{row}");
             }
             assert!(number(row, "efficiency") > 0.0);
         }
     }
-    // The machine's name and warnings are as long as they are.
+    // The machine's name and the warnings may be longer.
     let is_free = |line: &str| line.starts_with("Weekender") || line.starts_with("warning");
     let table = text(&output.stdout);
     assert!(table.lines().all(|line| line.chars().count() <= 100 || is_free(line)), "{table}");
@@ -108,7 +108,7 @@ fn without_a_compiler_the_control_is_left_out() {
     let output = command.current_dir(directory.path()).output().unwrap();
     assert!(output.status.success());
     let table = text(&output.stdout);
-    assert!(table.contains("left out") && table.contains("no-such-compiler"), "{table}");
+    assert!(table.contains("skipped") && table.contains("no-such-compiler"), "{table}");
 }
 
 #[test]
@@ -121,11 +121,11 @@ fn fields_are_measured_and_drawn() {
     assert_eq!(rows.iter().map(|row| number(row, "spheres")).collect::<Vec<_>>(), [100.0, 300.0, 1000.0]);
     for row in rows {
         check_spread(&row["paths_per_second"]);
-        // A row of 64, a centre with a radius of 16, a number of 4 and some of the hierarchy.
+        // A shading record of 64 bytes, a centre with a radius of 16, a number of 4, and a share of the hierarchy.
         assert!((84.0..200.0).contains(&number(row, "table_bytes_per_sphere")), "{row}");
         assert!(number(row, "build_seconds") >= number(row, "hierarchy_seconds"));
     }
-    assert!(read("s.svg").contains("million paths a second"));
+    assert!(read("s.svg").contains("million paths per second"));
 }
 
 #[test]

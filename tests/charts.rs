@@ -1,4 +1,4 @@
-//! Charts in files.
+//! Charts written to files.
 
 #![allow(clippy::unwrap_used)]
 
@@ -41,7 +41,7 @@ fn bars() -> Panel {
     };
     Panel::Bars(BarChart {
         title: "Speed".to_owned(),
-        label: "million paths a second".to_owned(),
+        label: "million paths per second".to_owned(),
         bars: vec![bar("scalar", 3.0, 0), bar("8 lanes", 25.0, 1)],
     })
 }

@@ -1,4 +1,4 @@
-//! The program from outside: what it writes, says and returns.
+//! The program as a user runs it: files, messages and exit codes.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use serde_json::Value;
@@ -11,7 +11,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 fn weekender(directory: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    // Whatever should have been refused opens no window.
+    // If a command that should be refused is accepted, it must not open a window.
     for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
         command.env_remove(display);
     }
@@ -180,11 +180,11 @@ fn files_that_get_in_each_other_s_way_are_refused_before_rendering() {
     let endless = ["--batch", "--samples", "4294967296", "--size", "32x18"];
     let refused =
         |more: &[&str], parts: &[&str]| refused_in(&directory, &[&endless[..], more].concat(), parts);
-    // Outputs over outputs.
+    // Outputs that would replace outputs.
     refused(&["--out", "x.exr", "--checkpoint", "./x.exr"], &["--out", "--checkpoint", "x.exr"]);
     refused(&["--out", "x.png", "--json", "../x.png/../x.png"], &["x.png"]);
     refused(&["--checkpoint", "x.exr", "--save-scene", "x.exr"], &["--checkpoint", "--save-scene"]);
-    // Outputs over inputs.
+    // Outputs that would replace inputs.
     refused(&["--resume", "g.exr", "--json", "g.exr"], &["--json", "--resume", "g.exr"]);
     refused(&["--resume", "g.exr", "--save-scene", "./g.exr"], &["--save-scene", "--resume"]);
     refused(&["--scene", "s.toml", "--json", "s.toml"], &["--json", "--scene"]);
@@ -206,7 +206,7 @@ fn files_that_get_in_each_other_s_way_are_refused_before_rendering() {
         std::fs::remove_file(path("future.exr")).unwrap();
     }
     assert_eq!(std::fs::read(path("g.exr")).unwrap(), before);
-    // What lives on in the output may be replaced.
+    // A film may be replaced by its own continuation.
     let resumed =
         ["--resume", "g.exr", "--checkpoint", "./g.exr", "--samples", "4", "--batch", "--out", "y.png"];
     let output = run(directory.path(), &resumed);
@@ -228,7 +228,7 @@ fn places_that_look_like_files_and_are_none_are_found_before_rendering() {
         refused_in(&directory, &dangling, &["to-nowhere.png", "it is a link to gone/target.png"]);
         symlink("circle.png", directory.path().join("circle.png")).unwrap();
         refused_in(&directory, &[&endless[..], &["--out", "circle.png"]].concat(), &["circle.png"]);
-        // One whose target can be made is followed.
+        // A link to a file that can be created is followed.
         symlink("target.png", directory.path().join("link.png")).unwrap();
         render(directory.path(), &["--samples", "1", "--out", "link.png"]);
         assert!(directory.path().join("link.png").is_symlink());
@@ -329,7 +329,7 @@ fn a_resumed_film_equals_an_uninterrupted_one() {
     let at = |name: &str| directory.path().join(name);
     render(directory.path(), &["--samples", "37", "--checkpoint", "whole.exr"]);
     render(directory.path(), &["--samples", "10", "--checkpoint", "part.exr"]);
-    // The film knows its scene and size: nothing of that need be said again.
+    // The film contains its scene and size, so the command need not repeat them.
     let output = run(
         directory.path(),
         &["--batch", "--resume", "part.exr", "--samples", "37", "--checkpoint", "part.exr", "--json", "-"],
@@ -354,7 +354,7 @@ fn seconds_add_up_over_runs() {
     render(directory.path(), &["--samples", "4", "--out", "film.exr"]);
     let first = seconds("film.exr").unwrap();
     assert!(first > 0.0 && first < 500.0, "{first}");
-    // An earlier run that took long.
+    // As if the earlier run had taken long.
     let mut kept = checkpoint::load(&at("film.exr")).unwrap();
     kept.description.set(key::SECONDS, 1000.0);
     checkpoint::save(&at("film.exr"), &kept.film, &kept.description).unwrap();
@@ -367,7 +367,7 @@ fn seconds_add_up_over_runs() {
     let json: Value = serde_json::from_slice(&std::fs::read(at("more.json")).unwrap()).unwrap();
     let of_run = json["trace_seconds"].as_f64().unwrap();
     assert!(of_run > 1e-5 && (both - 1000.0 - of_run).abs() < 1e-6, "{both} of 1000 and {of_run}");
-    // Where the first run does not say what it took, nobody knows the sum.
+    // If the time of the first run is not known, neither is the sum.
     let mut silent = weekender::film::Description::new(kept.description.recipe());
     silent.set(key::SAMPLES, 4);
     checkpoint::save(&at("film.exr"), &kept.film, &silent).unwrap();
@@ -380,7 +380,7 @@ fn films_of_other_pictures_are_not_resumed() {
     let directory = temp();
     render(directory.path(), &["--samples", "2", "--checkpoint", "film.exr"]);
     std::fs::write(directory.path().join("broken.exr"), "not a film").unwrap();
-    // The window refuses them as a batch render does.
+    // The window refuses them, too.
     for way in [&["--batch"][..], &[]] {
         let with = |film: &'static str, more: &[&'static str]| [way, &["--resume", film], more].concat();
         for (flags, parts) in [
@@ -533,7 +533,7 @@ fn help_tells_units_and_ranges() {
 #[test]
 fn progress_can_be_asked_for_where_there_is_no_terminal() {
     let output = render(temp().path(), &["--samples", "2", "--progress", "on"]);
-    assert!(text(&output.stderr).contains("write"), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("writing"), "{}", text(&output.stderr));
 }
 
 #[cfg(unix)]
@@ -558,7 +558,7 @@ fn ctrl_c_writes_picture_and_checkpoint() {
     .stderr(Stdio::piped())
     .spawn()
     .unwrap();
-    // Its first words come after it has begun to listen.
+    // It prints its first line after it has started to listen.
     let mut stderr = std::io::BufReader::new(child.stderr.take().unwrap());
     std::io::BufRead::read_line(&mut stderr, &mut String::new()).unwrap();
     std::thread::sleep(Duration::from_millis(500));
@@ -581,7 +581,7 @@ fn ctrl_c_writes_picture_and_checkpoint() {
     let samples = film(directory.path().join("film.exr")).sample_count();
     assert!(samples > 0);
 
-    // What was kept goes on.
+    // The saved film can be resumed.
     let more = (samples + 2).to_string();
     let resumed =
         run(directory.path(), &["--batch", "--resume", "film.exr", "--samples", &more, "--out", "more.exr"]);

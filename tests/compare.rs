@@ -1,4 +1,4 @@
-//! `weekender compare`: what is equal, what is not, and what cannot be compared.
+//! `weekender compare`: equal pictures, different pictures, and pictures that cannot be compared.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 use std::fs;
@@ -46,7 +46,7 @@ fn films_that_differ_in_noise_are_equal_and_one_that_differs_in_a_sphere_is_not(
     let (code, text, _) = compare(&["a.exr", "a.exr"], at);
     assert!(code == 0 && text.contains("equal to the bit") && text.contains("0.00 x noise"), "{text}");
 
-    // A ball that is a hundredth larger.
+    // A ball with a radius larger by a hundredth.
     let (code, _, errors) = weekender(&["--save-scene", "scene.toml", "--size", "160x90"], at);
     assert_eq!(code, 0, "{errors}");
     let scene = fs::read_to_string(at.join("scene.toml")).unwrap();
@@ -75,7 +75,7 @@ fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
         let (code, text, _) = compare(&[name, "cpu"], at);
         assert!(code == 0 && text.contains("cpu"), "{text}");
     }
-    // Without its description a picture is that of another program, and its scene has to be said.
+    // A picture without a description counts as one of another program, so its scene has to be given.
     let plain = image::open(at.join("a.png")).unwrap().to_rgb8();
     plain.save(at.join("plain.png")).unwrap();
     let scene = ["--scene", "three-spheres"];
@@ -93,7 +93,7 @@ fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
     fs::write(at.join("turned.pfm"), &pfm).unwrap();
     let (code, text, errors) = compare(&["turned.pfm", "turned.pfm"], at);
     assert!(code == 0 && text.contains("equal to the bit"), "{text}{errors}");
-    // As a float picture its steps are not known: only the blocks of the smooth sky may tell it apart.
+    // In a float picture, quantisation is not known, so only blocks in the smooth sky may show a difference.
     let (_, text, _) = compare(&["turned.pfm", "film.exr"], at);
     assert!(text.contains("float") && text.contains("verdict"), "{text}");
 }
@@ -102,7 +102,7 @@ fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
 fn a_picture_is_read_as_its_recipe_has_it_encoded() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    // Linear bytes, and bytes whose upper half alone is linear: the recipe tells, whatever --encoding says of others.
+    // Linear integers, and ones of which only the upper half is linear: the recipe decides, whatever --encoding says.
     for stage in ["diffuse", "gamut"] {
         render(at, "film.exr", &["--stage", stage, "--samples", "64"]);
         render(at, "picture.png", &["--stage", stage, "--samples", "64"]);
@@ -114,7 +114,7 @@ fn a_picture_is_read_as_its_recipe_has_it_encoded() {
     }
 }
 
-/// A PFM of 64x16 pixels, of which the first 60 columns are `value`.
+/// A PFM of 64x16 pixels whose first 60 columns are `value`.
 fn pfm(at: &Path, name: &str, value: f32) {
     let pixel = |i: usize| if i % 64 < 60 { value } else { 0.25 + i as f32 / 4096.0 };
     let pixels = (0..64 * 16).flat_map(|i| [pixel(i); 3]).flat_map(f32::to_le_bytes);
@@ -157,7 +157,7 @@ fn pixels_that_are_no_numbers_in_one_picture_alone_are_differences() {
         let is_bright = map.get_pixel(30, 12).0 == [252, 255, 164];
         assert_eq!(is_bright, first != second, "{first} and {second}");
     }
-    // Against whole numbers, too.
+    // The same against integers.
     let grey = image::RgbImage::from_pixel(64, 16, image::Rgb([128; 3]));
     grey.save(at.join("grey.png")).unwrap();
     for name in &names[1..] {
@@ -178,7 +178,7 @@ fn backends_agree_on_the_same_samples() {
     }
     let (code, text, _) = compare(&["cpu", "cpu", "--samples", "4", "--size", "96x54"], at);
     assert!(code == 0 && text.contains("equal to the bit") && text.contains("(first)"), "{text}");
-    // A film beside a backend: its scene, its size, its samples.
+    // A backend compared with a film renders the film's scene, size and samples.
     render(at, "film.exr", &["--samples", "24", "--scene", "metals"]);
     let (code, text, errors) = compare(&["film.exr", "baseline"], at);
     assert!(
@@ -199,7 +199,7 @@ fn what_cannot_be_compared_exits_with_2() {
         (&["a.exr", "cpu", "--heat-map", "map.jpg"], &["--heat-map", "map.jpg", ".png"]),
         (&["a.exr", "cpu", "--json", "nowhere/a.json"], &["a.json", "create its directory"]),
         (&["a.exr", "nowhere.exr"], &["nowhere.exr"]),
-        (&["a.exr", "text.png"], &["text.png", "no PFM, EXR, PNG or PPM"]),
+        (&["a.exr", "text.png"], &["text.png", "not a PFM, EXR, PNG or PPM"]),
         (&["a.exr", "small.exr"], &["160x90", "80x45", "one size"]),
         (&["a.exr", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
         (&["cpu", "reference", "--stage", "all"], &["--stage all", "choose one"]),

@@ -1,4 +1,4 @@
-//! Paths as backends record them, and `weekender diff`, which compares two.
+//! Recorded paths of the backends, and `weekender diff`, which compares two of them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -97,7 +97,7 @@ fn the_gpu_and_the_cpu_record_the_same_paths() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     for (name, job) in jobs(16, 9) {
         if job.rules().surface != Surface::Exact {
-            // What is seen there is rounding itself.
+            // These stages show rounding errors on purpose.
             continue;
         }
         let mut parted = 0;
@@ -127,7 +127,7 @@ fn a_difference_is_found_marked_and_told() {
         assert!(found.contains(part), "{part}: {found}");
     }
     assert!(!found.contains('\x1b'), "no colours in a file");
-    // The line "again" names the same path.
+    // The line "again" leads to the same path.
     let again = found.lines().find_map(|line| line.strip_prefix("again")).unwrap();
     let (code, repeated, _) = diff(&[&sides[..], &again.split_whitespace().collect::<Vec<_>>()].concat());
     assert_eq!(code, 1);
@@ -147,7 +147,7 @@ fn equal_sides_agree_to_the_bit() {
 fn the_cpu_and_the_reference_agree_within_the_tolerance() {
     let (code, text, errors) = diff(&["--sides", "cpu,reference", "--pixel", "400,220"]);
     assert_eq!(code, 0, "{text}{errors}");
-    assert!(text.contains("the paths agree: nothing differs by more than") && text.contains('≈'), "{text}");
+    assert!(text.contains("the paths agree: the largest difference is") && text.contains('≈'), "{text}");
     let (code, text, _) = diff(&["--sides", "cpu,reference", "--pixel", "400,220", "--tolerance", "0"]);
     assert_eq!(code, 1, "{text}");
 }
@@ -185,7 +185,7 @@ fn what_cannot_be_compared_is_refused() {
         (&["--pixel", "1,1", "--find"], &["--find"]),
         (
             &["--pixel", "1,1", "--sides", "cpu,reference", "--adapter", "x"],
-            &["--adapter", "gpu among --sides"],
+            &["--adapter", "the side gpu in --sides"],
         ),
         (&["--pixel", "1,1", "--adapter", "no such adapter"], &["the side gpu", "--sides cpu,reference"]),
         (&["--pixel", "1,1", "--stage", "all"], &["--stage all", "choose one stage"]),

@@ -1,7 +1,7 @@
-//! Drills: the program under kills, full disks, limits, closed pipes and other runs on the same film. What it had
-//! rendered must be there afterwards, to the bit.
+//! Fault drills: kills, full disks, resource limits, closed pipes, and other runs that use the same film. All rendered
+//! samples must be there afterwards, to the bit.
 //!
-//! Each runs a few rounds. For long series by hand, WEEKENDER_FAULT_ROUNDS is the number of rounds:
+//! Each test runs a few rounds. For a long series, set WEEKENDER_FAULT_ROUNDS to the number of rounds:
 //! `WEEKENDER_FAULT_ROUNDS=150 cargo test --release --test fault_injection -- --nocapture`.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
@@ -20,10 +20,10 @@ use weekender::film::{Film, checkpoint};
 const PATIENCE: Duration = Duration::from_secs(120);
 const PROGRAM: &str = env!("CARGO_BIN_EXE_weekender");
 
-/// A small picture; enough samples to be interrupted in.
+/// A small picture with enough samples to interrupt.
 const PICTURE: [&str; 8] = ["--batch", "--size", "48x27", "--threads", "2", "--device", "cpu", "--progress"];
 
-/// Never ends by itself, and keeps its film.
+/// A render that never ends by itself and keeps its film.
 const ENDLESS: [&str; 8] =
     ["--samples", "4294967296", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png"];
 
@@ -74,7 +74,7 @@ fn wait(child: &mut Child) -> ExitStatus {
     }
 }
 
-/// Waits until `is_so`.
+/// Waits until `is_so` returns true.
 fn until(what: &str, is_so: impl Fn() -> bool) {
     let begin = Instant::now();
     while !is_so() {
@@ -87,7 +87,7 @@ fn film(path: &Path) -> Film {
     checkpoint::load(path).unwrap().film
 }
 
-/// Files in a directory, without the unfinished ones that a kill leaves.
+/// Files in a directory, except unfinished ones that a kill leaves behind.
 fn names(at: &Path) -> Vec<String> {
     let entries = fs::read_dir(at).unwrap();
     let mut names: Vec<String> =
@@ -96,7 +96,7 @@ fn names(at: &Path) -> Vec<String> {
     names
 }
 
-/// Numbers that look random; each test says which it began with.
+/// Pseudo-random numbers; each test prints its seed.
 struct Dice(u64);
 
 impl Dice {
@@ -105,7 +105,7 @@ impl Dice {
         Dice(now.as_nanos() as u64 | 1)
     }
 
-    /// Below `limit`.
+    /// A number below `limit`.
     fn roll(&mut self, limit: u64) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -114,7 +114,7 @@ impl Dice {
     }
 }
 
-/// Whether `part`, which a killed run left, goes on to what was never interrupted.
+/// Checks that `part`, left by a killed run, can be continued to the film of an uninterrupted run.
 fn goes_on_to_the_same_bits(at: &Path, part: &str) {
     let whole = film(&at.join(part));
     let samples = whole.samples().end() + 3;
@@ -135,7 +135,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
         let at = at.path();
         let name = ["KILL", "INT", "TERM"][round as usize % 3];
         let mut child = batch(at, "on", &ENDLESS).spawn().unwrap();
-        // Its first words come when it has begun to listen.
+        // It prints its first line after it has started to listen.
         let mut stderr = BufReader::new(child.stderr.take().unwrap());
         stderr.read_line(&mut String::new()).unwrap();
         sleep(Duration::from_millis(dice.roll(400)));
@@ -146,7 +146,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
             assert_eq!(status.signal(), Some(9));
         } else {
             assert_eq!(status.code(), Some(130), "{name}: {status}");
-            // Before the first sample there is nothing to keep.
+            // Before the first sample, there is nothing to save.
             assert!(names(at).is_empty() || names(at) == ["g.exr", "g.png"], "{name}: {:?}", names(at));
         }
         unfinished += names(at).iter().filter(|name| name.ends_with(".part")).count();
@@ -183,7 +183,7 @@ fn what_is_only_said_never_ends_a_run() {
         let at = at.path();
         let mut command = batch(at, "on", &ENDLESS);
         let gone = || {
-            // A reader that has gone away.
+            // A pipe whose reader has gone away.
             let (reader, writer) = std::io::pipe().unwrap();
             drop(reader);
             writer
@@ -205,7 +205,7 @@ fn what_is_only_said_never_ends_a_run() {
         assert_eq!(names(at), ["g.exr", "g.png"]);
         assert!(film(&at.join("g.exr")).sample_count() > 0);
     }
-    // Others that speak: warnings of a lost device, a report, a comparison, bad input.
+    // Other runs that print messages: a lost device, a report, a comparison, bad input.
     let at = TempDir::new().unwrap();
     let at = at.path();
     let quiet = |arguments: &[&str]| {
@@ -279,7 +279,7 @@ fn results_that_nobody_can_read_are_a_failure_with_a_word() {
 fn signals_while_files_are_written_wait_for_them_and_are_answered() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    // A pipe takes a picture as slowly as its reader likes.
+    // A pipe accepts a picture as slowly as its reader wants.
     succeeds(Command::new("mkfifo").arg(at.join("slow.png")).arg(at.join("pipe.exr")));
     let flags = ["--samples", "1", "--checkpoint", "g.exr", "--out", "slow.png"];
     let mut child = batch(at, "on", &flags).spawn().unwrap();
@@ -305,11 +305,11 @@ fn signals_while_files_are_written_wait_for_them_and_are_answered() {
             .unwrap();
     assert_eq!(film_in_pipe.status.code(), Some(2), "{film_in_pipe:?}");
     assert!(text(&film_in_pipe.stderr).contains("pipe.exr"), "{film_in_pipe:?}");
-    hear("write slow.png");
+    hear("writing slow.png");
     for _ in 0..3 {
         signal(&child, "INT");
         hear("still writing");
-        // Beyond what counts as one signal that arrives twice.
+        // Longer than the time within which two signals count as one.
         sleep(Duration::from_millis(600));
     }
     assert_eq!(child.try_wait().unwrap(), None);
@@ -335,7 +335,7 @@ fn a_signal_that_arrives_twice_is_one() {
 
 #[test]
 fn a_second_signal_ends_the_program_at_once() {
-    // One pass of this takes far longer than the drill.
+    // One pass takes far longer than this test.
     let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];
     let flags = ["--samples", "1000", "--out", "g.png", "--checkpoint", "g.exr", "--progress", "on"];
     for milliseconds in [800, 3000, 10_000] {
@@ -348,7 +348,7 @@ fn a_second_signal_ends_the_program_at_once() {
         signal(&child, "INT");
         sleep(Duration::from_millis(700));
         if child.try_wait().unwrap().is_some() && names(at).is_empty() {
-            // It came before the first pass, which a busy machine may begin late.
+            // The signal came before the first pass, which may start late on a busy machine.
             continue;
         }
         signal(&child, "INT");
@@ -382,7 +382,7 @@ fn a_signal_ends_the_gallery_of_stages_with_the_present_one() {
     assert_eq!(figures["stages"][0]["ended_by"], "stopped");
 }
 
-/// Runs the program under limits of the shell.
+/// Runs the program with resource limits of the shell.
 fn limited(at: &Path, limits: &str, arguments: &[&str]) -> Output {
     let mut command = Command::new("sh");
     command.arg("-c").arg(format!("{limits}; exec \"$0\" \"$@\"")).arg(PROGRAM).args(arguments);

@@ -1,4 +1,4 @@
-//! The film: exact sums, the set of samples, the resolved picture, the error estimate, film files and merging.
+//! The film: exact sums, sample ranges, the resolved picture, the error estimate, film files and merging.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::single_range_in_vec_init)]
 
@@ -18,7 +18,7 @@ use weekender::stages::Transfer;
 
 const RECIPE: &str = "[render]\nwidth = 7\nsamples_per_pixel = 10\n";
 
-/// A number that depends on its arguments alone.
+/// A pseudo-random number that depends only on its arguments.
 fn noise(pixel: usize, sample: u64, channel: usize) -> f64 {
     let mut x = (pixel as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (sample << 20) ^ channel as u64;
     for _ in 0..3 {
@@ -36,7 +36,7 @@ fn add(film: &mut Film, pixel: usize, sample: u64, radiance: [f64; 3]) -> bool {
     true
 }
 
-/// A film of noise, as a renderer would fill it.
+/// A film of noise, filled as a renderer would fill it.
 fn noisy_film(width: u32, height: u32, halves: usize, ranges: &[Range<u64>]) -> Film {
     let mut film = Film::new(width, height, halves);
     for range in ranges {
@@ -128,7 +128,7 @@ fn fixed_point_rounds_and_saturates() {
     assert_eq!(k(f64::from(largest)), u64::from(FIXED_POINT_MAX));
 }
 
-/// A film of one sample whose only channel of interest runs through `values`.
+/// A film of one sample in which one channel takes all of `values`.
 fn film_of(values: &[f64]) -> Film {
     let mut film = Film::new(values.len() as u32, 1, 1);
     for (pixel, x) in values.iter().enumerate() {
@@ -188,7 +188,7 @@ fn rows_are_the_picture_s_rows() {
 
 #[test]
 fn the_error_is_that_of_the_mean() {
-    // Halves that differ by 0.2 everywhere: MSE = 0.04 / 4.
+    // The halves differ by 0.2 everywhere: MSE = 0.04 / 4.
     let mut film = Film::new(4, 1, 2);
     for pixel in 0..4 {
         add(&mut film, pixel, 0, [0.6; 3]);
@@ -206,7 +206,7 @@ fn the_error_is_that_of_the_mean() {
 
 #[test]
 fn the_error_is_right_for_halves_of_different_counts() {
-    // Noise is uniform in [0, 1): variance 1/12 a sample. Three samples, two of them in half A.
+    // Noise is uniform in [0, 1) with variance 1/12 per sample. Of three samples, two are in half A.
     for samples in [3, 8, 9] {
         let error = noisy_film(200, 100, 2, &[0..samples]).error().unwrap();
         let expected = (1.0 / 12.0 / samples as f64).sqrt();
@@ -216,7 +216,7 @@ fn the_error_is_right_for_halves_of_different_counts() {
 
 #[test]
 fn the_estimate_knows_how_far_off_it_may_be() {
-    // 400 small films of other samples each: the spread of their estimates against what each says of itself.
+    // 400 small films with different samples: compares the spread of their estimates with the stated uncertainty.
     let errors: Vec<_> =
         (0..400).map(|k| noisy_film(16, 12, 2, &[8 * k..8 * k + 8]).error().unwrap()).collect();
     let mean = |of: &dyn Fn(usize) -> f64| (0..errors.len()).map(of).sum::<f64>() / errors.len() as f64;
@@ -239,7 +239,7 @@ fn an_uncertainty_is_a_share_of_the_error() {
     assert_eq!(none.uncertainty(), "± 0.1 %");
 }
 
-/// A film of two samples whose first `noisy` pixels have all the noise.
+/// A film of two samples with noise only in its first `noisy` pixels.
 fn film_with_noise_in(pixels: u32, noisy: usize) -> Film {
     let mut film = Film::new(pixels, 1, 2);
     for pixel in 0..pixels as usize {
@@ -307,7 +307,7 @@ proptest! {
             match samples.overlap(&range) {
                 None => prop_assert!(common.is_empty()),
                 Some(both) => {
-                    // In one piece, it starts at the first common sample and goes as far as they do.
+                    // It is a contiguous range that starts at the first common sample and is as long as possible.
                     prop_assert!(both.clone().all(|i| set.contains(&i) && range.contains(&i)));
                     prop_assert_eq!(Some(&both.start), common.first());
                     prop_assert!(!(set.contains(&both.end) && range.contains(&both.end)));
@@ -410,7 +410,7 @@ fn more_rejected_samples_than_can_be_counted_are_an_error() {
 
 #[test]
 fn a_film_may_have_very_many_ranges() {
-    // What is quadratic in them takes most of a minute here.
+    // Anything quadratic in the number of ranges would take most of a minute here.
     let even = || (0..200_000).map(|k| 2 * k..2 * k + 1);
     let mut film = Film::new(1, 1, 1);
     for range in even() {
@@ -472,7 +472,7 @@ fn what_is_no_film_file_is_refused_with_the_reason() {
     assert!(matches!(load_error(&path), CheckpointError::NotFilm { .. }));
 }
 
-/// Puts another byte `offset` behind where `needle` begins in the file.
+/// Changes the byte at `offset` after the position of `needle` in the file.
 fn spoil(path: &Path, needle: &[u8], offset: usize, byte: u8) {
     let mut bytes = std::fs::read(path).unwrap();
     let place = bytes.windows(needle.len()).position(|window| window == needle).unwrap();
@@ -492,7 +492,7 @@ fn another_version_is_refused() {
     assert_eq!(error, CheckpointError::Version { path, version: 2 });
 }
 
-/// Where an attribute stands in a file, from its name, type and length to the end of its value.
+/// The bytes of an attribute in a file: name, type, length and value.
 fn attribute(bytes: &[u8], name_and_type: &[u8]) -> Range<usize> {
     let start = bytes.windows(name_and_type.len()).position(|window| window == name_and_type).unwrap();
     let length = start + name_and_type.len();
@@ -508,7 +508,7 @@ fn no_flipped_bit_changes_a_film_unnoticed() {
     checkpoint::save(&path, &film, &description()).unwrap();
     let whole = std::fs::read(&path).unwrap();
     let original = checkpoint::load(&path).unwrap();
-    // What other programs may ask for and this one does not.
+    // Attributes that other programs may read and this one does not.
     let harmless: Vec<Range<usize>> = [
         &b"displayWindow\0box2i\0"[..],
         b"dataWindow\0box2i\0",
@@ -524,7 +524,7 @@ fn no_flipped_bit_changes_a_film_unnoticed() {
     ]
     .into_iter()
     .map(|name| attribute(&whole, name))
-    // The version of OpenEXR.
+    // The version field of OpenEXR.
     .chain([4..8])
     .collect();
     let (mut bytes, mut accepted) = (whole.clone(), Vec::new());
@@ -583,14 +583,14 @@ fn merged_files_are_the_film_of_one_run() {
     assert_eq!(merged.description.get(key::BACKEND), Some("cpu; gpu"));
     assert_eq!(merged.description.recipe(), RECIPE);
 
-    // Overlap: both files and the samples are named.
+    // Overlap: the message names both files and the samples.
     let overlapping = directory.path().join("overlapping.exr");
     checkpoint::save(&overlapping, &noisy_film(5, 3, 2, &[100..101, 10..20]), &description()).unwrap();
     let error = merge_files(&[&paths[0], &paths[1], &overlapping], same_recipe_text).unwrap_err();
     let (first, other) = (paths[1].clone(), overlapping);
     assert_eq!(error, MergeError::Overlap { first, other, range: 10..12 });
 
-    // Another job, another shape, no files.
+    // Different jobs, different sizes, no files.
     let stranger = directory.path().join("stranger.exr");
     let recipe = RECIPE.replace("width = 7", "width = 8");
     checkpoint::save(&stranger, &noisy_film(5, 3, 2, &[50..51]), &Description::new(&recipe)).unwrap();

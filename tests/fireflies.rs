@@ -1,4 +1,4 @@
-//! What the error estimate says where few paths find the light.
+//! Error estimates of scenes in which few paths find the light.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use glam::DVec3;
@@ -9,7 +9,7 @@ use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::Rules;
 
-/// A white shaft that a ball closes but for its corners, and an eye at its bottom. `ball` is the ball's radius.
+/// A white shaft that a ball of this radius closes except for its corners, with the eye at the bottom.
 fn cage(ball: f64, seed: u32) -> RenderJob {
     let mut scene =
         Scene { sky: Sky { bottom: DVec3::splat(50.0), top: DVec3::splat(50.0) }, ..Scene::default() };
@@ -34,7 +34,7 @@ fn cage(ball: f64, seed: u32) -> RenderJob {
     RenderJob::new(scene, camera, settings, Rules::default()).unwrap()
 }
 
-/// Estimates of so many films, and whether they are in doubt.
+/// The error estimates of several films, and whether each is marked as doubtful.
 fn estimates(ball: f64, seeds: u32) -> Vec<(ErrorEstimate, bool)> {
     let mut renderer = CpuRenderer::new(CpuOptions { threads: Some(2), ..CpuOptions::default() }).unwrap();
     let mut estimate = |seed| {
@@ -47,7 +47,8 @@ fn estimates(ball: f64, seeds: u32) -> Vec<(ErrorEstimate, bool)> {
     (0..seeds).map(&mut estimate).collect()
 }
 
-/// From nearly closed to wide open: the stated interval of two deviations holds the truth, or the estimate is doubted.
+/// From nearly closed to wide open: the stated interval of two deviations contains the true error, or the estimate is
+/// marked as doubtful.
 #[test]
 fn the_stated_interval_covers_the_truth_or_the_estimate_is_doubted() {
     for ball in [1.4, 1.38, 1.35, 1.3, 1.2, 0.5] {

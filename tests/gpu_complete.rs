@@ -1,5 +1,5 @@
-//! Samples that were asked for are samples that are added: long paths, many samples, loops that a driver ends, and a
-//! device that leaves samples out.
+//! All requested samples are added: with long paths, many samples, loops that a driver ends early, and a device that
+//! leaves samples out.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -30,7 +30,7 @@ fn picture_mean(film: &Film) -> f64 {
     means.iter().flatten().map(|x| f64::from(*x)).sum::<f64>() / (3.0 * means.len() as f64)
 }
 
-/// The turns of all loops of a thread are far beyond what llvmpipe lets them have.
+/// Each thread would need far more loop iterations than llvmpipe allows.
 #[test]
 fn few_pixels_with_many_samples_are_whole() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
@@ -42,7 +42,7 @@ fn few_pixels_with_many_samples_are_whole() {
     assert!((on_gpu - on_cpu).abs() < 1e-4, "{on_gpu} {on_cpu}");
 }
 
-/// An eye in a closed white ball: no path ends before its last ray, and none brings light.
+/// The eye in a closed white ball: no path ends before its last ray, and none brings light.
 fn closed(max_depth: u32) -> RenderJob {
     let mut scene = Scene { sky: Sky { bottom: DVec3::ONE, top: DVec3::ONE }, ..Scene::default() };
     let white = scene.add_material("white", Material::Lambertian { albedo: DVec3::ONE });
@@ -58,11 +58,11 @@ fn every_ray_of_the_longest_paths_is_traced() {
     let stats = gpu.accumulate(&job, 0..8, &mut film, &go_on()).unwrap();
     assert_eq!((stats.paths, stats.rays), (15 * 8, 15 * 8 * 10_000));
     assert_eq!((film.rejected(), picture_mean(&film)), (0, 0.0));
-    // So is each that is recorded.
+    // The recorded paths are just as long.
     assert_eq!(gpu.record_path(&job, [2, 1], 3).unwrap().rays.len(), 10_000);
 }
 
-/// Whether a path is put aside on its way does not show.
+/// Putting paths aside does not change the film.
 #[test]
 fn paths_that_are_put_aside_give_the_same_film() {
     let scenes: [(Scene, Camera); 2] = [(BuiltinScene::ALL[0].build)(), (book(), BOOK_CAMERA)];
@@ -81,8 +81,8 @@ fn paths_that_are_put_aside_give_the_same_film() {
     }
 }
 
-/// A list of which a ray has more turns than a dispatch allows is traced ray by ray; one that no loop can go through is
-/// refused.
+/// If a ray needs more iterations for a list than a dispatch allows, the picture is traced ray by ray. A list that no
+/// loop can handle is refused.
 #[test]
 fn long_lists_are_whole_or_refused() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
@@ -121,7 +121,7 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
         assert!(rendered(&mut short, &job, 32) == expected, "{after}");
         let said = short.take_messages().join("; ");
         assert!(said.contains("traced again") && said.contains("samples the device added 0"), "{said}");
-        // From pass to pass, too, whenever it is noticed.
+        // The same with several passes, whenever it is noticed.
         let mut short = gpu(options).unwrap();
         let mut film = job.new_film();
         for start in [0, 8, 16, 24] {

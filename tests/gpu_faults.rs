@@ -1,4 +1,4 @@
-//! A device that fails, in each phase of a render: the picture is whole in the end, and the user is told.
+//! Device faults in each phase of a render: the picture is complete in the end, and the user is told.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -16,7 +16,7 @@ fn job(size: [u32; 2]) -> RenderJob {
     job_of(&scene, camera, size, 8, SamplerKind::Sobol, true)
 }
 
-/// A backend that fails; `None` without an adapter.
+/// A backend that will fail; `None` without an adapter.
 fn failing(fault: Fault, point: InjectionPoint, after: u64) -> Option<BackendChoice> {
     let adapter = gpu(GpuOptions::default())?.adapter().name.clone();
     Some(BackendChoice::Gpu(GpuOptions {
@@ -42,7 +42,7 @@ fn check(progressive: Progressive, status: &Status, case: &str) {
 
 #[test]
 fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
-    // Memory ends only where the program's does on a software adapter: see tests/gpu_program.rs.
+    // A software adapter runs out of memory only when the program does: see tests/gpu_program.rs.
     for fault in [Fault::Lost, Fault::Invalid, Fault::Hang] {
         let points = [
             (InjectionPoint::Prepare, 0),
@@ -67,7 +67,7 @@ fn a_fault_during_a_pause_is_survived() {
         let Some(backend) = failing(fault, InjectionPoint::Fetch, 1) else { return };
         let mut progressive = Progressive::spawn().unwrap();
         progressive.start(Work::new(job([64, 36]), backend, Plan::samples(64)));
-        // What is on the device is sent for at a pause.
+        // A pause fetches the samples from the device.
         for _ in 0..3 {
             progressive.pause();
             std::thread::sleep(Duration::from_millis(5));

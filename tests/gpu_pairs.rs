@@ -1,4 +1,4 @@
-//! The GPU against the CPU, sample by sample: the same counters, so the same paths but for rounding.
+//! Compares the GPU with the CPU sample by sample: the same random numbers, so the same paths except for rounding.
 //! (Case 13 of docs/numerics.md.)
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
@@ -14,18 +14,18 @@ use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Material, Scene};
 use weekender::stages::Surface;
 
-/// Beyond this a pair of samples has taken different ways.
+/// Samples that differ by more have taken different paths.
 const DIVERGED: f64 = 1e-3;
 
-/// Rounding alone makes some paths part: where a scene parts more of them than this share between the CPU's own
-/// two ways of rounding, twice that share is allowed.
+/// Allowed fraction of paths that part. If rounding alone, compared between the CPU's two ways of rounding, parts
+/// more paths of a scene, twice that fraction is allowed.
 const DIVERGED_SHARE: f64 = 1e-4;
 
-/// How two renderers' samples differ.
+/// The difference between the samples of two renderers.
 #[derive(Debug, Default)]
 struct Difference {
     samples: usize,
-    /// Samples with a difference above [`DIVERGED`].
+    /// Number of samples with a difference above [`DIVERGED`].
     diverged: usize,
     sum: f64,
     square_sum: f64,
@@ -61,12 +61,12 @@ fn one(renderer: &mut dyn Renderer, job: &RenderJob, index: u64) -> Film {
     film
 }
 
-/// The CPU with multiply and add rounded apart.
+/// The CPU with multiply and add rounded separately.
 fn unfused() -> CpuRenderer {
     CpuRenderer::new(CpuOptions { isa: Some(Isa::Baseline), ..CpuOptions::default() }).unwrap()
 }
 
-/// The share of samples that part between two renderers.
+/// The fraction of samples that part between two renderers.
 fn parted_share(a: &mut dyn Renderer, b: &mut dyn Renderer, job: &RenderJob) -> f64 {
     let mut difference = Difference::default();
     for index in INDICES {
@@ -84,7 +84,7 @@ fn every_stage_and_scene_is_the_cpus_sample_by_sample() {
     let mut failures = Vec::new();
     for (name, job) in jobs(160, 90) {
         if job.rules().surface != Surface::Exact {
-            // What is seen there is rounding itself.
+            // These stages show rounding errors on purpose.
             continue;
         }
         let mut difference = Difference::default();
@@ -109,7 +109,7 @@ fn every_stage_and_scene_is_the_cpus_sample_by_sample() {
         if difference.mean().abs() > 2e-6 || difference.rms() > 5e-5 {
             failures.push(name);
         } else if share > DIVERGED_SHARE {
-            // 0 where the CPU has one way of rounding alone.
+            // 0 if the CPU has only one way of rounding.
             let by_rounding = parted_share(&mut unfused(), &mut cpu, &job);
             let from_unfused = parted_share(&mut gpu, &mut unfused(), &job);
             println!(
@@ -123,17 +123,17 @@ fn every_stage_and_scene_is_the_cpus_sample_by_sample() {
     assert!(failures.is_empty(), "{failures:?}");
 }
 
-/// Pixels across and down a block.
+/// Side of a block in pixels.
 const SIDE: usize = 8;
 
-/// Independent pictures of each side, whose spread tells the deviation of their mean.
+/// Number of independent pictures per side; their spread gives the deviation of the mean.
 const PICTURES: usize = 8;
 
-/// Samples of each picture.
+/// Samples per pixel of each picture.
 const SAMPLES: u64 = 32;
 
-/// What the largest of all scenes' and stages' blocks stays below in 99 of 100 cases: Student's distribution of 14
-/// degrees, 1200 independent blocks.
+/// Limit that the largest of all blocks keeps in 99 of 100 cases, by Student's distribution with 14 degrees of
+/// freedom and 1200 independent blocks.
 const LARGEST_BLOCK: f64 = 6.8;
 
 /// Mean radiance of each block and channel.
@@ -153,7 +153,7 @@ fn block_means(film: &Film) -> Vec<f64> {
     blocks
 }
 
-/// By block, the mean over the pictures and the variance of that mean.
+/// For each block, the mean over the pictures and the variance of that mean.
 fn mean_and_variance(pictures: &[Vec<f64>]) -> Vec<[f64; 2]> {
     let count = pictures.len() as f64;
     let of_block = |block: usize| {
@@ -164,14 +164,14 @@ fn mean_and_variance(pictures: &[Vec<f64>]) -> Vec<[f64; 2]> {
     (0..pictures[0].len()).map(of_block).collect()
 }
 
-/// The job with independent numbers of another seed.
+/// The job with independent random numbers and another seed.
 fn with_seed(job: &RenderJob, seed: u32) -> RenderJob {
     let settings = RenderSettings { seed, sampler: SamplerKind::Independent, ..*job.settings() };
     RenderJob::new(job.scene().clone(), *job.camera(), settings, *job.rules()).unwrap()
 }
 
-/// Each block's difference in deviations, of pictures with other numbers on the two sides. With as few pictures
-/// as these it has Student's distribution of `2 PICTURES - 2` degrees.
+/// Difference of each block in deviations. The pictures of the two sides have different random numbers. With so few
+/// pictures, the differences have Student's distribution with `2 PICTURES - 2` degrees of freedom.
 fn block_differences(sides: [(&mut dyn Renderer, &RenderJob); 2]) -> Vec<f64> {
     let mut seed = 100;
     let sides = sides.map(|(renderer, job)| {
@@ -186,7 +186,7 @@ fn block_differences(sides: [(&mut dyn Renderer, &RenderJob); 2]) -> Vec<f64> {
     });
     let mut z = Vec::new();
     for ([a, variance_a], [b, variance_b]) in sides[0].iter().zip(&sides[1]) {
-        // What does not vary has rounding errors alone.
+        // Blocks without noise may still differ by rounding.
         if (a - b).abs() > 1e-6 {
             z.push((a - b) / (variance_a + variance_b).sqrt());
         }
@@ -198,13 +198,13 @@ fn block_differences(sides: [(&mut dyn Renderer, &RenderJob); 2]) -> Vec<f64> {
 fn blocks_agree(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> bool {
     let z = block_differences(sides);
     let degrees = (2 * PICTURES - 2) as f64;
-    // Mean and variance of the square of Student's number.
+    // Mean and variance of the square of a number with Student's distribution.
     let mean = degrees / (degrees - 2.0);
     let variance = 2.0 * mean * mean * (degrees - 1.0) / (degrees - 4.0);
     let count = z.len() as f64;
     let square_sum: f64 = z.iter().map(|z| z * z).sum();
     let largest = z.iter().fold(0.0_f64, |a, z| a.max(z.abs()));
-    // The channels of a block go together, so there are a third as many independent ones.
+    // The channels of a block are correlated, so only a third of the numbers are independent.
     let bound = count * mean + 4.0 * (3.0 * variance * count).sqrt();
     println!("{name:24} {count} blocks: squares {square_sum:.1} of {bound:.1}, largest {largest:.2}");
     square_sum <= bound && largest <= LARGEST_BLOCK
@@ -216,7 +216,7 @@ fn blocks_of_other_samples_agree() {
     let mut cpu = cpu();
     let mut unfused = unfused();
     let mut failures = jobs(48, 32);
-    // Where rounding itself is seen, as in shadow-acne, the device rounds in one of the CPU's two ways.
+    // Stages such as shadow-acne show rounding itself; the device rounds in one of the CPU's two ways.
     failures.retain(|(name, job)| {
         !blocks_agree(name, [(&mut gpu, job), (&mut cpu, job)])
             && !blocks_agree(name, [(&mut gpu, job), (&mut unfused, job)])

@@ -1,4 +1,4 @@
-//! The program with a GPU, as its user runs it: the device lost in mid-flight, CPU and GPU on one film.
+//! The program with a GPU, as a user runs it: the device is lost, or the CPU and the GPU share a film.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -8,13 +8,13 @@ use tempfile::TempDir;
 use weekender::film::checkpoint;
 use weekender::render_gpu::GpuOptions;
 
-/// Runs the program on the adapter of these tests; `None` where there is none.
+/// Runs the program on the adapter of these tests; `None` without an adapter.
 fn run(directory: &TempDir, arguments: &[&str]) -> Option<Output> {
     let gpu = gpu_common::gpu(GpuOptions::default())?;
     let adapter = gpu.adapter();
     let program = env!("CARGO_BIN_EXE_weekender");
     let mut command = if cfg!(unix) && adapter.is_software && arguments.contains(&OUT_OF_MEMORY) {
-        // A software adapter promises memory without end; let the system give no more than 8 GiB of it.
+        // A software adapter never runs out of memory by itself, so the system limits it to 8 GiB.
         let mut shell = Command::new("sh");
         shell.args(["-c", "ulimit -v 8388608 && exec \"$0\" \"$@\"", program]);
         shell
@@ -41,7 +41,7 @@ fn a_fault_leaves_a_whole_picture_and_a_warning() {
         (OUT_OF_MEMORY, "Memory"),
         ("--simulate-invalid-call", "alidation"),
     ];
-    // Beside the CPU a slow device may get no more than its first piece.
+    // Next to the CPU, a slow device may get only its first piece.
     for (device, after) in [("gpu", "3"), ("cpu,gpu", "0")] {
         for (flag, word) in faults {
             let arguments =
@@ -65,7 +65,7 @@ fn a_fault_leaves_a_whole_picture_and_a_warning() {
     }
 }
 
-/// Who added how many samples, as the JSON tells.
+/// The number of samples that each backend added, from the JSON.
 fn parts(directory: &TempDir, name: &str) -> Vec<(String, u64)> {
     let json = std::fs::read_to_string(directory.path().join(name)).unwrap();
     let report: serde_json::Value = serde_json::from_str(&json).unwrap();
@@ -75,7 +75,7 @@ fn parts(directory: &TempDir, name: &str) -> Vec<(String, u64)> {
     report["backends"].as_array().unwrap().iter().map(part).collect()
 }
 
-/// The samples that the film has from the device are in it to the bit, the others are the CPU's.
+/// The samples from the device are those of the GPU to the bit, and the others are those of the CPU.
 #[test]
 fn a_film_after_a_fault_holds_what_the_counts_say() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The GPU renderer as a whole: known radiance, odd sizes, films that go on elsewhere, failures.
+//! The whole GPU renderer: known radiance, odd sizes, films that another backend continues, failures.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -132,7 +132,7 @@ fn specialised_is_general() {
     }
 }
 
-/// Where nothing but the fuzz of metals takes the random direction.
+/// Only the fuzz of metals uses the random direction here.
 #[test]
 fn fuzzy_metal_alone_is_the_cpus() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
@@ -158,7 +158,7 @@ fn fuzzy_metal_alone_is_the_cpus() {
     }
 }
 
-/// The same job of polished metals.
+/// The same job with polished metals.
 fn fuzzless(job: &RenderJob) -> RenderJob {
     let mut scene = job.scene().clone();
     for material in &mut scene.materials {
@@ -175,7 +175,7 @@ fn hierarchies_agree() {
     let Some(mut bvh2) = gpu(options(HierarchyKind::Bvh2)) else { return };
     let Some(mut cwbvh) = gpu(options(HierarchyKind::Cwbvh)) else { return };
     let (book, fields) = ((book(), BOOK_CAMERA), field(2000));
-    // Each sphere again in another material: at a tie the first in the list is hit.
+    // Each sphere twice, in different materials: at a tie, the first in the list is hit.
     let mut twice = field(300);
     let materials = twice.0.materials.len();
     let again =
@@ -213,7 +213,7 @@ fn film_goes_on_from_cpu_to_gpu_and_back() {
         / (80.0 * 45.0);
     assert!(difference.abs() < 1e-5, "{difference}");
 
-    // The same samples twice are refused, and nothing is added.
+    // Adding the same samples twice is refused, and nothing is added.
     let before = film.clone();
     assert!(matches!(gpu.accumulate(&job, 120..130, &mut film, &go_on()), Err(RenderError::Film(_))));
     assert!(film == before);
@@ -241,13 +241,13 @@ fn samples_stay_on_the_device_until_they_are_fetched() {
     let expected = rendered(&mut gpu, &job, 32);
     let mut film = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
-    // The first pass sends for the film by itself, since nothing is known of what that costs.
+    // The first pass fetches the film by itself, because the cost of fetching is not yet known.
     let mut rays = gpu.advance(&job, 0..4, &mut film, &go_on()).unwrap().rays;
     assert_eq!((film.sample_count(), rays), (0, 0));
     let second = gpu.advance(&job, 4..8, &mut film, &go_on()).unwrap();
     assert_eq!((film.samples().to_string().as_str(), second.paths), ("0..4", 50 * 43 * 4));
     rays += second.rays;
-    // What is on the device is there only once.
+    // Samples on the device cannot be requested again.
     assert!(matches!(gpu.advance(&job, 6..10, &mut film, &go_on()), Err(RenderError::Film(_))));
     gpu.fetch().unwrap();
     rays += gpu.advance(&job, 8..20, &mut film, &go_on()).unwrap().rays;
@@ -272,7 +272,7 @@ fn a_new_film_does_not_get_the_old_ones_samples() {
     gpu.advance(&job, 4..8, &mut dropped, &go_on()).unwrap();
     gpu.prepare(&job, &go_on()).unwrap();
     assert!(rendered(&mut gpu, &job, 4) == expected);
-    // Nor does another job of the same size.
+    // Nor does a different job of the same size.
     gpu.advance(&job, 0..4, &mut job.new_film(), &go_on()).unwrap();
     let other = three_spheres([64, 36], 3, false);
     let film = rendered(&mut gpu, &other, 4);
@@ -292,7 +292,7 @@ fn a_kernel_that_is_no_longer_wanted_is_not_waited_for() {
 
 #[test]
 fn a_fault_leaves_the_film_and_the_cpu_goes_on() {
-    // A software adapter's memory ends only where the program's does: see tests/gpu_program.rs.
+    // A software adapter runs out of memory only when the program does: see tests/gpu_program.rs.
     for fault in [Fault::Lost, Fault::Invalid] {
         let options = GpuOptions {
             samples_per_dispatch: Some(1),
@@ -316,7 +316,7 @@ fn a_fault_leaves_the_film_and_the_cpu_goes_on() {
         };
         println!("{fault:?}: {error}");
         assert!(matches!(error, RenderError::Backend { backend: "gpu", .. }));
-        // It stays broken.
+        // The backend stays broken.
         assert!(gpu.accumulate(&job, next..next + 4, &mut film, &go_on()).is_err());
         cpu().accumulate(&job, next..next + 4, &mut film, &go_on()).unwrap();
         assert_eq!(film.sample_count(), next + 4);
@@ -342,7 +342,7 @@ fn resolves_to_the_films_picture() {
 #[test]
 fn many_spheres_and_large_radiance() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    // The brightest sky: a block's sum fits 32 bits because blocks are short.
+    // The brightest sky: the sum of a block fits 32 bits because blocks are short.
     let sky = Sky { bottom: DVec3::splat(100.0), top: DVec3::splat(100.0) };
     let scene = Scene { sky, ..Scene::default() };
     let job = job_of(&scene, Camera::default(), [16, 9], 4, SamplerKind::Independent, false);
@@ -378,7 +378,7 @@ fn a_camera_that_moves_keeps_the_scene_on_the_device() {
     let Some(mut fresh) = gpu(GpuOptions::default()) else { return };
     assert!(film.halves() == rendered(&mut fresh, &next, 2).halves());
 
-    // Another scene is another matter.
+    // A different scene gets a new hierarchy.
     let other = job_of(&field(200).0, BOOK_CAMERA, [48, 27], 8, SamplerKind::Sobol, false);
     let film = rendered(&mut moved, &other, 2);
     assert!(film.halves() == rendered(&mut fresh, &other, 2).halves());

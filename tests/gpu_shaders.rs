@@ -1,4 +1,4 @@
-//! The shaders' text: valid to naga (and tint, where it is installed), and laid out as the host has it.
+//! The text of the shaders: valid for naga (and for tint, if it is installed), with the memory layout of the host.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -19,7 +19,7 @@ fn parsed(entry_point: EntryPoint) -> naga::Module {
     }
 }
 
-/// The general kernel with a list and with each hierarchy, and one with every stage rule: name and value of every override.
+/// The values of all overrides: general kernels with a list and with each hierarchy, and one with every stage rule.
 fn variants() -> [Vec<(String, f64)>; 4] {
     let general = Features::default();
     let variants = [
@@ -56,14 +56,14 @@ fn every_shader_is_valid() {
         let entry = Some((naga::ShaderStage::Compute, entry_point.name()));
         for values in variants() {
             let values = values.into_iter().collect();
-            // What it returns is validated again.
+            // The result is validated again.
             process_overrides(&module, &info, entry, &values).unwrap();
         }
     }
 }
 
-/// The compiler of another browser. It is no package of any system that is known of, so that it is looked for and its
-/// absence is told; with `WEEKENDER_REQUIRE_TINT=1` it is a failure.
+/// tint is the compiler of another browser. No package system that we know of has it, so the test looks for it and
+/// reports its absence; with `WEEKENDER_REQUIRE_TINT=1` absence is a failure.
 #[test]
 fn every_shader_is_valid_to_tint() {
     if let Err(error) = std::process::Command::new("tint").arg("--version").output() {
@@ -72,7 +72,7 @@ fn every_shader_is_valid_to_tint() {
         say_loudly("tint is not installed: no shader was shown to it");
         return;
     }
-    // What is no shader is refused, so that the others are read at all.
+    // An invalid shader is refused, which shows that tint really checks the others.
     assert!(!told_by_tint("fn broken( {", &[]).status.success());
     for entry_point in EntryPoint::ALL {
         for values in variants() {
@@ -84,7 +84,7 @@ fn every_shader_is_valid_to_tint() {
     }
 }
 
-/// What tint says of a shader with values of overrides.
+/// Output of tint for a shader with values of overrides.
 fn told_by_tint(text: &str, overrides: &[String]) -> std::process::Output {
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("shader.wgsl");
@@ -93,7 +93,7 @@ fn told_by_tint(text: &str, overrides: &[String]) -> std::process::Output {
     tint.args(["--format", "wgsl", "--overrides", &overrides.join(",")]).arg(&file).output().unwrap()
 }
 
-/// What WGSL calls a type.
+/// The WGSL name of a type.
 fn name_of(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
     let scalar = |scalar: naga::Scalar| match (scalar.kind, scalar.width) {
         (naga::ScalarKind::Float, 4) => "f32",
@@ -112,7 +112,7 @@ fn name_of(module: &naga::Module, ty: naga::Handle<naga::Type>) -> String {
     }
 }
 
-/// Name, type and offset of each member of a struct, and its size as an element of an array.
+/// Name, type and offset of each member of a struct, and its stride in an array.
 fn layout_of(module: &naga::Module, name: &str) -> (Vec<(String, String, usize)>, usize) {
     let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
     let (_, naga::Type { inner: naga::TypeInner::Struct { members, span }, .. }) = found.unwrap() else {
@@ -124,7 +124,7 @@ fn layout_of(module: &naga::Module, name: &str) -> (Vec<(String, String, usize)>
     (members.collect(), *span as usize)
 }
 
-/// Names, types, offsets and sizes of what the host writes are those that the shaders read.
+/// The shaders read the names, types, offsets and sizes that the host writes.
 #[test]
 fn layouts_agree() {
     let module = parsed(EntryPoint::PathTrace);
@@ -136,7 +136,7 @@ fn layouts_agree() {
     }
 }
 
-/// What the host writes of a record is as long as the shaders take it to be, and in the order of its fields.
+/// A record as the host writes it has the length that the shaders expect, and the order of its fields.
 #[test]
 fn words_are_those_of_the_fields() {
     let record = ShadingRecord {

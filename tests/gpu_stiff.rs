@@ -1,4 +1,4 @@
-//! Stiff scenes on the GPU: what has a closed form has it there, too. (tests/numerics/stiff.rs has the CPU's.)
+//! Stiff scenes on the GPU: the closed forms hold there, too. (tests/numerics/stiff.rs tests the CPU.)
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
@@ -38,7 +38,7 @@ fn job(balls: &[Ball], camera: Camera, max_depth: u32) -> RenderJob {
     RenderJob::new(scene, camera, settings, Rules::FINISHED).unwrap()
 }
 
-/// Forty balls behind the eye, so many that there is a hierarchy.
+/// Forty balls behind the eye, enough for a hierarchy.
 fn among_many(balls: &[Ball]) -> Vec<Ball> {
     let far = |i: u32| (DVec3::new(f64::from(i) - 20.0, 0.0, 500.0), 0.1, MATTE);
     balls.iter().copied().chain((0..40).map(far)).collect()
@@ -89,7 +89,7 @@ fn closed_forms_hold() {
     }
 }
 
-/// Thin shells far from the origin, a tiny ball and steep glass are what they are on the CPU.
+/// Thin shells far from the origin, a tiny ball and steep glass look the same as on the CPU.
 #[test]
 fn the_gpu_and_the_cpu_agree() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };

@@ -1,5 +1,5 @@
-//! What is damaged, what claims more than it holds and what does not fit into memory is refused with exit code 2 and
-//! the reason: no panic, no abort, no hang.
+//! Files that are damaged, claim more than they contain, or do not fit into memory are refused with exit code 2 and the
+//! reason: no panic, no abort, no hang.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 const WEEKENDER: &str = env!("CARGO_BIN_EXE_weekender");
 
-/// Exit code (`None` after a signal) and what was said, with at most `kilobytes` of address space.
+/// Exit code (`None` after a signal) and messages of a run with at most `kilobytes` of address space.
 fn weekender(kilobytes: Option<u64>, arguments: &[&str], directory: &Path) -> (Option<i32>, String) {
     let limit = kilobytes.map_or_else(|| "unlimited".to_owned(), |kilobytes| kilobytes.to_string());
     let script = format!("ulimit -v {limit}; exec timeout 60 \"$0\" \"$@\"");
@@ -31,7 +31,7 @@ fn render(directory: &Path, arguments: &[&str]) {
     assert_eq!(code, Some(0), "{told}");
 }
 
-/// All that is refused must say `parts` and exit with 2.
+/// The run must exit with code 2 and a message that contains all `parts`.
 fn assert_refused(kilobytes: Option<u64>, arguments: &[&str], directory: &Path, parts: &[&str]) {
     let (code, told) = weekender(kilobytes, arguments, directory);
     assert_eq!(code, Some(2), "{arguments:?}: {told}");
@@ -40,7 +40,7 @@ fn assert_refused(kilobytes: Option<u64>, arguments: &[&str], directory: &Path, 
     }
 }
 
-/// Replaces the only place of `old` by `new`, of the same length.
+/// Replaces the only occurrence of `old` by `new`, which has the same length.
 fn changed(bytes: &[u8], old: &str, new: &str) -> Vec<u8> {
     assert_eq!(old.len(), new.len());
     let place = bytes.windows(old.len()).position(|window| window == old.as_bytes()).unwrap();
@@ -54,7 +54,7 @@ fn a_damaged_film_is_refused_by_all_that_read_films() {
     render(at, &["--size", "16x9", "--samples", "4", "--out", "good.exr"]);
     render(at, &["--size", "16x9", "--sample-range", "8..9", "--out", "other.exr"]);
     let good = fs::read(at.join("good.exr")).unwrap();
-    // Each is one bit in a digit, and was taken for what it says.
+    // Each is a single bit in a digit, and the changed number would be believed without a checksum.
     let damages = [
         ("[[0, 4]]", "[[2, 4]]"),
         ("rejected = 0", "rejected = 1"),
@@ -134,7 +134,7 @@ fn a_picture_that_claims_more_than_its_file_holds_is_refused() {
     }
     fs::write(at.join("a.exr"), bytes).unwrap();
     for name in ["a.ppm", "b.ppm", "a.pfm", "a.png", "a.exr"] {
-        // With so little memory, an attempt to make room would fail.
+        // With so little memory, an attempt to allocate would fail.
         let parts = [name, "bytes, but", "16000"];
         assert_refused(
             Some(900_000),
@@ -156,7 +156,7 @@ fn what_does_not_fit_into_memory_is_refused_before_it_is_asked_for() {
     let materials = "[materials]\nm = { kind = \"lambertian\", albedo = [0.5, 0.5, 0.5] }\n";
     fs::write(at.join("many.toml"), format!("{scene}{materials}{}", sphere.repeat(400_000))).unwrap();
     let batch = ["--batch", "--device", "cpu", "--progress", "off", "--samples", "1", "--out", "a.png"];
-    let words = ["needs", "of memory, but", "are free"];
+    let words = ["needs", "of memory, but", "is free"];
     let large = ["--size", "16384x16384"];
     assert_refused(Some(4_000_000), &[&batch[..], &large].concat(), at, &words);
     for scene in ["field:3000000", "field:10000000", "many.toml"] {

@@ -1,4 +1,4 @@
-//! Pictures in files: what is in them, what they say, and what happens when they cannot be written.
+//! Picture files: content, descriptions, and errors when they cannot be written.
 
 #![allow(clippy::unwrap_used)]
 
@@ -116,7 +116,7 @@ fn a_picture_says_what_was_said_of_it() {
                 "case {case}, {format:?}: {:?}",
                 read.entries().collect::<Vec<_>>()
             );
-            // The name does not matter.
+            // The name of the file does not matter.
             let renamed = directory.path().join("renamed");
             fs::rename(&path, &renamed).unwrap();
             assert!(read_description(&renamed).unwrap() == *description);

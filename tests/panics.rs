@@ -1,4 +1,4 @@
-//! The program when its tracer panics: the picture is whole, and the user is told.
+//! A panic in the tracer: the picture is complete, and the user is told.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::process::Command;

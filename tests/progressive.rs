@@ -1,4 +1,4 @@
-//! The progressive render with a renderer that can be told to fail: nothing is lost, whatever happens to it.
+//! Progressive rendering with a renderer that fails on request: no samples are lost, whatever happens.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::ops::Range;
@@ -16,12 +16,12 @@ use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::scene::{Camera, Scene};
 use weekender::stages::Rules;
 
-/// What a sample of the fake takes at least.
+/// Shortest time of a sample of the fake renderer.
 const PAUSE: Duration = Duration::from_micros(100);
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Adds to each pixel a number that depends on pixel and sample alone.
+/// Adds to each pixel a number that depends only on pixel and sample.
 struct Fake {
     name: &'static str,
     pause: Duration,
@@ -69,7 +69,7 @@ impl Renderer for Fake {
     }
 }
 
-/// The reference of these tests fails past sample 16, every CPU backend works.
+/// In these tests, the reference fails after sample 16, and every CPU backend works.
 fn factory() -> Factory {
     Box::new(|choice| {
         let fails_at = matches!(choice, BackendChoice::Reference { .. }).then_some(16);
@@ -158,7 +158,7 @@ fn a_failing_fallback_ends_with_what_there_is() {
     assert_eq!(progressive.finish(), Some(expected(8)));
 }
 
-/// The history of a render whose samples take a known time at least.
+/// The history of a render whose samples take at least a known time.
 #[test]
 fn a_point_of_the_history_has_the_seconds_of_its_own_samples() {
     let progressive = started(CPU, Plan::samples(128));
@@ -219,7 +219,7 @@ fn a_panic_while_preparing_or_looking_ends_nothing() {
     assert_eq!(progressive.finish(), Some(expected(2000)));
 }
 
-/// Records what it has not added.
+/// A renderer that records samples without adding them.
 struct Forgetful;
 
 impl Renderer for Forgetful {
@@ -269,7 +269,7 @@ fn a_member_that_panics_leaves_its_samples_to_the_others() {
     assert!(said.contains("a slip of the tracer") && said.contains("cpu goes on"), "{said}");
 }
 
-/// The tracer itself, which panics in the middle of a tile.
+/// A panic of the real tracer in the middle of a tile.
 #[test]
 fn a_panic_in_a_tile_leaves_the_film_as_it_was() {
     let recipe = Recipe::find("three-spheres").unwrap();
@@ -288,7 +288,7 @@ fn a_panic_in_a_tile_leaves_the_film_as_it_was() {
         assert!(matches!(error, RenderError::Backend { backend: "cpu", .. }), "{error}");
         assert!(error.to_string().contains("panicked") && error.to_string().contains("blocks"), "{error}");
         assert!(film == before);
-        // It was one slip.
+        // The next attempt works.
         renderer.accumulate(&job, 6..40, &mut film, &never).unwrap();
         let mut whole = job.new_film();
         CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(&job, 0..40, &mut whole, &never).unwrap();
@@ -345,7 +345,7 @@ fn the_noise_target_ends_it() {
     assert_eq!(status.error, progressive.finish().unwrap().error());
 }
 
-/// A target that the first samples meet: their estimate is too rough to be trusted.
+/// The first samples already meet this target, but their estimate is too rough to be trusted.
 #[test]
 fn a_noise_target_is_not_looked_at_before_its_first_samples() {
     let progressive =
@@ -355,7 +355,7 @@ fn a_noise_target_is_not_looked_at_before_its_first_samples() {
     assert_eq!((status.samples_per_pixel, NOISE_TARGET_FIRST_SAMPLES), (16, 16));
 }
 
-/// Keeps samples to itself until they are collected, as a graphics device does.
+/// Holds samples back until they are collected, as a GPU does.
 struct Holding {
     fake: Fake,
     held: Vec<Range<u64>>,
@@ -413,7 +413,7 @@ fn a_pause_brings_home_what_the_device_holds() {
         Ok(Box::new(Holding { fake, held: Vec::new(), traced: Arc::clone(&count) }))
     }));
     let mut progressive = progressive.unwrap();
-    // Passes stay short enough for the samples to be added up while they are waited for.
+    // With short passes, samples accumulate while the test waits.
     let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
     progressive.start(Work::new(job(2), CPU, plan));
     for more in [64, 512] {
@@ -427,7 +427,7 @@ fn a_pause_brings_home_what_the_device_holds() {
         while progressive.wait(Duration::from_millis(20)).phase != Phase::Paused {
             assert!(begin.elapsed() < PATIENCE, "no pause: {:?}", progressive.status());
         }
-        // All that was traced is in the film, and is told.
+        // All traced samples are in the film and are reported.
         let held = *traced.lock().unwrap();
         let status = progressive.status();
         assert_eq!((status.samples_per_pixel, status.stats.paths), (held, 4 * held));
@@ -483,7 +483,7 @@ fn a_film_goes_on_where_it_has_gaps() {
     progressive.start(Work { film: Some(film), ..Work::new(job(2), CPU, Plan::samples(100)) });
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
-    // The history is that of this render: what the film held before has no seconds.
+    // The history covers only this render, since the film's earlier samples have no times.
     let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
     assert!(history.first().is_some_and(|first| (32..40).contains(first)), "{history:?}");
     assert!(status.history.iter().all(|point| point.trace_seconds > 0.0), "{:?}", status.history);

@@ -1,4 +1,4 @@
-//! The plain C program: it compiles without a warning, and its pictures are ours but for noise.
+//! The plain C program compiles without warnings, and its pictures equal ours apart from noise.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a helper of a test may fail like the test")]
 
@@ -45,7 +45,7 @@ fn job(scene: &str) -> RenderJob {
     recipe.job().unwrap()
 }
 
-/// Means of a PFM, RGB, top row first.
+/// Means of a PFM, linear RGB, top row first.
 fn read_pfm(path: &Path) -> Vec<[f64; 3]> {
     let bytes = std::fs::read(path).unwrap();
     let scale = if cfg!(target_endian = "little") { "-1.0" } else { "1.0" };
@@ -59,8 +59,8 @@ fn read_pfm(path: &Path) -> Vec<[f64; 3]> {
     rows.flat_map(|row| row.chunks_exact(12)).map(|pixel| [0, 1, 2].map(|c| channel(pixel, c))).collect()
 }
 
-/// Two means of each pixel, of independent samples as many as the other has: their mean is the picture and their
-/// difference tells its noise.
+/// Two means of each pixel, from equal numbers of independent samples. Their mean is the picture, and their
+/// difference tells the noise.
 type Halves = [Vec<[f64; 3]>; 2];
 
 fn of_film(film: &Film) -> Halves {
@@ -70,7 +70,7 @@ fn of_film(film: &Film) -> Halves {
     })
 }
 
-/// Unpaired blocks of the two pictures' difference, of `samples` each.
+/// Compares the two pictures, of `samples` each, block by block.
 fn blocks([theirs, ours]: &[Halves; 2], samples: u64) -> BlockTest {
     let of_pixel = |halves: &Halves, pixel: usize, of: fn(f64, f64) -> f64| {
         let [a, b] = [halves[0][pixel], halves[1][pixel]];
@@ -89,7 +89,7 @@ fn blocks([theirs, ours]: &[Halves; 2], samples: u64) -> BlockTest {
         noise: Noise::Variances(&variances),
         steps: None,
         tolerance: ROUNDING_BIAS,
-        // Both halves of each picture may hold the same rare path.
+        // Both halves of a picture may contain the same rare path.
         rare: 2.0 / samples as f64,
     })
 }
@@ -130,7 +130,7 @@ fn the_book_is_the_same_picture() {
     check("book", &job("book"), 64);
 }
 
-/// What fuzz means between 0 and 1, where a wrong power of it would not show at either end.
+/// Fuzz between 0 and 1, where a wrong exponent would show; at 0 and 1 it would not.
 #[test]
 fn fuzzy_metals_are_the_same_picture() {
     let of_book = job("three-spheres");
@@ -150,7 +150,7 @@ fn without_a_scene_file_it_renders_the_three_spheres() {
     let text = baseline.write_scene(&job, "scene").unwrap();
     baseline.run(Some(text.as_path()), job.settings(), 2, 7, Some(&paths[0]), &|| false).unwrap();
     baseline.run(None, job.settings(), 2, 7, Some(&paths[1]), &|| false).unwrap();
-    // The camera's up and the sky are written in full; its focus distance is the book's.
+    // The camera's up vector and the sky are written in full; its focus distance is the book's.
     assert_eq!(read_pfm(&paths[0]), read_pfm(&paths[1]));
 }
 

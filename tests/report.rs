@@ -1,4 +1,4 @@
-//! `weekender report`: what it writes, that it goes on where it ended, and what it refuses.
+//! `weekender report`: what it writes, how it continues after an interruption, and what it refuses.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::fs;
@@ -54,7 +54,7 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
         let samples: Vec<u64> = points.iter().map(|p| p["samples"].as_u64().unwrap()).collect();
         assert_eq!(samples, [1, 2, 4, 8, 16, 32]);
         let of = |point: usize, key: &str| points[point][key].as_f64().unwrap();
-        // Halves of 16 times as many samples have at least 3 times less error, the true one and the estimated one.
+        // With 16 times as many samples, the true and the estimated error are at least 3 times smaller.
         for key in ["mse", "mse_estimate", "rel_mse"] {
             assert!(of(5, key) < of(1, key) / 9.0, "{key}: {} to {}", of(1, key), of(5, key));
         }
@@ -80,8 +80,8 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
         "| cpu | sobol |",
         "| to RMSE 0.02 | to RMSE 0.01 | to RMSE 0.001 |",
         "Sobol points against",
-        "Is the estimate true",
-        "What rounding costs",
+        "Is the error estimate accurate",
+        "The effect of rounding",
         "weekender report --progress",
     ] {
         assert!(table.contains(part), "{part}: {table}");
@@ -99,7 +99,7 @@ fn the_control_is_a_curve_of_its_own() {
     assert_eq!(code, 0, "{errors}");
     let found = data(at);
     let runs = found["runs"].as_array().unwrap();
-    // Independent samples of the same picture have the same error, whoever draws them: all runs at 32 samples.
+    // Independent samples of the same picture have the same error on every backend: compares all runs at 32 samples.
     let mean = |backend: &str| {
         let of = runs.iter().filter(|run| run["backend"] == backend);
         let errors: Vec<f64> = of.map(|run| run["points"][5]["mse"].as_f64().unwrap()).collect();
@@ -111,7 +111,7 @@ fn the_control_is_a_curve_of_its_own() {
     assert!(found["calibration"].as_array().unwrap().iter().all(|row| row["backend"] == "cpu"));
     let table = fs::read_to_string(at.join("found/report.md")).unwrap();
     assert!(table.contains("times c89") && table.contains("| c89 | independent |"), "{table}");
-    // Without a compiler there is none, which is said if it was asked for.
+    // Without a compiler there is no baseline, which is an error if it was asked for.
     let failing = Command::new(env!("CARGO_BIN_EXE_weekender"))
         .args(["report", "--out", "other", "--backends", "c89"])
         .env("CC", "no-such-compiler")
@@ -142,15 +142,15 @@ fn calibration_holds_estimates_against_true_errors() {
         let of = |key: &str| row[key].as_f64().unwrap();
         assert_eq!(of("seeds"), 12.0);
         assert!((of("predicted_rmse") / of("actual_rmse") - of("ratio")).abs() < 1e-9, "{row}");
-        // The deviation is itself uncertain, hence 4 of them, and not less than a hundredth.
+        // The deviation is itself uncertain, hence 4 deviations, but at least a hundredth.
         assert!(
             (of("ratio") - 1.0).abs() < 4.0 * of("deviation").max(0.01) && of("deviation") < 0.05,
             "{row}"
         );
     }
     let table = fs::read_to_string(at.join("found/report.md")).unwrap();
-    assert!(table.contains("4 of 4 ratios are 1 ± 0.05"), "{table}");
-    // One half has no estimate that could be held against anything.
+    assert!(table.contains("4 of 4 ratios are within 1 ± 0.05"), "{table}");
+    // With only one half, there is no estimate to check.
     let (code, _, message) = report(&[&small[..], &["--estimate-error", "off"]].concat(), at);
     assert_eq!(code, 2, "{message}");
     assert!(message.contains("--estimate-error") && message.contains("--calibration"), "{message}");
@@ -169,7 +169,9 @@ fn one_half_is_measured_without_an_estimate() {
     let ratios = found["sampler_ratios"].as_array().unwrap();
     let of = |samples: u64| ratios.iter().find(|row| row["samples"] == samples).unwrap();
     assert!(of(32)["at_equal_samples"].as_f64().unwrap() > 1.5, "{ratios:?}");
-    assert!(!fs::read_to_string(at.join("found/report.md")).unwrap().contains("Is the estimate true"));
+    assert!(
+        !fs::read_to_string(at.join("found/report.md")).unwrap().contains("Is the error estimate accurate")
+    );
 }
 
 #[test]
@@ -179,13 +181,13 @@ fn a_report_goes_on_with_what_is_there() {
     let sobol = [&SMALL[..], &["--backends", "cpu", "--samplers", "sobol"]].concat();
     assert_eq!(report(&sobol, at).0, 0);
     let first = data(at);
-    // More curves with the same settings: those that are there stay, to the bit, times and all.
+    // More curves with the same settings: existing ones stay the same to the bit, even their times.
     let both = [&SMALL[..], &["--backends", "cpu", "--samplers", "sobol,independent"]].concat();
     assert_eq!(report(&both, at).0, 0);
     let second = data(at);
     assert_eq!(second["runs"].as_array().unwrap().len(), 8);
     assert_eq!(second["runs"].as_array().unwrap()[..4], first["runs"].as_array().unwrap()[..]);
-    // A run that is missing is measured again, with the kept reference.
+    // A missing run is measured again, with the saved reference.
     let mut cut = second.clone();
     cut["runs"].as_array_mut().unwrap().truncate(3);
     fs::write(at.join("found/report.json"), cut.to_string()).unwrap();
@@ -195,7 +197,7 @@ fn a_report_goes_on_with_what_is_there() {
     assert_eq!(third["runs"].as_array().unwrap().len(), 4);
     assert_eq!(third["runs"][3]["points"][5]["mse"], first["runs"][3]["points"][5]["mse"]);
     assert_eq!(fs::metadata(at.join("found/reference-three-spheres.exr")).unwrap().modified().unwrap(), kept);
-    // The kept reference serves as a given one.
+    // The saved reference can be given with --reference.
     let given = ["--reference", "found/reference-three-spheres.exr"];
     let (code, _, errors) = report(&[&sobol[..], &given[..]].concat(), at);
     assert_eq!(code, 0, "{errors}");
@@ -241,20 +243,20 @@ mod interrupted {
     use weekender::film::{FilmFile, PixelSum, checkpoint};
     use weekender::recipe::file::parse;
 
-    /// A reference of many samples and little besides.
+    /// A reference with many samples, and little else.
     fn long() -> Vec<&'static str> {
         let flags = "--out found --scenes three-spheres --size 48x27 --seeds 1 --max-samples 2 --time-limit 600 \
                      --backends cpu --samplers sobol --reference-backend cpu --reference-samples 16384";
         flags.split(' ').collect()
     }
 
-    /// Begins a report and presses Ctrl-C while its reference is rendered. Returns the film that is kept.
+    /// Starts a report and presses Ctrl-C while its reference is rendered. Returns the film that was saved.
     fn interrupted_reference(directory: &Path, film: &Path, samples: u64) -> FilmFile {
-        // Where the key comes before the first pass or after the last, it is pressed again.
+        // If the key is pressed before the first pass or after the last one, try again.
         for _ in 0..30 {
             let mut command = command(&[&["--progress", "on"], long().as_slice()].concat(), directory);
             let mut child = command.stderr(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
-            // Its first words come when the reference begins.
+            // It prints its first line when the reference starts.
             let mut stderr = BufReader::new(child.stderr.take().unwrap());
             let mut words = String::new();
             stderr.read_line(&mut words).unwrap();
@@ -265,7 +267,7 @@ mod interrupted {
             let code = child.wait().unwrap().code().unwrap();
             match checkpoint::load(film) {
                 Ok(kept) if kept.film.sample_count() < samples => {
-                    assert!(code == 130 && rest.contains("goes on from here"), "{code}: {rest}");
+                    assert!(code == 130 && rest.contains("run the same command again"), "{code}: {rest}");
                     return kept;
                 }
                 Ok(_) => fs::remove_dir_all(directory.join("found")).unwrap(),
@@ -290,7 +292,7 @@ mod interrupted {
         renderer.accumulate(&job, 0..16_384, &mut uninterrupted, &AtomicBool::new(false)).unwrap();
         assert!(whole.film == uninterrupted, "{} and {}", kept.film.samples(), whole.film.samples());
 
-        // With nothing but zeros in the samples that were kept, these are what is missing in the end.
+        // With the saved samples set to zero, the result contains only the missing ones.
         let mut black = kept.film.clone();
         black.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum::default());
         checkpoint::save(&path, &black, &kept.description).unwrap();
@@ -317,7 +319,7 @@ fn what_cannot_be_measured_is_refused_before_anything_is_rendered() {
         (&[], &["--out"]),
         (&["--out", "file"], &["file", "choose another"]),
         (&["--out", "o", "--scenes", "three-sphere"], &["three-sphere", "three-spheres"]),
-        (&["--out", "o", "--scenes", "book,metals,book"], &["two of the name book", "leave one out"]),
+        (&["--out", "o", "--scenes", "book,metals,book"], &["two scenes called book", "leave one out"]),
         (&["--out", "o", "--backends", "cpu,tpu"], &["tpu", "scalar", "c89"]),
         (&["--out", "o", "--reference", "x.exr"], &["--reference", "--scenes"]),
         (&["--out", "o", "--scenes", "book", "--reference", "x.exr"], &["x.exr"]),

@@ -1,4 +1,4 @@
-//! Scene files: what is written is read back to the bit, and what is wrong is named with its line.
+//! Scene files: what is written is read back to the bit, and errors name the line.
 
 use glam::DVec3;
 use proptest::prelude::*;
@@ -11,10 +11,10 @@ use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::{DielectricLaws, Diffuse, Rules, Shading, Stage, Surface, Transfer};
 
-/// The least that a file must hold.
+/// The least that a file must contain.
 const CAMERA: &str = "[camera]\nlook_from = [0, 0, 3]\nlook_at = [0, 0, 0]\nvfov_degrees = 40\n";
 
-/// Line 6 has the material, line 10 the radius.
+/// The material is on line 6, the radius on line 10.
 const ONE_SPHERE: &str = "\
 [camera]
 look_from = [0, 0, 3]
@@ -29,7 +29,7 @@ radius = 1
 material = \"ball\"
 ";
 
-/// Every number of a recipe in order, as bits: equality of `f64` would let -0 pass for 0.
+/// Every number of a recipe in order, as bits, because `f64` equality does not distinguish -0 from 0.
 fn bits(recipe: &Recipe) -> Vec<u64> {
     let Recipe { scene, camera, .. } = recipe;
     let vector = |v: DVec3| v.to_array().to_vec();
@@ -229,7 +229,7 @@ fn materials_are_named_or_inline() {
     assert_eq!(recipe.scene.materials.len(), 2);
     assert_round_trip(&recipe);
 
-    // A name that the reader would have given itself.
+    // A name that the reader would choose itself.
     let taken = text.replace("materials.ball", "materials.sphere-0");
     assert_round_trip(&parse(&taken, "taken").expect("valid"));
 }
@@ -255,7 +255,7 @@ fn refusal(text: &str, line: usize) -> String {
     message
 }
 
-/// The refusal of the one-sphere file with one line exchanged.
+/// The error message for the one-sphere file with one line replaced.
 fn refusal_with(old: &str, new: &str, expected: &[&str]) {
     assert!(ONE_SPHERE.contains(old), "{old}");
     let text = ONE_SPHERE.replace(old, new);
@@ -371,7 +371,7 @@ fn bad_cameras_are_refused() {
     assert!(message.contains("missing key `camera`"), "{message}");
 }
 
-/// Case 31: up along the view is no error.
+/// Case 31: an up vector along the view is not an error.
 #[test]
 fn up_may_lie_along_the_view() {
     parse(&format!("{CAMERA}vup = [0, 0, 1]\n"), "up").expect("valid");
@@ -483,7 +483,7 @@ fn the_example_scenes_are_valid() {
     assert!(count >= 10);
 }
 
-/// The text of a large scene stays readable: a line for a sphere.
+/// The text of a large scene stays readable, with one line per sphere.
 #[test]
 fn large_scenes_are_written_compactly() {
     let book = Recipe::builtin("book").expect("a scene");
@@ -505,7 +505,7 @@ fn a_picture_names_a_large_field_and_restores_it() {
     let text = to_picture_toml(&field);
     assert!(text.len() < 1000 && text.starts_with("scene = \"field:20000\""), "{text}");
     assert_eq!(parse(&text, "field:20000").expect("valid"), field);
-    // One that was changed is listed.
+    // A changed field is listed sphere by sphere.
     let mut changed = field.clone();
     std::sync::Arc::make_mut(&mut changed.scene).spheres[3].radius = 0.25;
     assert_eq!(parse(&to_picture_toml(&changed), "field:20000").expect("valid"), changed);

@@ -1,4 +1,4 @@
-//! The registry of stages: complete, in order, valid, and each with what a lesson needs.
+//! The registry of stages: complete, in order, valid, and each with everything that a lesson needs.
 
 use std::collections::HashSet;
 use weekender::recipe::Recipe;
@@ -43,7 +43,7 @@ fn recipe(id: &str) -> Recipe {
     stage(id).recipe()
 }
 
-/// Ids are stable: files and command lines use them.
+/// Ids are stable, because files and command lines contain them.
 #[test]
 fn all_stages_are_there_in_the_books_order() {
     assert_eq!(Stage::ALL.iter().map(|stage| stage.id).collect::<Vec<_>>(), IDS);
@@ -126,7 +126,7 @@ fn unknown_ids_are_answered_with_a_guess() {
     assert_eq!(message("quux-corge"), "there is no stage \"quux-corge\"; --list shows all");
 }
 
-/// A comparison teaches most when one thing differs.
+/// A comparison teaches most if only one thing differs.
 #[test]
 fn paired_stages_differ_in_what_they_teach() {
     let (limited, acne) = (recipe("diffuse-limited"), recipe("shadow-acne"));

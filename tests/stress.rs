@@ -1,4 +1,4 @@
-//! The suite of stiff scenes: its quick part on every class of arithmetic of the CPU, and the program around it.
+//! The suite of stiff scenes: its quick part on every class of CPU arithmetic, and the program around it.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 use std::process::Command;
@@ -18,7 +18,7 @@ fn suite() -> Suite {
     Suite::new(backends, Backend::new("f64", BackendChoice::Reference { threads: Some(1) }))
 }
 
-/// The case with fewer samples: what is wrong here is wrong in many of them.
+/// The case with fewer samples: an error in these cases affects many samples.
 fn small(case: &Case) -> Case {
     let mut case = case.clone();
     case.recipe.samples_per_pixel = case.recipe.samples_per_pixel.min(8);
@@ -50,7 +50,7 @@ fn the_quick_cases_are_right_on_every_level() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// Cases that fail today.
+/// Cases that are known to fail.
 const NOT_YET: &[&str] = &[];
 
 #[test]
@@ -76,7 +76,7 @@ fn the_program_prints_a_table_and_writes_json_and_pictures() {
         ["--filter", "shells/1", "--out", out.to_str().unwrap(), "--json", json.to_str().unwrap()];
     let output = weekender(&[&arguments[..], &["--progress", "off"]].concat());
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("shells/1 ") && text.contains("book f32, f64"), "{text}");
+    assert!(text.contains("shells/1 ") && text.contains("book's f32, f64"), "{text}");
     let figures: serde_json::Value = serde_json::from_slice(&std::fs::read(&json).unwrap()).unwrap();
     let cases = figures["cases"].as_array().unwrap();
     let verdicts: Vec<_> = cases.iter().flat_map(|case| case["measured"].as_array().unwrap()).collect();
@@ -95,7 +95,7 @@ fn what_cannot_be_run_is_said() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        told.contains("no case has \"nothing-like-it\" in its id; families are copies, shifts"),
+        told.contains("no case id contains \"nothing-like-it\"; use one of the families copies, shifts"),
         "{told}"
     );
     let output = weekender(&["--adapter", "no such adapter", "--filter", "shells/1"]);
@@ -109,7 +109,7 @@ fn a_search_ends_with_its_time() {
     let arguments = ["--filter", "shells/50", "--search", "1", "--out", out, "--progress", "off"];
     let output = weekender(&arguments);
     let text = String::from_utf8(output.stdout).unwrap();
-    assert!(text.contains("random scenes failed in"), "{text}");
+    assert!(text.contains("search: ") && text.contains(" failed in "), "{text}");
     for entry in std::fs::read_dir(directory.path()).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|ending| ending == "toml") {

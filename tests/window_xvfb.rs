@@ -1,4 +1,4 @@
-//! A real window on a display of its own, used with mouse and keyboard as a person would.
+//! A real window on its own X display, used with mouse and keyboard as a person would.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
@@ -11,7 +11,7 @@ use weekender::output::read_description;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Whether these programs can be used; says so if not, and fails where they have to be there.
+/// Whether these programs are available. If not, prints so, and fails if they are required.
 fn are_there(programs: &[&str], consequence: &str) -> bool {
     let is_missing = |program: &&&str| Command::new(program).arg("-version").output().is_err();
     let missing: Vec<&str> = programs.iter().filter(is_missing).copied().collect();
@@ -25,7 +25,7 @@ fn are_there(programs: &[&str], consequence: &str) -> bool {
     false
 }
 
-/// A display that goes away with this.
+/// An X display that ends when it is dropped.
 struct Display {
     server: Child,
     name: String,
@@ -39,7 +39,7 @@ impl Drop for Display {
 }
 
 impl Display {
-    /// `None`, with a message, where the programs for it are missing and need not be there.
+    /// `None`, with a message, if programs for it are missing and not required.
     fn start() -> Option<Display> {
         if !are_there(&["Xvfb", "xdotool"], "no window was tried") {
             return None;
@@ -76,7 +76,7 @@ impl Display {
         assert!(self.xdotool(&["type", "--delay", "4", text]).status.success(), "{text}");
     }
 
-    /// The text on the clipboard, once there is one.
+    /// The text on the clipboard, once there is some.
     fn clipboard(&self) -> String {
         let begin = Instant::now();
         loop {
@@ -135,11 +135,11 @@ fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
     (picture.width(), picture.height(), picture.into_raw())
 }
 
-/// What the window says of itself while it is used: lines of `--frame-log`.
+/// The log of the window: the lines of `--frame-log`.
 struct Log(PathBuf);
 
 impl Log {
-    /// The fields of all whole lines of a kind, without the kind and the time.
+    /// The fields of all complete lines of a kind, without kind and time.
     fn lines(&self, kind: &str) -> Vec<Vec<String>> {
         let text = std::fs::read_to_string(&self.0).unwrap_or_default();
         let whole = text.rfind('\n').map_or("", |end| &text[..end]);
@@ -147,7 +147,7 @@ impl Log {
         whole.lines().map(fields).filter(|line| line[0] == kind).map(|line| line[2..].to_vec()).collect()
     }
 
-    /// Renders and backends that have traced, in order.
+    /// The renders and the backends that traced them, in order.
     fn tracings(&self) -> Vec<(u64, String)> {
         self.lines("tracing").iter().map(|line| (line[0].parse().unwrap(), line[1].clone())).collect()
     }
@@ -173,7 +173,7 @@ impl Log {
     }
 }
 
-/// Saves a picture by keyboard.
+/// Saves a picture with the keyboard.
 fn save(display: &Display, path: &Path) {
     display.key("ctrl+s");
     std::thread::sleep(Duration::from_millis(500));
@@ -199,7 +199,7 @@ fn a_person_can_use_the_window() {
     let (run, _) = log.wait_for_backend("cpu", 0);
     display.xdotool(&["windowfocus", "--sync", &id]);
 
-    // Switch the device and back: both trace into one film.
+    // Switch the device and back: both trace into the same film.
     display.key("g");
     log.wait_for_command("Switch between CPU and GPU", 1);
     match Device::Gpu.unavailable() {
@@ -219,7 +219,7 @@ fn a_person_can_use_the_window() {
         }
     }
 
-    // Change the stage, drag, and wait for what is seen then.
+    // Change the stage, drag, and wait for the resulting picture.
     display.key("Next");
     display.key("Next");
     log.wait_for_command("Next stage", 2);
@@ -234,7 +234,7 @@ fn a_person_can_use_the_window() {
     log.wait_for("the moved picture", |log| log.tracings().last().is_some_and(|(last, _)| *last > before));
     std::thread::sleep(Duration::from_secs(1));
 
-    // In a pause what is saved and what is copied are of the same film.
+    // During a pause, saving and copying use the same film.
     display.key("space");
     log.wait_for_command("Pause or go on", 1);
     std::thread::sleep(Duration::from_millis(500));
@@ -247,7 +247,7 @@ fn a_person_can_use_the_window() {
     let status = wait_for_end(&mut child);
     assert_eq!(status.code(), Some(0), "{status}");
 
-    // What was saved is what its own recipe gives without a window.
+    // Rendering the saved recipe without a window gives the same picture.
     let description = read_description(&saved).unwrap();
     assert_eq!(description.get("Stage"), Some("glass-schlick"), "two stages on");
     let scene = home.path().join("scene.toml");
@@ -268,7 +268,7 @@ fn a_person_can_use_the_window() {
     assert!(description.get("Backend").unwrap().starts_with("cpu"), "{:?}", description.get("Backend"));
     assert!(pixels(&saved) == pixels(&again), "the saved picture differs from the batch's");
 
-    // The line from the clipboard renders it, too.
+    // So does the command line from the clipboard.
     let Some(line) = line else { return };
     let words = line.strip_prefix("weekender ").unwrap();
     let copied = Command::new("sh")

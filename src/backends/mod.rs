@@ -1,5 +1,5 @@
-//! The list of backends and their factory. A new backend is a variant of [`BackendChoice`] and an arm of
-//! [`create`]; command line, window and reports read the rest from here.
+//! The list of backends and their factory. A new backend needs a variant of [`BackendChoice`] and an arm of
+//! [`create`]; the command line, the window and the reports read everything else from here.
 
 mod together;
 
@@ -12,25 +12,25 @@ use std::sync::mpsc;
 use std::time::Duration;
 use thiserror::Error;
 
-/// Which backend renders, and with what.
+/// Which backend renders, with its options.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BackendChoice {
     /// `f32` on the CPU, in SIMD packets or scalar.
     Cpu(CpuOptions),
-    /// A compute shader.
+    /// A compute shader on the GPU.
     Gpu(GpuOptions),
     /// Both at once, into one film.
     Both(CpuOptions, GpuOptions),
-    /// Scalar `f64` on the CPU: what rounding is measured against.
+    /// Scalar `f64` on the CPU, the reference for rounding errors.
     Reference {
-        /// Threads; by default one a core.
+        /// Number of threads; by default one per core.
         threads: Option<usize>,
     },
 }
 
 impl BackendChoice {
-    /// The best for this machine: a GPU if there is one, else the widest CPU kernel. Whoever chooses among the
-    /// CPU's options means the CPU.
+    /// The best choice for this machine: a GPU if there is one, otherwise the widest CPU kernel. If any option of the
+    /// CPU is set, the CPU.
     pub fn auto(cpu: CpuOptions, gpu: GpuOptions) -> Self {
         if cpu == CpuOptions::default() && adapters().iter().any(AdapterInfo::is_fit) {
             BackendChoice::Gpu(gpu)
@@ -39,14 +39,14 @@ impl BackendChoice {
         }
     }
 
-    /// The GPU that `adapter` names, or the best there is; `None` where none is named and none is fit.
+    /// The GPU that `adapter` names, or else the best one; `None` if none is named and none is suitable.
     pub fn gpu_if_present(adapter: Option<&str>) -> Option<Self> {
         let is_there = adapter.is_some() || adapters().iter().any(AdapterInfo::is_fit);
         is_there.then(|| BackendChoice::Gpu(GpuOptions::of_adapter(adapter)))
     }
 
-    /// What goes on when `failed` have failed, one after the other: the CPU's best code, then its plainest, then the
-    /// reference. `None` if they have all failed.
+    /// The next backend to try after `failed` have failed: the CPU's best kernel, then its plainest code, then the
+    /// reference. `None` if all have failed.
     pub fn fallback(failed: &[BackendChoice]) -> Option<Self> {
         let given = failed.iter().rev().find_map(|choice| match choice {
             BackendChoice::Cpu(options) | BackendChoice::Both(options, _) => Some(*options),
@@ -64,7 +64,7 @@ impl BackendChoice {
             .find(|choice| !failed.iter().any(|failed| runs_alike(failed, choice)))
     }
 
-    /// As a sentence calls it.
+    /// Its name in a sentence.
     pub fn words(&self) -> &'static str {
         match self {
             BackendChoice::Cpu(CpuOptions { isa: Some(Isa::Baseline), lanes: Some(1), .. }) => {
@@ -77,11 +77,11 @@ impl BackendChoice {
         }
     }
 
-    /// Names of single backends, for those who compare them: see [`BackendChoice::named`].
+    /// Names of single backends, for comparisons: see [`BackendChoice::named`].
     pub const NAMES: [&str; 5] = ["cpu", "scalar", "baseline", "reference", "gpu"];
 
-    /// The backend of one of [`BackendChoice::NAMES`]: the CPU's widest packets, one lane at the best level, one
-    /// lane without fused multiply and add, `f64`, the GPU. `adapter` chooses among GPUs.
+    /// The backend with one of [`BackendChoice::NAMES`]: the CPU's widest packets, one lane at the best level, one
+    /// lane without fused multiply and add, `f64`, or the GPU, where `adapter` chooses among several.
     pub fn named(name: &str, adapter: Option<&str>) -> Option<Self> {
         Some(match name {
             "cpu" => BackendChoice::Cpu(CpuOptions::default()),
@@ -96,7 +96,7 @@ impl BackendChoice {
         })
     }
 
-    /// As `--device` calls it.
+    /// Its name for `--device`.
     pub fn name(&self) -> &'static str {
         match self {
             BackendChoice::Cpu(_) => "cpu",
@@ -107,13 +107,13 @@ impl BackendChoice {
     }
 }
 
-/// A backend that cannot be had.
+/// Why a backend is not available.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum BackendError {
-    /// The CPU's options cannot be met.
+    /// The CPU cannot fulfil the options.
     #[error(transparent)]
     Cpu(#[from] CpuError),
-    /// There is no GPU to be had.
+    /// No suitable GPU is available.
     #[error(transparent)]
     Gpu(#[from] GpuError),
 }
@@ -121,13 +121,13 @@ pub enum BackendError {
 /// Starts a backend.
 ///
 /// # Errors
-/// [`BackendError`], with what can be had instead.
+/// [`BackendError`], which says what is available instead.
 pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>, BackendError> {
     Ok(match choice {
         BackendChoice::Cpu(options) => Box::new(CpuRenderer::new(*options)?),
         BackendChoice::Gpu(options) => Box::new(GpuRenderer::new(options.clone())?),
         BackendChoice::Both(cpu, gpu) => {
-            // The GPU first: it is the one that may not be there.
+            // The GPU first, because it may not be available.
             let gpu = GpuRenderer::new(gpu.clone())?;
             Box::new(Together::new(vec![Box::new(CpuRenderer::new(*cpu)?), Box::new(gpu)]))
         }
@@ -140,13 +140,13 @@ pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>, BackendError>
 pub struct BackendListing {
     /// The `--device` that uses it.
     pub device: &'static str,
-    /// Instruction level or adapter, with what there is to choose.
+    /// Instruction level or adapter, with its options.
     pub about: String,
-    /// Whether `--device auto` takes it.
+    /// Whether `--device auto` chooses it.
     pub is_auto: bool,
 }
 
-/// The backends of this machine, in the order of the command line's names.
+/// The backends of this machine, ordered as on the command line.
 pub fn list() -> Vec<BackendListing> {
     let levels = Isa::available();
     let best = levels.last().copied();
@@ -157,18 +157,18 @@ pub fn list() -> Vec<BackendListing> {
         let chosen = isa.native_lanes();
         BackendListing {
             device: "cpu",
-            about: format!("--isa {isa}: --simd {} lanes, {chosen} by default", lanes.join(", ")),
+            about: format!("--isa {isa}: --simd {}; default {chosen}", lanes.join(", ")),
             is_auto: auto_adapter.is_none() && Some(isa) == best,
         }
     });
     let gpu = adapters.iter().enumerate().map(|(index, adapter)| {
         let mib = |bytes: u64| bytes >> 20;
-        let lacks = adapter.lacks.as_ref().map_or(String::new(), |lacks| format!("; unfit: {lacks}"));
-        let software = if adapter.is_software { "; only when named with --adapter" } else { "" };
+        let lacks = adapter.lacks.as_ref().map_or(String::new(), |lacks| format!("; not usable: {lacks}"));
+        let software = if adapter.is_software { "; used only if named with --adapter" } else { "" };
         BackendListing {
             device: "gpu",
             about: format!(
-                "{adapter}: buffers to {} MiB, {} MiB seen at once{lacks}{software}",
+                "{adapter}: buffers of up to {} MiB, bindings of up to {} MiB{lacks}{software}",
                 mib(adapter.buffer_limit),
                 mib(adapter.storage_binding_limit)
             ),
@@ -177,25 +177,25 @@ pub fn list() -> Vec<BackendListing> {
     });
     let reference = BackendListing {
         device: "reference",
-        about: "f64, one lane: slow, and what rounding is measured against".to_owned(),
+        about: "f64, one lane: slow, the reference for rounding errors".to_owned(),
         is_auto: false,
     };
     cpu.chain(gpu).chain([reference]).collect()
 }
 
-/// How long the closing of a backend is waited for.
+/// How long to wait for a backend to close.
 const CLOSING_PATIENCE: Duration = Duration::from_secs(1);
 
-/// Closes a backend that has failed, on a thread of its own: a driver that hangs keeps waiting whoever closes it. Others
-/// are waited for, since a driver may crash that is still at it when the program ends.
+/// Closes a failed backend on its own thread, because a driver that hangs would block the caller. Other backends are
+/// waited for, since a driver may crash if the program ends while it is still working.
 pub fn close<T: Send + 'static>(backend: T) {
     let (closed, is_closed) = mpsc::channel();
     let work = move || {
         drop(backend);
-        // Whoever waits may have given up.
+        // The caller may have stopped waiting.
         let _ = closed.send(());
     };
-    // Without a thread, it is closed here.
+    // If no thread can be started, it is closed here.
     if std::thread::Builder::new().name("close".to_owned()).spawn(work).is_ok() {
         let _ = is_closed.recv_timeout(CLOSING_PATIENCE);
     }

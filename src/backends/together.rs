@@ -1,4 +1,4 @@
-//! Several renderers at once on one film: each takes samples as it finishes, the faster ones more.
+//! Several renderers at work on one film. Each takes more samples when it has finished, so faster ones take more.
 
 use super::close;
 use crate::film::Film;
@@ -10,44 +10,44 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A member's next piece is this share of what is left, times its share of the speed: so that the members finish
-/// together without asking often.
+/// The next piece of a member is this fraction of the remaining samples, times its share of the total speed. So the
+/// members finish together without asking often.
 const PIECE_SHARE: f64 = 0.5;
 
 struct Member {
     renderer: Box<dyn Renderer>,
-    /// Samples of all pixels a second, as last measured.
+    /// Samples of all pixels per second, as last measured.
     samples_per_second: Option<f64>,
     added: u64,
 }
 
-/// Renders with all members. A member that fails is left out from then on, and the others take its samples.
+/// Renders with all members. If one fails, it is left out from then on and the others take its samples.
 pub struct Together {
     members: Vec<Member>,
     messages: Vec<String>,
-    /// What members added to the last range before they failed.
+    /// What failed members had added to the last range.
     departed: Vec<(BackendInfo, u64)>,
 }
 
-/// What a member did with its pieces of a range.
+/// The result of a member's work on a range.
 struct Outcome {
     film: Option<Film>,
     stats: Stats,
     error: Option<RenderError>,
 }
 
-/// Samples that nobody has taken yet.
+/// Samples that no member has taken yet.
 struct Pieces {
     left: Vec<Range<u64>>,
     grain: u64,
 }
 
-/// How a member takes pieces.
+/// Determines the size of a member's pieces.
 #[derive(Clone, Copy)]
 struct Pace {
-    /// Of what is left.
+    /// Fraction of the remaining samples.
     share: f64,
-    /// How many times as fast the fastest of the others is; 0 while nobody has been measured.
+    /// Speed of the fastest other member relative to this one; 0 until speeds have been measured.
     fastest_other: f64,
 }
 
@@ -58,15 +58,15 @@ impl Pace {
         let fastest = others.filter_map(|(_, speed)| *speed).fold(0.0, f64::max);
         match speeds[index] {
             Some(speed) => Pace { share: PIECE_SHARE * speed / total, fastest_other: fastest / speed },
-            // Whoever has not been measured yet takes the smallest piece.
+            // A member that has not been measured yet takes the smallest piece.
             None => Pace { share: 0.0, fastest_other: 0.0 },
         }
     }
 }
 
 impl Pieces {
-    /// The pace's share of what is left, whole grains, at least one. Nothing where another has done all that is
-    /// left before this one had done a grain.
+    /// The member's share of the remaining samples in whole grains, at least one. `None` if another member would
+    /// finish all of them before this one finished a grain.
     fn take(&mut self, pace: Pace) -> Option<Range<u64>> {
         let total: u64 = self.left.iter().map(|range| range.end - range.start).sum();
         if self.grain as f64 * pace.fastest_other > total as f64 {
@@ -85,7 +85,7 @@ impl Pieces {
 }
 
 impl Together {
-    /// All of these at once; at least one.
+    /// Combines renderers; there must be at least one.
     pub fn new(renderers: Vec<Box<dyn Renderer>>) -> Self {
         let member = |renderer| Member { renderer, samples_per_second: None, added: 0 };
         Together {
@@ -95,7 +95,7 @@ impl Together {
         }
     }
 
-    /// Leaves out the members that failed; their last error if none is left.
+    /// Removes the members that failed. Returns the last error if none remains.
     fn leave_out(&mut self, failed: Vec<(usize, RenderError)>) -> Result<(), RenderError> {
         let mut last = None;
         for (index, error) in failed.into_iter().rev() {
@@ -176,8 +176,8 @@ impl Renderer for Together {
         let wanted = range.end.saturating_sub(range.start);
         let pieces = Mutex::new(Pieces { left: vec![range], grain });
         let mut stats = Stats::default();
-        // A film for each member; only whole pieces are in it. They are added to the caller's at the end, so
-        // that an error leaves it as it was.
+        // Each member has its own film, which holds only whole pieces. They are added to the caller's film at the
+        // end, so an error leaves that film unchanged.
         let mut films: Vec<Film> = Vec::new();
         self.members.iter_mut().for_each(|member| member.added = 0);
         self.departed.clear();
@@ -213,7 +213,7 @@ impl Renderer for Together {
         }
         let brought: u64 = films.iter().map(Film::sample_count).sum();
         if brought != wanted {
-            let reason = format!("of {wanted} samples per pixel its members traced {brought}");
+            let reason = format!("its members traced {brought} of {wanted} samples per pixel");
             return Err(RenderError::Backend { backend: "cpu,gpu", reason });
         }
         for part in &films {
@@ -231,7 +231,7 @@ impl Outcome {
     }
 }
 
-/// Takes pieces until none is left, and collects what they brought.
+/// Takes pieces until none is left, and collects their samples.
 fn work_off(
     member: &mut Member,
     pace: Pace,
@@ -262,7 +262,7 @@ fn work_off(
             }
             None => renderer.collect(film),
         };
-        // After a panic the film is as it was, and what the member had not brought home is for the others.
+        // A panic leaves the film unchanged; samples not yet in it are left to the other members.
         match catch_unwind(AssertUnwindSafe(work)) {
             Ok(Ok(stats)) => outcome.stats.add(&stats),
             Ok(Err(error)) => outcome.error = Some(error),
@@ -276,7 +276,7 @@ fn work_off(
         outcome.film = Some(job.new_film());
     }
     let Some(film) = &outcome.film else { return outcome };
-    // What a failing member had not brought home is for the others.
+    // Samples that a failing member has not added to its film are left to the others.
     let lost = taken.into_iter().filter(|piece| film.samples().overlap(piece).is_none());
     pieces.lock().unwrap_or_else(PoisonError::into_inner).left.extend(lost);
     let added = film.sample_count();
@@ -317,7 +317,7 @@ mod tests {
         assert_eq!(pieces.take(fast), Some(0..6));
         pieces.left = std::iter::once(0..64).collect();
         assert_eq!(pieces.take(slow), Some(0..2));
-        // Who is fastest takes whatever is left, and so does who stands alone or is new.
+        // The fastest member takes all that is left, and so does a member that is alone or new.
         pieces.left = std::iter::once(0..2).collect();
         for pace in [fast, Pace::of(0, &[Some(1.0)]), Pace::of(1, &[Some(100.0), None])] {
             pieces.left = std::iter::once(0..2).collect();

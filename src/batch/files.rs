@@ -1,4 +1,4 @@
-//! The picture and the film, written with what they say about themselves.
+//! Writes the picture and the film with their descriptions.
 
 use super::rescue;
 use crate::cli::RenderOptions;
@@ -12,15 +12,15 @@ use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The film files of a render, watched from before it begins: another run may write them, too.
+/// The film files of a render. They are watched from the start, because another run may write to them, too.
 pub(super) struct Places {
-    /// That of `--checkpoint`.
+    /// The film of `--checkpoint`.
     pub checkpoint: Option<SharedPlace>,
-    /// That of `--out`, if it is a film.
+    /// The film of `--out`, if it is one.
     out: Option<SharedPlace>,
 }
 
-/// A film file that the render's threads take turns at.
+/// A film file that the threads of the render share.
 #[derive(Clone)]
 pub(super) struct SharedPlace(Arc<Mutex<SharedFile>>);
 
@@ -29,20 +29,20 @@ impl SharedPlace {
         SharedPlace(Arc::new(Mutex::new(SharedFile::new(path))))
     }
 
-    /// The place, for whoever writes there now. It is whole after every statement, whatever became of its last user.
+    /// Locks the place. Its state is valid after every statement, so a panic of another user does not matter.
     pub fn lock(&self) -> MutexGuard<'_, SharedFile> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Places {
-    /// The places as they are now. A film that goes on is read after this.
+    /// The places in their present state. The film to be resumed must be read after this.
     pub fn of(render: &RenderOptions) -> Places {
         let out = is_film(&render.out).then(|| SharedPlace::new(&render.out));
         Places { checkpoint: render.checkpoint.as_deref().map(SharedPlace::new), out }
     }
 
-    /// Notes that `film`, which the render resumes, stands at one of the places, if it does.
+    /// Records that the render resumes `film`, if the film was read from one of the places.
     pub fn go_on(&self, render: &RenderOptions, film: &Film) {
         let resumed = render.resume.as_deref().and_then(FileIdentity::of);
         for (path, place) in [(render.checkpoint.as_ref(), &self.checkpoint), (Some(&render.out), &self.out)]
@@ -57,18 +57,18 @@ impl Places {
     }
 }
 
-/// Files that were written, and what kept the others from being so.
+/// The files that were written, and why others were not.
 #[derive(Debug, Default)]
 pub(super) struct Written {
     pub files: Vec<PathBuf>,
-    /// What a user should know of those files.
+    /// Notes on the files, for the user.
     pub notes: Vec<String>,
     pub failure: Option<anyhow::Error>,
 }
 
-/// Writes film and picture, each after saying so by `say`. If one cannot be written, the other still is, and if no
-/// film could be, then the film at some other place: its samples may have taken hours. `seconds_before` is what the
-/// film's earlier samples took, if that is known.
+/// Writes the film and the picture, calling `say` before each. If one cannot be written, the other still is. If no
+/// film could be written, it is saved in some other place, since its samples may have taken hours. `seconds_before`
+/// is the tracing time of the film's earlier samples, if known.
 pub(super) fn write(
     render: &RenderOptions,
     places: &Places,
@@ -108,8 +108,10 @@ pub(super) fn write(
     if !failures.is_empty() && !is_film_kept {
         match rescue::rescue(render, film, &description) {
             Ok(path) => {
-                failures
-                    .push(format!("the samples are in {0}: --resume {0} goes on with them", path.display()));
+                failures.push(format!(
+                    "the samples were saved in {0}; continue with --resume {0}",
+                    path.display()
+                ));
                 written.files.push(path);
             }
             Err(lost) => failures.push(lost),
@@ -119,7 +121,7 @@ pub(super) fn write(
     written
 }
 
-/// Whether the name says that it is a film.
+/// Whether the name is that of a film.
 pub(super) fn is_film(path: &Path) -> bool {
     OutputFormat::from_path(path).is_ok_and(|format| format == OutputFormat::Exr)
 }

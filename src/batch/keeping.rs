@@ -1,5 +1,4 @@
-//! Checkpoints: the film is written at intervals during a render, so that a crash loses only the time since the last
-//! one.
+//! Checkpoints: the film is written at intervals during a render, so a crash loses only the samples since the last one.
 
 use super::files::SharedPlace;
 use crate::cli::RenderOptions;
@@ -12,19 +11,19 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
-/// Has the film written at intervals. The tracer waits only while the film is copied, or, where there is no room for
-/// a copy, while it is written.
+/// Has the film written at intervals. The tracer waits only while the film is copied or, if there is no room for a
+/// copy, while it is written.
 pub(super) struct Keeper {
     every: Duration,
     last: Instant,
-    /// Samples of the last copy that was asked for, while it is under way and after.
+    /// Samples in the last copy that was requested.
     asked: u64,
     is_under_way: bool,
     writer: Arc<Writer>,
     snapshots: Option<Sender<Snapshot>>,
     thread: Option<JoinHandle<()>>,
     outcomes: Receiver<Outcome>,
-    /// Samples that the file holds.
+    /// Samples in the file.
     kept: Option<u64>,
 }
 
@@ -39,11 +38,11 @@ struct Outcome {
     words: Option<String>,
 }
 
-/// What a writing needs besides film and status.
+/// What writing a checkpoint needs besides film and status.
 struct Writer {
     place: SharedPlace,
     render: RenderOptions,
-    /// Samples per pixel that the film began with.
+    /// Samples per pixel in the film at the start.
     held_before: u64,
     seconds_before: Option<f64>,
     outcomes: Sender<Outcome>,
@@ -57,17 +56,17 @@ impl Writer {
         let outcome = match self.place.lock().save(film, &description, &same_job) {
             Ok(saved) => Outcome { samples: Some(film.sample_count()), words: saved.note },
             Err(error) => {
-                let words = format!("{error}; the render goes on, and it is tried again");
+                let words = format!("{error}; rendering continues, and writing will be tried again");
                 Outcome { samples: None, words: Some(words) }
             }
         };
-        // Nobody waits for it any more where the render is over.
+        // Nobody receives this if the render is already over.
         let _ = self.outcomes.send(outcome);
     }
 }
 
 impl Keeper {
-    /// Keeps the film of `render` in `place`. `held_before` are the samples per pixel that it begins with.
+    /// Keeps the film of `render` in `place`. `held_before` is the number of samples per pixel at the start.
     pub(super) fn new(
         render: &RenderOptions,
         place: SharedPlace,
@@ -84,7 +83,7 @@ impl Keeper {
                 own.write(&film, &status);
             }
         };
-        // Without a thread the tracer writes, and waits for it.
+        // If no thread can be started, the tracer writes the film and waits for it.
         let thread = Builder::new().name("keep".to_owned()).spawn(write).ok();
         Keeper {
             every: render.every,
@@ -99,7 +98,7 @@ impl Keeper {
         }
     }
 
-    /// Has the film written if it is time. Returns what a user should know of the last writing.
+    /// Has the film written if it is time. Returns a warning about the last write, if there is one.
     pub(super) fn look(&mut self, progressive: &Progressive, status: &Status) -> Option<String> {
         let words = self.outcomes.try_recv().ok().and_then(|outcome| self.note(outcome));
         let is_due = !self.is_under_way && self.last.elapsed() >= self.every;
@@ -118,11 +117,11 @@ impl Keeper {
         words
     }
 
-    /// Waits for a checkpoint that is being written.
+    /// Waits until the current checkpoint is written.
     pub(super) fn finish(&mut self) {
         self.snapshots = None;
         if let Some(thread) = self.thread.take() {
-            // A panic there has been told; the film is written once more in any case.
+            // A panic there has already been reported, and the film is written once more anyway.
             let _ = thread.join();
         }
         while let Ok(outcome) = self.outcomes.try_recv() {
@@ -130,7 +129,7 @@ impl Keeper {
         }
     }
 
-    /// Samples per pixel that the file holds, if it has been written.
+    /// Samples per pixel in the file, if it has been written.
     pub(super) fn kept(&self) -> Option<u64> {
         self.kept
     }
@@ -139,14 +138,14 @@ impl Keeper {
         (self.is_under_way, self.last) = (false, Instant::now());
         match outcome.samples {
             Some(samples) => self.kept = Some(samples),
-            // It was not written, so that it is worth trying even without new samples.
+            // It was not written, so trying again makes sense even without new samples.
             None => self.asked = 0,
         }
         outcome.words
     }
 }
 
-/// A copy, if there is room for it.
+/// A copy of the film, if there is room for it.
 fn copy(film: &Film) -> Option<Film> {
     let mut copy = Film::try_new(film.width(), film.height(), film.halves().len()).ok()?;
     for (to, from) in copy.halves_mut().iter_mut().zip(film.halves()) {
@@ -159,7 +158,7 @@ fn copy(film: &Film) -> Option<Film> {
     Some(copy)
 }
 
-/// The status as it was when the film had its samples: it is read some passes before or after the copy.
+/// The status that belongs to the film: it was read some passes before or after the copy was made.
 fn status_of(film: &Film, status: &Status, held_before: u64) -> Status {
     let mut status = status.clone();
     let added = film.sample_count().saturating_sub(held_before);

@@ -8,7 +8,7 @@ use crate::terminal::print;
 use std::fmt::Write;
 use std::process::ExitCode;
 
-/// Prints what there is to choose from.
+/// Prints the scenes, stages and devices to choose from.
 ///
 /// # Errors
 /// [`Failure::Run`] if standard output cannot be written.
@@ -30,7 +30,7 @@ fn text() -> String {
         lines.push(format!("  {:<16} {}{note}", backend.device, backend.about));
     }
     lines.iter().fold(String::new(), |mut text, line| {
-        // Writing to a string does not fail.
+        // Writing to a string cannot fail.
         let _ = writeln!(text, "{line}");
         text
     })

@@ -1,6 +1,7 @@
-//! `weekender merge`: merges films of one picture.
+//! `weekender merge`: merges films of the same picture.
 
 use crate::cli::MergeOptions;
+use crate::describe::counted;
 use crate::failure::Failure;
 use crate::files::check_writable;
 use crate::film::{SampleRanges, merge_files};
@@ -10,10 +11,10 @@ use crate::saved::same_job;
 use crate::terminal::print;
 use std::process::ExitCode;
 
-/// Adds films and writes the sum.
+/// Merges the films and writes the result.
 ///
 /// # Errors
-/// [`Failure::Input`] for films that do not go together, [`Failure::Run`] if the sum cannot be written.
+/// [`Failure::Input`] if the films do not belong together, [`Failure::Run`] if the result cannot be written.
 pub fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
     OutputFormat::from_path(&options.out).map_err(Failure::input)?;
     check_writable(&options.out).map_err(Failure::input)?;
@@ -23,9 +24,9 @@ pub fn merge(options: &MergeOptions) -> Result<ExitCode, Failure> {
     write_image(&options.out, &sum.film, transfer, &sum.description).map_err(Failure::run)?;
     let samples: &SampleRanges = sum.film.samples();
     print(&format!(
-        "{} samples per pixel ({samples}) of {} films\nwrote {}\n",
-        samples.count(),
-        options.films.len(),
+        "{} per pixel ({samples}) from {}\nwrote {}\n",
+        counted(samples.count(), "sample"),
+        counted(options.films.len() as u64, "film"),
         options.out.display()
     ))
     .map_err(Failure::Run)?;

@@ -1,4 +1,4 @@
-//! Batch rendering without a window: pictures go to files, progress to standard error, and figures come at the end.
+//! Rendering without a window: pictures go to files, progress goes to standard error, and figures come at the end.
 
 mod files;
 mod keeping;
@@ -32,11 +32,11 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use summary::{Report, Summary};
 
-/// Renders and writes everything that is asked for.
+/// Renders and writes everything that the options ask for.
 ///
 /// # Errors
-/// [`Failure::Input`] before anything is rendered or written; [`Failure::BrokeOff`] if a render broke off whose
-/// samples are in its files; [`Failure::Run`] for everything else later.
+/// [`Failure::Input`] if nothing was rendered or written; [`Failure::BrokeOff`] if a render failed but its samples
+/// are in its files; [`Failure::Run`] otherwise.
 pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
     let places: Vec<Places> = options.renders.iter().map(Places::of).collect();
@@ -63,7 +63,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     for (render, places) in options.renders.iter().zip(&places) {
         let begun = Begun { options: &options, interrupt: &interrupt, places };
         let (summary, outcome) = begun.render(render, &mut progressive, renderer.take(), resumed.take());
-        // Failing to print the figures does not stop the rendering of pictures.
+        // The pictures are rendered even if the figures cannot be printed.
         printed = printed.and(print_beside(options.json.as_ref(), &format!("{summary}\n")));
         summaries.push(summary);
         if let Err(error) = outcome {
@@ -90,7 +90,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
 /// Writes a scene file.
 ///
 /// # Errors
-/// [`Failure::Input`] if it cannot be written, [`Failure::Run`] if that cannot be said.
+/// [`Failure::Input`] if the file cannot be written, [`Failure::Run`] if standard output cannot.
 pub fn save_scene(options: &SaveSceneOptions) -> Result<ExitCode, Failure> {
     write_scene(&options.recipe, &options.path).map_err(Failure::Input)?;
     print(&format!("wrote {}\n", options.path.display())).map_err(Failure::Run)?;
@@ -101,12 +101,12 @@ fn write_scene(recipe: &Recipe, path: &Path) -> anyhow::Result<()> {
     Ok(write_text(path, &file::to_toml(recipe))?)
 }
 
-/// Checks in advance for everything that could fail after rendering.
+/// Checks for everything that could otherwise fail after rendering.
 fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     if let Some(directory) = &options.directory {
         std::fs::create_dir_all(directory)
             .with_context(|| {
-                format!("cannot make the directory {}; choose another --out", directory.display())
+                format!("cannot create the directory {}; choose another with --out", directory.display())
             })
             .map_err(Failure::Input)?;
     }
@@ -208,8 +208,8 @@ impl Begun<'_> {
             if self.interrupt.is_set() && !is_stopping {
                 is_stopping = true;
                 progress.say(
-                    "stopping after these samples, then the files are written; press Ctrl-C again to exit at once \
-                     without them",
+                    "finishing the current samples and writing the files; press Ctrl-C again to exit at once \
+                     without writing",
                 );
                 progressive.stop();
             }
@@ -221,7 +221,7 @@ impl Begun<'_> {
     }
 }
 
-/// What a render and its writing came to. `kept` are the samples per pixel that the checkpoint had before the end.
+/// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint file.
 fn outcome(
     render: &RenderOptions,
     status: &Status,
@@ -239,7 +239,9 @@ fn outcome(
         (None, ..) if held > 0 => {
             let files: Vec<String> = written.files.iter().map(|path| path.display().to_string()).collect();
             let files = files.join(", ");
-            Failure::BrokeOff(anyhow!("{reason}; the {held} samples per pixel before that are in {files}"))
+            Failure::BrokeOff(anyhow!(
+                "{reason}; the {held} samples per pixel rendered before are in {files}"
+            ))
         }
         (None, Some(kept), Some(path)) => {
             let path = path.display();
@@ -271,7 +273,7 @@ pub(crate) mod tests {
     use std::ops::Range;
     use std::sync::atomic::AtomicBool;
 
-    /// What a small render with `flags` is asked for.
+    /// The options of a small render with these `flags`.
     pub(crate) fn options(flags: &[&str]) -> RenderOptions {
         batch(flags).renders.remove(0)
     }
@@ -283,7 +285,7 @@ pub(crate) mod tests {
         *options
     }
 
-    /// Fails when it has added four samples.
+    /// A renderer that fails after four samples.
     struct Failing;
 
     impl Renderer for Failing {

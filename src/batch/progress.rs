@@ -1,4 +1,4 @@
-//! The progress of a picture: how far it is, how fast, and how long it will still take.
+//! The progress of a picture: samples, speed and remaining time.
 
 use crate::cli::{ProgressChoice, RenderOptions};
 use crate::progressive::{Phase, Plan, Status};
@@ -6,7 +6,7 @@ use crate::terminal::Display;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Time between lines where there is no terminal.
+/// Interval of progress lines when there is no terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Steps of the bar.
@@ -26,17 +26,17 @@ impl Progress {
         Progress { display, plan: render.plan.clone(), begin: Instant::now() }
     }
 
-    /// Shows where the render stands.
+    /// Shows the state of the render.
     pub(super) fn update(&mut self, status: &Status) {
         let elapsed = self.begin.elapsed();
         let left = seconds_left(&self.plan, status);
         let words = || match status.phase {
-            Phase::Preparing => "prepare and build hierarchy".to_owned(),
+            Phase::Preparing => "preparing the scene".to_owned(),
             _ => {
                 let left = left.map_or_else(String::new, |left| format!(", {} left", seconds(left)));
                 let error = status.error.map_or_else(String::new, |e| format!(", error {:.2e}", e.rmse));
                 format!(
-                    "trace: {} spp, {:.1} Mpaths/s, {}{left}{error}",
+                    "tracing: {} spp, {:.1} Mpaths/s, {}{left}{error}",
                     status.samples_per_pixel,
                     status.paths_per_second() / 1e6,
                     seconds(elapsed.as_secs_f64()),
@@ -50,23 +50,23 @@ impl Progress {
         self.display.update((share * STEPS as f64) as u64, words);
     }
 
-    /// Says that `path` is being written.
+    /// Shows that `path` is being written.
     pub(super) fn writing(&mut self, path: &Path) {
-        self.display.announce(STEPS, || format!("write {}", path.display()));
+        self.display.announce(STEPS, || format!("writing {}", path.display()));
     }
 
-    /// Says something that must be read, whatever the display.
+    /// Prints a message that must be read, even if progress is off.
     pub(super) fn say(&self, message: &str) {
         self.display.say(message);
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(super) fn finish(&self) {
         self.display.clear();
     }
 }
 
-/// Seconds until the first of the plan's conditions is met, if that can be told.
+/// Seconds until the first stop condition is met, if that can be predicted.
 fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
     let added: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
     if added == 0 {
@@ -76,7 +76,7 @@ fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
     let held = status.samples_per_pixel as f64;
     let by_samples = (status.planned_samples_per_pixel as f64 - held) * per_sample;
     let by_time = plan.stop.time_limit().map(|limit| limit.saturating_sub(status.elapsed).as_secs_f64());
-    // The error falls at least as the square root of the samples.
+    // The error falls at least with the square root of the samples.
     let by_noise = plan
         .stop
         .noise
@@ -85,7 +85,7 @@ fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
     [Some(by_samples), by_time, by_noise].into_iter().flatten().reduce(f64::min)
 }
 
-/// As `3.2 s`, `4 min 05 s` or `2 h 03 min`.
+/// A time such as `3.2 s`, `4 min 05 s` or `2 h 03 min`.
 pub(super) fn seconds(seconds: f64) -> String {
     let whole = seconds.round() as u64;
     match whole {

@@ -1,4 +1,4 @@
-//! Rescues samples whose files cannot be written, by saving them wherever there is room.
+//! Rescues samples whose file cannot be written, by saving them wherever there is room.
 
 use crate::cli::RenderOptions;
 use crate::film::{Description, Film, checkpoint, key};
@@ -6,23 +6,23 @@ use crate::recipe::plain_name;
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Most characters of the picture's name in the file's.
+/// Most characters of the picture's name in the name of the file.
 const NAME_LENGTH: usize = 60;
 
-/// The last number that a free name is looked for with.
+/// Largest number that is appended to find a free name.
 const NAME_LIMIT: u32 = 1000;
 
-/// Keeps the film at the first place that takes it, and says which.
+/// Saves the film at the first place that works, and returns its path.
 ///
 /// # Errors
-/// What is lost, and why at each place.
+/// What is lost, and why each place failed.
 pub(super) fn rescue(
     render: &RenderOptions,
     film: &Film,
     description: &Description,
 ) -> Result<PathBuf, String> {
     if let Some(state) = state_directory() {
-        // That it cannot be made shows when the file cannot be.
+        // If it cannot be created, writing the file will say so.
         let _ = std::fs::create_dir_all(state);
     }
     keep_in(&places(render), render, film, description)
@@ -37,7 +37,7 @@ fn keep_in(
     let mut reasons = Vec::new();
     for place in places {
         let Some(path) = free_name(place, &render.recipe.name) else {
-            reasons.push(format!("{} (every name is taken)", place.display()));
+            reasons.push(format!("{} (no free name)", place.display()));
             continue;
         };
         match checkpoint::save(&path, film, description) {
@@ -48,14 +48,14 @@ fn keep_in(
     let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse::<f64>().ok());
     let seconds = seconds.map_or_else(String::new, |seconds| format!(", {seconds:.0} s of tracing"));
     Err(format!(
-        "the samples are lost ({} per pixel{seconds}): they could not be kept in {} either",
+        "the samples are lost ({} per pixel{seconds}); saving them elsewhere failed, too: {}",
         film.sample_count(),
         reasons.join(", ")
     ))
 }
 
-/// Directories to be tried in turn: beside what could not be written, for temporary files, for what programs keep,
-/// the user's own.
+/// Directories to try in turn: next to the file that cannot be written, for temporary files, for the state of
+/// programs, and the home directory.
 fn places(render: &RenderOptions) -> Vec<PathBuf> {
     let beside = |path: &Path| match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
@@ -77,7 +77,7 @@ fn places(render: &RenderOptions) -> Vec<PathBuf> {
     places
 }
 
-/// Where programs keep what should outlast them.
+/// The directory for the persistent state of programs.
 fn state_directory() -> Option<PathBuf> {
     let state = env::var_os("XDG_STATE_HOME").map(PathBuf::from).filter(|state| state.is_absolute());
     Some(state.or_else(|| Some(home()?.join(".local/state")))?.join("weekender"))

@@ -1,7 +1,8 @@
-//! The closing figures of a picture, as text and as JSON.
+//! The final figures of a picture, as text and as JSON.
 
 use super::progress::seconds;
 use crate::cli::RenderOptions;
+use crate::describe::counted;
 use crate::film::{ErrorEstimate, Film};
 use crate::progressive::{Contribution, HistoryPoint, Phase, Status};
 use serde::Serialize;
@@ -9,7 +10,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Version of the JSON: it grows when a key changes its meaning or goes away.
+/// Version of the JSON. It is raised when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
 
 /// The JSON of one picture, or of all stages.
@@ -42,8 +43,8 @@ impl Report {
     }
 }
 
-/// What one picture took and how good it is. Times and counts are of this run; `samples_per_pixel`,
-/// `rejected_samples` and the estimates are of the film, with what it held before.
+/// Time and quality of one picture. Times and counts are those of this run; `samples_per_pixel`, `rejected_samples`
+/// and the estimates are those of the film, including its earlier samples.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Summary {
     scene: String,
@@ -152,7 +153,8 @@ impl fmt::Display for Summary {
         writeln!(f, "scene    {scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}")?;
         if let (Some(backend), Some(device)) = (self.backend, &self.device) {
             let [lanes, threads] = [self.lanes, self.threads].map(Option::unwrap_or_default);
-            writeln!(f, "backend  {backend} {device}, {lanes} lanes, {threads} threads")?;
+            let (lanes, threads) = (counted(lanes as u64, "lane"), counted(threads as u64, "thread"));
+            writeln!(f, "backend  {backend} {device}, {lanes}, {threads}")?;
             writeln!(f, "kernel   {}", self.kernel)?;
         }
         if self.backends.len() > 1 {
@@ -163,7 +165,7 @@ impl fmt::Display for Summary {
         }
         let added = match self.added_samples_per_pixel {
             added if added == self.samples_per_pixel => String::new(),
-            added => format!(" ({added} of them now)"),
+            added => format!(" ({added} of them new)"),
         };
         writeln!(
             f,
@@ -181,7 +183,7 @@ impl fmt::Display for Summary {
         )?;
         write!(
             f,
-            "speed    {:.2} Mpaths/s, {:.2} Mray/s",
+            "speed    {:.2} Mpaths/s, {:.2} Mrays/s",
             self.paths_per_second / 1e6,
             self.rays_per_second / 1e6
         )?;
@@ -189,15 +191,15 @@ impl fmt::Display for Summary {
             Some(share) => writeln!(f, ", {:.1} % of lanes in use", 100.0 * share)?,
             None => writeln!(f)?,
         }
+        let rejected = counted(self.rejected_samples, "rejected sample");
         match &self.error {
             Some(error) => writeln!(
                 f,
-                "error    {:.3e} {} RMSE (estimated from the two halves), {} rejected samples",
+                "error    {:.3e} {} RMSE (estimated from the two halves), {rejected}",
                 error.rmse,
-                error.uncertainty(),
-                self.rejected_samples
+                error.uncertainty()
             )?,
-            None => writeln!(f, "error    not estimated, {} rejected samples", self.rejected_samples)?,
+            None => writeln!(f, "error    not estimated, {rejected}")?,
         }
         if self.files.is_empty() {
             return writeln!(f, "files    none");

@@ -1,6 +1,7 @@
 //! The candidates to measure: the baseline, instruction levels and lane counts of the CPU, and a GPU.
 
 use super::figures::{Kind, Row, Run};
+use super::machine::counted;
 use crate::backends::{self, BackendChoice};
 use crate::baseline::{Baseline, BaselineError};
 use crate::cli::BenchOptions;
@@ -12,12 +13,12 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A warm-up run lasts at least this long, so that its speed means something, seconds.
+/// Shortest warm-up run whose speed is meaningful, seconds.
 const WARM_UP_SECONDS: f64 = 0.2;
 
-/// One row of a scene, ready to run.
+/// A row of a scene's table, ready to run.
 pub struct Candidate {
-    /// Its figures so far.
+    /// The figures so far.
     pub row: Row,
     runner: Option<Runner>,
 }
@@ -31,7 +32,7 @@ enum Runner {
 #[derive(Debug)]
 pub struct Cancelled;
 
-/// All candidates of a job, in the order of the table.
+/// All candidates for a job, in the order of the table.
 pub fn candidates(
     options: &BenchOptions,
     name: &str,
@@ -94,7 +95,7 @@ impl Candidate {
         Candidate::new(name, Kind::Baseline, 1, 1, made)
     }
 
-    /// A level of the CPU.
+    /// A level of the CPU with this many lanes and threads.
     pub fn cpu(isa: Isa, lanes: usize, threads: usize, kind: Kind, job: &RenderJob) -> Self {
         let options = CpuOptions {
             isa: Some(isa),
@@ -102,9 +103,7 @@ impl Candidate {
             threads: Some(threads),
             ..CpuOptions::default()
         };
-        let count =
-            |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
-        let name = format!("{isa}, {}, {}", count(lanes, "lane"), count(threads, "thread"));
+        let name = format!("{isa}, {}, {}", counted(lanes, "lane"), counted(threads, "thread"));
         Candidate::new(name, kind, lanes, threads, prepared(&BackendChoice::Cpu(options), job))
     }
 
@@ -120,16 +119,16 @@ impl Candidate {
         Candidate::new(name, Kind::Gpu, lanes, threads, made)
     }
 
-    /// Whether it can be run.
+    /// Whether it can still be run.
     pub fn is_ready(&self) -> bool {
         self.runner.is_some()
     }
 
-    /// Runs it without keeping the figures, with more and more samples, and chooses as many samples for its runs as
-    /// `limit_seconds` allows, at most `samples`.
+    /// Runs it without keeping the figures, with more and more samples. From the last run it chooses the number of
+    /// samples for the measured runs: as many as `limit_seconds` allows, at most `samples`.
     ///
     /// # Errors
-    /// [`Cancelled`]. A candidate that fails is left out from then on.
+    /// [`Cancelled`]. A candidate that fails is skipped from then on.
     pub fn warm_up(
         &mut self,
         job: &RenderJob,
@@ -144,7 +143,7 @@ impl Candidate {
             if run.seconds >= WARM_UP_SECONDS.min(limit_seconds) || tried >= samples {
                 let mut chosen = samples;
                 while chosen > least && chosen as f64 * run.seconds / tried as f64 > limit_seconds {
-                    // Both halves of the film get as many.
+                    // Both halves of the film get the same number.
                     chosen = (chosen / 2).next_multiple_of(least);
                 }
                 self.row.samples_per_pixel = chosen;
@@ -154,10 +153,10 @@ impl Candidate {
         }
     }
 
-    /// Runs it and keeps the figures.
+    /// Runs it once and keeps the figures.
     ///
     /// # Errors
-    /// [`Cancelled`]. A candidate that fails is left out from then on.
+    /// [`Cancelled`]. A candidate that fails is skipped from then on.
     pub fn measure(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), Cancelled> {
         let run = self.run(job, self.row.samples_per_pixel, cancel)?;
         self.row.runs.extend(run);

@@ -4,148 +4,148 @@ use super::machine::Machine;
 use crate::statistics::median;
 use serde::Serialize;
 
-/// Version of the JSON: it grows when a key changes its meaning or goes away.
+/// Version of the JSON. It is raised when a key changes its meaning or is removed.
 pub const SCHEMA: u32 = 1;
 
-/// If the range of the runs is above this share of their median, the figures are doubtful.
+/// The figures are doubtful if the range of the runs exceeds this fraction of their median.
 pub const SPREAD_LIMIT: f64 = 0.1;
 
 /// Everything that was measured.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// [`SCHEMA`].
+    /// See [`SCHEMA`].
     pub schema: u32,
-    /// Where.
+    /// The machine on which it was measured.
     pub machine: Machine,
-    /// Scenes, with a row for each candidate.
+    /// Scenes, each with a row per candidate.
     pub scenes: Vec<SceneFigures>,
     /// Fields of growing size.
     pub scale: Vec<ScaleFigures>,
-    /// Why the figures are doubtful, if so.
+    /// Reasons to doubt the figures.
     pub warnings: Vec<String>,
-    /// Whether it was ended early.
+    /// Whether the user interrupted the measurement.
     pub interrupted: bool,
 }
 
 /// A scene and its rows.
 #[derive(Clone, Debug, Serialize)]
 pub struct SceneFigures {
-    /// Its name.
+    /// Name of the scene.
     pub scene: String,
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
-    /// Most rays of a path.
+    /// Most rays per path.
     pub max_depth: u32,
-    /// Where numbers come from; the baseline has the book's independent ones.
+    /// The sampler; the baseline always uses independent numbers, as the book does.
     pub sampler: &'static str,
-    /// Spheres.
+    /// Number of spheres.
     pub spheres: usize,
-    /// In the order of the table.
+    /// The rows in the order of the table.
     pub rows: Vec<Row>,
 }
 
-/// What kind of program a row is.
+/// What kind of candidate a row is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
-    /// Plain C.
+    /// The plain C program.
     Baseline,
     /// One ray at a time.
     Scalar,
     /// Packets on one thread.
     Packets,
-    /// All threads.
+    /// Several threads.
     Threads,
-    /// A graphics processor.
+    /// A GPU.
     Gpu,
 }
 
 /// A candidate and its runs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// What it is.
+    /// Its name in the table.
     pub name: String,
     /// Its kind.
     pub kind: Kind,
-    /// Paths that advance in step.
+    /// Number of paths that advance in step.
     pub lanes: usize,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Samples per pixel of a run.
+    /// Samples per pixel of each run.
     pub samples_per_pixel: u64,
-    /// All runs but the warm-up.
+    /// All runs except the warm-up.
     pub runs: Vec<Run>,
-    /// Over the runs.
+    /// Paths per second over the runs.
     pub paths_per_second: Option<Spread>,
-    /// Over the runs.
+    /// Rays per second over the runs.
     pub rays_per_second: Option<Spread>,
-    /// Share of lanes that traced a ray.
+    /// Fraction of lanes that traced a ray.
     pub lanes_in_use: Option<f64>,
-    /// Median against that of the baseline.
+    /// Median paths per second, relative to the baseline's.
     pub ratio_to_baseline: Option<f64>,
-    /// 1 / (mean squared error times seconds), as the film estimates it; `None` where it sees no error.
+    /// 1 / (mean squared error times seconds), from the film's own estimate; `None` if it has none.
     pub efficiency: Option<f64>,
     /// Why it was not measured.
     pub skipped: Option<String>,
 }
 
-/// A run. Reading, preparing and writing are not in its time.
+/// A run. Its time does not include reading, preparing and writing.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Run {
-    /// Wall time of tracing.
+    /// Wall time of tracing, seconds.
     pub seconds: f64,
-    /// Pixels times samples.
+    /// Number of paths: pixels times samples.
     pub paths: u64,
-    /// Rays traced.
+    /// Number of rays traced.
     pub rays: u64,
-    /// Lanes that traced a ray, over all intersections.
+    /// Lanes that traced a ray, summed over all intersection steps.
     pub busy_lanes: u64,
-    /// Lanes there were.
+    /// Lanes available, summed over the same steps.
     pub offered_lanes: u64,
-    /// The film's estimate of its error.
+    /// RMSE that the film estimates.
     pub rmse: Option<f64>,
 }
 
-/// A field of some size.
+/// A field of a certain size.
 #[derive(Clone, Debug, Serialize)]
 pub struct ScaleFigures {
-    /// Small spheres of the field.
+    /// Number of small spheres.
     pub spheres: u64,
-    /// Time to generate the scene.
+    /// Time to generate the scene, seconds.
     pub generate_seconds: f64,
-    /// Time to build the tables, hierarchy included.
+    /// Time to build the prepared scene, hierarchy included, seconds.
     pub build_seconds: f64,
-    /// Time to build the hierarchy.
+    /// Time to build the hierarchy, seconds.
     pub hierarchy_seconds: f64,
-    /// Memory of a sphere in the scene.
+    /// Bytes per sphere in the scene.
     pub scene_bytes_per_sphere: f64,
-    /// Memory of a sphere in the tables that are traced, hierarchy included.
+    /// Bytes per sphere in the prepared scene, hierarchy included.
     pub table_bytes_per_sphere: f64,
-    /// Largest memory of the process from generating to the last run.
+    /// Peak memory of the process, from generating the scene to the last run.
     pub peak_memory_bytes: Option<u64>,
-    /// Samples per pixel of a run.
+    /// Samples per pixel of each run.
     pub samples_per_pixel: u64,
-    /// Over the runs.
+    /// Paths per second over the runs.
     pub paths_per_second: Option<Spread>,
-    /// Over the runs.
+    /// Rays per second over the runs.
     pub rays_per_second: Option<Spread>,
 }
 
-/// Runs in three numbers.
+/// The spread of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// In the middle.
+    /// The median.
     pub median: f64,
-    /// Least.
+    /// The minimum.
     pub min: f64,
-    /// Most.
+    /// The maximum.
     pub max: f64,
 }
 
 impl Spread {
-    /// `None` without values.
+    /// `None` if there are no values.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let values: Vec<f64> = values.into_iter().collect();
         let min = values.iter().copied().reduce(f64::min)?;
@@ -153,14 +153,14 @@ impl Spread {
         Some(Spread { median: median(values)?, min, max })
     }
 
-    /// Range as a share of the median.
+    /// The range as a fraction of the median.
     pub fn share(self) -> f64 {
         (self.max - self.min) / self.median
     }
 }
 
 impl Row {
-    /// Works out what the runs say.
+    /// Computes the row's figures from its runs.
     pub fn sum_up(&mut self) {
         let per_second =
             |count: fn(&Run) -> u64| Spread::of(self.runs.iter().map(|run| count(run) as f64 / run.seconds));
@@ -177,7 +177,7 @@ impl Row {
 }
 
 impl SceneFigures {
-    /// Works out all rows.
+    /// Computes the figures of all rows.
     pub fn sum_up(&mut self) {
         self.rows.iter_mut().for_each(Row::sum_up);
         let median = |row: &Row| row.paths_per_second.map(|spread| spread.median);

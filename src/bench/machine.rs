@@ -7,23 +7,23 @@ use std::fs;
 /// The machine and the program.
 #[derive(Clone, Debug, Serialize)]
 pub struct Machine {
-    /// The program's version.
+    /// Version of the program.
     pub version: &'static str,
-    /// The processor's name.
+    /// Name of the processor.
     pub processor: String,
-    /// Threads that the system runs at once.
+    /// Number of threads that the system can run at once.
     pub cores: usize,
     /// Instruction levels, the most capable last.
     pub levels: Vec<&'static str>,
-    /// Processes that wanted a core at the start, the mean of a minute; `None` where the system does not tell.
+    /// System load at the start, averaged over a minute; `None` if the system does not tell.
     pub load_at_start: Option<f64>,
 }
 
-/// From this system load on, the figures are doubtful.
+/// At a higher system load, the figures are doubtful.
 pub const LOAD_LIMIT: f64 = 0.5;
 
 impl Machine {
-    /// This one, now.
+    /// Describes this machine now.
     pub fn look() -> Self {
         Machine {
             version: env!("CARGO_PKG_VERSION"),
@@ -34,11 +34,12 @@ impl Machine {
         }
     }
 
-    /// One line about it.
+    /// One line of text.
     pub fn words(&self) -> String {
         let level = self.levels.last().copied().unwrap_or("no level");
         let load = self.load_at_start.map_or(String::new(), |load| format!(", load {load:.2} at the start"));
-        format!("Weekender {}, {}, {} threads, {level}{load}", self.version, self.processor, self.cores)
+        let threads = counted(self.cores, "thread");
+        format!("Weekender {}, {}, {threads}, {level}{load}", self.version, self.processor)
     }
 }
 
@@ -55,15 +56,20 @@ fn load() -> Option<f64> {
     fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
 }
 
-/// Largest memory that this process had since [`forget_peak_memory`], bytes; `None` where the system does not tell.
+/// A number with its noun: `1 lane`, `8 lanes`.
+pub fn counted(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+/// Peak memory of this process since [`forget_peak_memory`], bytes; `None` if the system does not tell.
 pub fn peak_memory() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
 }
 
-/// Lets [`peak_memory`] begin anew, where the system can.
+/// Resets [`peak_memory`], if the system can.
 pub fn forget_peak_memory() {
-    // Where it cannot, the peak is that since the start, which is no smaller.
+    // If it cannot, the peak is that since the start of the process, which is at least as large.
     let _ = fs::write("/proc/self/clear_refs", "5");
 }

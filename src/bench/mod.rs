@@ -26,7 +26,7 @@ use std::sync::atomic::AtomicBool;
 /// Measures, prints tables and writes files.
 ///
 /// # Errors
-/// [`Failure::Input`] before anything is measured; [`Failure::Run`] later.
+/// [`Failure::Input`] if nothing was measured; [`Failure::Run`] otherwise.
 pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     let json = match &options.json {
         Some(JsonTarget::File(path)) => Some(path),
@@ -68,7 +68,7 @@ fn scenes(options: &BenchOptions, report: &mut Report, cancel: &AtomicBool) -> a
     Ok(())
 }
 
-/// Runs all rows in turn, so that drift affects all of them alike.
+/// Runs all candidates in turn, so that drift affects all of them alike.
 fn measure_scene(
     options: &BenchOptions,
     scene: &BenchScene,
@@ -130,12 +130,12 @@ fn fields(
     outcome
 }
 
-/// Why the figures are doubtful.
+/// Reasons to doubt the figures.
 fn warnings(report: &Report) -> Vec<String> {
     let mut warnings = Vec::new();
     if let Some(load) = report.machine.load_at_start.filter(|load| *load > LOAD_LIMIT) {
         warnings.push(format!(
-            "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; end other programs and measure again"
+            "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
         ));
     }
     let rows = report.scenes.iter().flat_map(|scene| {
@@ -151,7 +151,7 @@ fn warnings(report: &Report) -> Vec<String> {
     let wide = spreads.iter().filter(|(_, share)| *share > SPREAD_LIMIT);
     if let Some((name, share)) = wide.clone().max_by(|a, b| a.1.total_cmp(&b.1)) {
         warnings.push(format!(
-            "in {} of {} rows the runs differ by more than {:.0} % of their median; most in {name}, by {:.0} %",
+            "in {} of {} rows, the runs differ by more than {:.0} % of their median; the largest difference is {:.0} % in {name}",
             wide.count(),
             spreads.len(),
             100.0 * SPREAD_LIMIT,

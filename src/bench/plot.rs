@@ -1,13 +1,13 @@
-//! What was measured, as charts.
+//! Charts of the measurements.
 
 use super::figures::{Kind, Report, ScaleFigures, SceneFigures, Spread};
 use crate::chart::{Axis, Bar, BarChart, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
 
-/// Height of a bar's row and of what stands around all rows, points.
+/// Height of a bar's row and of everything around the rows, points.
 const ROW_HEIGHT: u32 = 36;
 const FRAME_HEIGHT: u32 = 100;
 
-/// A chart of the rows of all scenes, or of the fields.
+/// A chart of the rows of all scenes or, if they were measured, of the fields.
 pub fn figure(report: &Report) -> Figure {
     if report.scale.is_empty() { bars(report) } else { scale(report) }
 }
@@ -17,7 +17,7 @@ fn bars(report: &Report) -> Figure {
     let most = report.scenes.iter().map(rows).max().unwrap_or(0) as u32;
     let panels: Vec<Panel> = report.scenes.iter().map(|scene| Panel::Bars(scene_bars(scene))).collect();
     Figure {
-        title: "Paths a second".to_owned(),
+        title: "Paths per second".to_owned(),
         about: report.machine.words(),
         size: [1000, 64 + panels.len().max(1) as u32 * (FRAME_HEIGHT + ROW_HEIGHT * most)],
         columns: 1,
@@ -44,7 +44,7 @@ fn scene_bars(scene: &SceneFigures) -> BarChart {
     });
     BarChart {
         title: format!("{}, {} × {}, depth {}", scene.scene, scene.width, scene.height, scene.max_depth),
-        label: "million paths a second: median, least and most".to_owned(),
+        label: "million paths per second: median, minimum and maximum".to_owned(),
         bars: bars.collect(),
     }
 }
@@ -69,13 +69,12 @@ fn scale(report: &Report) -> Figure {
         })
     };
     let hierarchy = series("hierarchy", &|row| Some(row.hierarchy_seconds));
-    let build = series("all tables", &|row| Some(row.build_seconds));
-    let generate = series("generating the scene", &|row| Some(row.generate_seconds));
+    let build = series("prepared scene", &|row| Some(row.build_seconds));
+    let generate = series("scene generation", &|row| Some(row.generate_seconds));
     let guide = in_proportion(&build);
     let mib = |bytes: f64| bytes / f64::from(1 << 20);
-    let tables =
-        series("tables and hierarchy", &|row| Some(mib(row.table_bytes_per_sphere * row_count(row))));
-    let peak = series("peak of the process", &|row| Some(mib(row.peak_memory_bytes? as f64)));
+    let tables = series("prepared scene", &|row| Some(mib(row.table_bytes_per_sphere * row_count(row))));
+    let peak = series("process peak", &|row| Some(mib(row.peak_memory_bytes? as f64)));
     let limit = Series { look: Look::Guide, ..series("2 GiB", &|_| Some(2048.0)) };
     let speed = Series {
         name: String::new(),
@@ -89,7 +88,7 @@ fn scale(report: &Report) -> Figure {
         look: Look::Measured,
     };
     Figure {
-        title: "Fields of a thousand spheres and more".to_owned(),
+        title: "Fields of a thousand or more spheres".to_owned(),
         about: report.machine.words(),
         size: [1350, 480],
         columns: 3,
@@ -101,7 +100,7 @@ fn scale(report: &Report) -> Figure {
                 Some(Corner::UpperLeft),
             ),
             chart("Memory", "MiB", vec![limit, peak, tables], Some(Corner::LowerRight)),
-            chart("Speed", "million paths a second", vec![speed], None),
+            chart("Speed", "million paths per second", vec![speed], None),
         ],
     }
 }
@@ -110,7 +109,7 @@ fn row_count(row: &ScaleFigures) -> f64 {
     row.spheres as f64
 }
 
-/// What grows as x does, through the first point of a series, a little above it.
+/// A guide in proportion to x, through the first point of a series and a little above it.
 fn in_proportion(series: &Series) -> Series {
     let first = series.points.first().copied();
     let points = first.into_iter().flat_map(|first| {

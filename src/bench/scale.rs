@@ -1,4 +1,4 @@
-//! How building, memory and speed grow with the number of spheres.
+//! Measures how build time, memory and speed depend on the number of spheres.
 
 use super::candidate::{Cancelled, Candidate};
 use super::figures::{Kind, ScaleFigures};

@@ -1,11 +1,12 @@
-//! What was measured, as text of at most 100 columns.
+//! The measurements as text of at most 100 columns.
 
 use super::figures::{Report, Row, ScaleFigures, SceneFigures};
+use super::machine::counted;
 
 /// Longest name of a row.
 const NAME_WIDTH: usize = 34;
 
-/// All tables and warnings.
+/// All tables and warnings as text.
 pub fn text(report: &Report) -> String {
     let mut lines = vec![report.machine.words()];
     for scene in &report.scenes {
@@ -18,7 +19,7 @@ pub fn text(report: &Report) -> String {
     }
     if report.interrupted {
         lines.push(String::new());
-        lines.push("Interrupted: these are the runs that were finished.".to_owned());
+        lines.push("Interrupted: only the runs finished so far are shown.".to_owned());
     }
     if !report.warnings.is_empty() {
         lines.push(String::new());
@@ -30,10 +31,12 @@ pub fn text(report: &Report) -> String {
 
 fn scene_lines(scene: &SceneFigures) -> Vec<String> {
     let SceneFigures { scene: name, width, height, max_depth, sampler, spheres, .. } = scene;
-    let title = format!("{name}, {width}x{height}, depth {max_depth}, {sampler}, {spheres} spheres");
+    let title =
+        format!("{name}, {width}x{height}, depth {max_depth}, {sampler}, {}", counted(*spheres, "sphere"));
     let runs = scene.rows.iter().map(|row| row.runs.len()).max().unwrap_or(0);
-    let mut lines = vec![format!("{title}; medians of {runs} runs, with the least and the most")];
-    let heads = ["spp", "Mpaths/s", "least", "most", "x C89", "Mrays/s", "lanes %", "1/(MSE s)"];
+    let of_runs = if runs == 1 { "1 run".to_owned() } else { format!("medians of {runs} runs") };
+    let mut lines = vec![format!("{title}; {of_runs}")];
+    let heads = ["spp", "Mpaths/s", "min", "max", "x C89", "Mrays/s", "lanes %", "1/(MSE s)"];
     lines.push(line("", &heads.map(str::to_owned)));
     lines.extend(scene.rows.iter().map(row_line));
     lines
@@ -41,7 +44,7 @@ fn scene_lines(scene: &SceneFigures) -> Vec<String> {
 
 fn row_line(row: &Row) -> String {
     if let (Some(reason), true) = (&row.skipped, row.runs.is_empty()) {
-        return format!("{:NAME_WIDTH$} left out: {reason}", shortened(&row.name));
+        return format!("{:NAME_WIDTH$} skipped: {reason}", shortened(&row.name));
     }
     let dash = || "-".to_owned();
     let millions = |number: f64| format!("{:.*}", if number < 1e8 { 2 } else { 1 }, number / 1e6);
@@ -93,7 +96,7 @@ fn scale_lines(rows: &[ScaleFigures]) -> Vec<String> {
     let joined = |cells: [String; 9]| -> String {
         cells.iter().zip(widths).map(|(cell, width)| format!("{cell:>width$}")).collect()
     };
-    let title = "Fields of spheres; bytes are those of a sphere in the tables, hierarchy included".to_owned();
+    let title = "Fields of spheres; bytes per sphere in the prepared scene, hierarchy included".to_owned();
     let mut lines = vec![title, joined(head.map(str::to_owned))];
     for row in rows {
         let dash = || "-".to_owned();

@@ -3,46 +3,46 @@
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;
 
-/// How values are spaced.
+/// How values are spaced along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Equal differences are equally far apart.
+    /// Equal differences have equal distances.
     Linear,
-    /// Equal ratios are equally far apart; values must be above 0.
+    /// Equal ratios have equal distances; values must be above 0.
     Log,
 }
 
-/// One axis.
+/// An axis of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// What the axis shows, with the unit.
     pub label: String,
     /// How values are spaced.
     pub scale: Scale,
-    /// Least and largest value; `None`: what the points need.
+    /// Smallest and largest value; with `None`, the points determine them.
     pub limits: Option<[f64; 2]>,
 }
 
-/// Room beyond the outermost points, as a share of the axis.
+/// Margin beyond the outermost points, as a fraction of the axis.
 const MARGIN: f64 = 0.04;
 
-/// Ticks that an axis should have, about.
+/// Approximate number of ticks per axis.
 const TICKS: f64 = 6.0;
 
-/// An axis with its place on the paper: values are turned into positions, which are equally spaced.
+/// An axis laid out: it maps values to positions on a linear scale.
 #[derive(Clone)]
 pub(super) struct Ruler {
     scale: Scale,
-    /// Positions of both ends.
+    /// Positions of the two ends.
     pub range: Range<f64>,
-    /// Positions with labels.
+    /// Positions of ticks with labels.
     pub ticks: Vec<f64>,
-    /// Positions of fine lines of the grid.
+    /// Positions of the fine grid lines.
     fine_ticks: Vec<f64>,
 }
 
 impl Axis {
-    /// Across or up.
+    /// An axis whose limits the points determine.
     pub fn new(label: impl Into<String>, scale: Scale) -> Self {
         Axis { label: label.into(), scale, limits: None }
     }
@@ -71,12 +71,12 @@ impl Axis {
 }
 
 impl Ruler {
-    /// Where a value lies; `None` if the axis cannot show it.
+    /// Position of a value; `None` if the axis cannot show it.
     pub fn position(&self, value: f64) -> Option<f64> {
         position(self.scale, value)
     }
 
-    /// The label at a position.
+    /// The label of a position.
     pub fn text(&self, position: f64) -> String {
         match self.scale {
             Scale::Linear => plain_text(position),
@@ -126,7 +126,7 @@ fn linear_ticks(range: &Range<f64>) -> Vec<f64> {
     numbers.map(|number| number as f64 * step).collect()
 }
 
-/// Ticks at powers of ten, or where these are few at 1, 2 and 5 times them; fine ones at all digits.
+/// Ticks at powers of ten or, if there are few of these, also at 2 and 5 times them; fine ticks at every digit.
 fn log_ticks(range: &Range<f64>) -> (Vec<f64>, Vec<f64>) {
     let at = |digits: &[u32]| -> Vec<f64> {
         (range.start.floor() as i32..=range.end.ceil() as i32)
@@ -145,7 +145,7 @@ fn log_ticks(range: &Range<f64>) -> (Vec<f64>, Vec<f64>) {
     (ticks, fine)
 }
 
-/// A number without needless digits.
+/// A number without trailing zeros.
 fn plain_text(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
@@ -157,7 +157,7 @@ fn plain_text(value: f64) -> String {
     }
 }
 
-/// `10^position` as a label: 1e-5, 0.01, 50, 10⁶, 2·10⁶. The font has no raised minus.
+/// `10^position` as a label: 1e-5, 0.01, 50, 10⁶, 2·10⁶. The font has no superscript minus.
 fn power_text(position: f64) -> String {
     let power = (position + 1e-9).floor();
     let digit = 10_f64.powf(position - power).round();

@@ -1,4 +1,4 @@
-//! Figures in files.
+//! Writes figures to files.
 
 use super::style::{FAINT_INK, FONT, INK, Units, provide_font};
 use super::{Figure, Panel, bars, lines};
@@ -8,23 +8,23 @@ use plotters::prelude::*;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Pixels of a PNG for each point.
+/// Pixels of a PNG per point.
 const PNG_SCALE: u32 = 2;
 
-/// A PNG is drawn this many times larger each way and then made smaller, which smooths its edges.
+/// A PNG is drawn larger by this factor and then reduced, which smooths edges.
 const SMOOTHING: u32 = 2;
 
-/// How a figure is kept in a file.
+/// File format of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChartFormat {
     /// Pixels.
     Png,
-    /// Shapes.
+    /// Vector graphics.
     Svg,
 }
 
 impl ChartFormat {
-    /// The format that a file's ending stands for, in capitals or not.
+    /// The format that belongs to a file name's extension, in upper or lower case.
     ///
     /// # Errors
     /// [`ChartError::UnknownEnding`].
@@ -38,32 +38,32 @@ impl ChartFormat {
     }
 }
 
-/// A figure that cannot be written.
+/// Why a figure cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ChartError {
-    /// The file's name does not say what to write.
-    #[error("the name {} does not end in .png or .svg, which a chart's file must", path.display())]
+    /// The file name has no known extension.
+    #[error("cannot tell the format of {}; let the name of a chart end in .png or .svg", path.display())]
     UnknownEnding {
         /// The file.
         path: PathBuf,
     },
-    /// What plotters, the font or the encoder said.
-    #[error("cannot draw {}: {reason}; the figures are in the text and the JSON besides", path.display())]
+    /// plotters, the font or the encoder failed.
+    #[error("cannot draw {}: {reason}; the figures are also in the text and the JSON", path.display())]
     Draw {
         /// The file.
         path: PathBuf,
         /// What is wrong.
         reason: String,
     },
-    /// The file system.
+    /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
 }
 
-/// Writes a figure in place of `path`, in the format of its ending.
+/// Writes a figure to `path`, replacing an existing file, in the format of its extension.
 ///
 /// # Errors
-/// [`ChartError`]; the file that was there is then as it was.
+/// [`ChartError`]; an existing file is then unchanged.
 pub fn save(path: &Path, figure: &Figure) -> Result<(), ChartError> {
     let draw_error = |reason: String| ChartError::Draw { path: path.to_owned(), reason };
     if !provide_font() {
@@ -108,7 +108,7 @@ fn png(figure: &Figure) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The means of squares of pixels.
+/// Averages square groups of pixels.
 fn smaller(large: &[u8], width: usize, height: usize) -> Vec<u8> {
     let side = SMOOTHING as usize;
     let mut pixels = Vec::with_capacity(3 * width * height);

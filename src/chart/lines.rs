@@ -8,7 +8,7 @@ use plotters::prelude::*;
 
 type Drawn<B> = Result<(), DrawingAreaErrorKind<<B as DrawingBackend>::ErrorType>>;
 
-/// A point in positions of both rulers, with the positions of its spread.
+/// A point and its spread, as positions on both axes.
 struct Placed {
     at: (f64, f64),
     spread: Option<[f64; 2]>,
@@ -113,7 +113,7 @@ fn measured<'a, B: DrawingBackend + 'a>(
     Ok(())
 }
 
-/// A filled mark: circles, squares, diamonds and triangles take turns.
+/// A filled mark: circle, square, diamond or triangle in turn.
 fn mark(at: (i32, i32), radius: i32, index: usize) -> Polygon<(i32, i32)> {
     let corners: &[(f64, f64)] = match index % 4 {
         1 => &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],

@@ -1,8 +1,8 @@
-//! Charts as plain data, drawn into PNG or SVG files: lines with error bars on linear or logarithmic axes, and
-//! bars with what is to be read beside them.
+//! Charts as plain data, drawn to PNG or SVG files: lines with error bars on linear or logarithmic axes, and bars
+//! with notes beside them.
 //!
-//! plotters draws; no other room knows it. Text is set in the font of the window, which the program carries, so
-//! that no system library is needed.
+//! plotters draws them; no other room uses it. Text is set in the window's font, which is part of the program, so no
+//! system library is needed.
 
 mod axis;
 mod bars;
@@ -16,15 +16,15 @@ pub use file::{ChartError, ChartFormat, save};
 /// A picture of one or more charts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Says what is to be seen.
+    /// Title of the whole figure.
     pub title: String,
-    /// A smaller line below it: machine, settings; may be empty.
+    /// A smaller line below the title, such as machine and settings; may be empty.
     pub about: String,
     /// Width and height in points; a PNG has twice as many pixels each way.
     pub size: [u32; 2],
-    /// Charts side by side; the next ones stand below.
+    /// Number of charts side by side.
     pub columns: usize,
-    /// In reading order.
+    /// The charts in reading order.
     pub panels: Vec<Panel>,
 }
 
@@ -33,7 +33,7 @@ pub struct Figure {
 pub enum Panel {
     /// Lines over an axis.
     Lines(LineChart),
-    /// Horizontal bars, one a row.
+    /// Horizontal bars, one per row.
     Bars(BarChart),
 }
 
@@ -42,13 +42,13 @@ pub enum Panel {
 pub struct LineChart {
     /// What the chart shows; may be empty.
     pub title: String,
-    /// Across.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Up.
+    /// Vertical axis.
     pub y: Axis,
-    /// What is drawn, the first one lowest. Those without a name are left out of the legend.
+    /// What is drawn, from back to front. Series without a name are not in the legend.
     pub series: Vec<Series>,
-    /// Where the legend stands; `None`: there is none.
+    /// Position of the legend; `None` for no legend.
     pub legend: Option<Corner>,
 }
 
@@ -65,12 +65,12 @@ pub enum Corner {
     LowerRight,
 }
 
-/// Points that belong together.
+/// Points drawn as one line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// As the legend has it.
+    /// Name in the legend.
     pub name: String,
-    /// In the order in which they are joined. Points that an axis cannot show are left out.
+    /// Points in the order in which they are joined. Those that an axis cannot show are left out.
     pub points: Vec<Point>,
     /// How it is drawn.
     pub look: Look,
@@ -79,20 +79,20 @@ pub struct Series {
 /// How a series is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// A line with a mark at each point, in a colour and with a mark of its own.
+    /// A line with a mark at each point; each series has its own colour and mark.
     Measured,
-    /// A thin dashed grey line: a law to compare with.
+    /// A thin dashed grey line, to compare with a law.
     Guide,
 }
 
-/// A value and how far measurements of it spread.
+/// A value and the spread of its measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Across.
+    /// Horizontal value.
     pub x: f64,
-    /// Up.
+    /// Vertical value.
     pub y: f64,
-    /// Least and largest y, drawn as a band between the points.
+    /// Smallest and largest y, drawn as a band.
     pub spread: Option<[f64; 2]>,
 }
 
@@ -101,23 +101,23 @@ pub struct Point {
 pub struct BarChart {
     /// What the chart shows; may be empty.
     pub title: String,
-    /// What the bars' length means, with its unit.
+    /// What the length of the bars means, with the unit.
     pub label: String,
-    /// From the top down.
+    /// From top to bottom.
     pub bars: Vec<Bar>,
 }
 
 /// A bar and the texts of its row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bar {
-    /// Stands before it.
+    /// Text to the left of the bar.
     pub name: String,
-    /// Its length, at least 0.
+    /// Length of the bar, at least 0.
     pub value: f64,
-    /// Least and largest value.
+    /// Smallest and largest value.
     pub spread: Option<[f64; 2]>,
-    /// Stands behind it.
+    /// Text to the right of the bar.
     pub note: String,
-    /// Bars of one kind have one colour.
+    /// Bars of the same kind have the same colour.
     pub kind: usize,
 }

@@ -5,18 +5,19 @@ use std::sync::OnceLock;
 
 /// Text.
 pub const INK: RGBColor = RGBColor(0x22, 0x26, 0x2B);
-/// Text that matters less, and axes.
+/// Less important text, and axes.
 pub const FAINT_INK: RGBColor = RGBColor(0x5B, 0x63, 0x6B);
-/// Lines of the grid at labels.
+/// Grid lines at labels.
 pub const GRID: RGBColor = RGBColor(0xD5, 0xD9, 0xDD);
-/// Lines of the grid between them.
+/// Grid lines between labels.
 pub const FINE_GRID: RGBColor = RGBColor(0xEC, 0xEE, 0xF0);
-/// Lines to compare with.
+/// Lines for comparison.
 pub const GUIDE: RGBColor = RGBColor(0x8A, 0x92, 0x99);
 
-/// Colours that people with any kind of colour vision can tell apart.
+/// Colours that people with any kind of colour vision can distinguish.
 ///
-/// Source: Okabe and Ito, "Color Universal Design", 2008; without black and yellow, which are text and too light.
+/// Source: Okabe and Ito, "Color Universal Design", 2008; without black, which is used for text, and yellow, which is
+/// too light.
 const PALETTE: [RGBColor; 6] = [
     RGBColor(0x00, 0x72, 0xB2),
     RGBColor(0xD5, 0x5E, 0x00),
@@ -26,32 +27,32 @@ const PALETTE: [RGBColor; 6] = [
     RGBColor(0x56, 0xB4, 0xE9),
 ];
 
-/// The colour of series or kind number `index`.
+/// Colour of a series or kind of bar.
 pub fn color(index: usize) -> RGBColor {
     PALETTE[index % PALETTE.len()]
 }
 
-/// The font's name, which an SVG's reader knows too.
+/// Name of the font, which SVG readers also know.
 pub const FONT: &str = "sans-serif";
 
-/// Makes [`FONT`] known to plotters. Says whether it could.
+/// Registers [`FONT`] with plotters. Returns whether that succeeded.
 pub fn provide_font() -> bool {
     static IS_KNOWN: OnceLock<bool> = OnceLock::new();
     *IS_KNOWN
         .get_or_init(|| register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok())
 }
 
-/// Points to pixels of a drawing.
+/// Converts points to pixels of a drawing.
 #[derive(Clone, Copy)]
 pub struct Units(pub f64);
 
 impl Units {
-    /// A length as whole pixels.
+    /// A length in whole pixels.
     pub fn px(self, points: f64) -> i32 {
         (points * self.0).round() as i32
     }
 
-    /// The same for what cannot be negative.
+    /// The same for lengths that cannot be negative.
     pub fn size(self, points: f64) -> u32 {
         self.px(points).max(0).unsigned_abs()
     }

@@ -1,4 +1,4 @@
-//! The flags of `weekender bench`, and what they mean together.
+//! The flags of `weekender bench` and their validation.
 
 use super::error::CliError;
 use super::paths::Paths;
@@ -16,80 +16,80 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(super) struct RawBench {
     /// A built-in scene, field:N or a scene file; may be given several times [default: three-spheres and book]
-    #[arg(long, value_name = "NAME|FILE.toml", help_heading = "What is measured")]
+    #[arg(long, value_name = "NAME|FILE.toml", help_heading = "Scenes")]
     pub scene: Vec<String>,
-    /// Measure fields of so many spheres instead, each about three times as large as the one before
+    /// Measure fields of A to B spheres instead, each about three times as large as the one before
     #[arg(long, value_name = "A..B", value_parser = parse_counts, conflicts_with = "scene",
-          help_heading = "What is measured")]
+          help_heading = "Scenes")]
     pub scale: Option<Vec1<u64>>,
     /// Width and height in pixels, each 1 to 16384 [default: the scene's]
-    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "What is measured")]
+    #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Scenes")]
     pub size: Option<(u32, u32)>,
-    /// Samples per pixel of a run, at most [default: the scene's, if that makes no more than 75 million paths]
+    /// Most samples per pixel of a run [default: the scene's, but no more than 75 million paths]
     #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
-          allow_hyphen_values = true, help_heading = "What is measured")]
+          allow_hyphen_values = true, help_heading = "Scenes")]
     pub samples: Option<u64>,
-    /// Where random numbers come from [default: sobol, or the scene's]
-    #[arg(long, value_enum, help_heading = "What is measured")]
+    /// Source of random numbers [default: sobol, or the scene's]
+    #[arg(long, value_enum, help_heading = "Scenes")]
     pub sampler: Option<SamplerKind>,
 
-    /// Instruction levels with commas between them; auto is the best of this processor, all are all it has
+    /// Instruction levels, separated by commas; auto: the best of this processor, all: all that it has
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto",
-          help_heading = "Who is measured")]
+          help_heading = "Candidates")]
     pub isa: Levels,
-    /// Threads of the rows with several, 1 to 1024 [default: one a core]
+    /// Threads of the rows with several threads, 1 to 1024 [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1024),
-          allow_hyphen_values = true, help_heading = "Who is measured")]
+          allow_hyphen_values = true, help_heading = "Candidates")]
     pub threads: Option<u64>,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
-    #[arg(long, value_name = "SUBSTRING", help_heading = "Who is measured")]
+    /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
+    #[arg(long, value_name = "SUBSTRING", help_heading = "Candidates")]
     pub adapter: Option<String>,
 
-    /// Runs of each row, after a warm-up that is not counted, 1 to 1000 [default: 5, or 3 with --quick]
+    /// Runs of each row, after a warm-up that does not count, 1 to 1000 [default: 5, or 3 with --quick]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1000),
-          allow_hyphen_values = true, help_heading = "How")]
+          allow_hyphen_values = true, help_heading = "Measurement")]
     pub runs: Option<u64>,
-    /// Seconds that a run may take, about; slow rows take fewer samples [default: 10, or 1 with --quick]
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "How")]
+    /// Approximate time limit of a run in seconds; slow rows take fewer samples [default: 10, or 1 with --quick]
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "Measurement")]
     pub run_limit: Option<f64>,
-    /// Fewer samples and runs: a first impression in a minute
-    #[arg(long, help_heading = "How")]
+    /// Fewer samples and runs, for a first impression within a minute
+    #[arg(long, help_heading = "Measurement")]
     pub quick: bool,
 
-    /// Write all runs and figures as JSON; - is standard output
+    /// Write all runs and figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Files")]
     pub json: Option<PathBuf>,
-    /// Write a chart, .png or .svg
+    /// Write a chart as .png or .svg
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub plot: Option<PathBuf>,
-    /// Progress on standard error; auto: when it is a terminal
+    /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
 }
 
-/// Values of one flag. (clap would take a plain `Vec` for a flag that is given several times.)
+/// Values of a flag that itself takes a list. (clap would take a plain `Vec` for a flag that may be repeated.)
 pub(super) type Vec1<T> = Box<[T]>;
 
-/// What is measured, and how.
+/// Options of `weekender bench`.
 #[derive(Debug)]
 pub struct BenchOptions {
-    /// Pictures.
+    /// Scenes to measure.
     pub scenes: Vec<BenchScene>,
-    /// Sizes of fields, rising; empty: scenes are measured.
+    /// Numbers of spheres in fields, ascending; if empty, scenes are measured.
     pub scale: Vec<u64>,
     /// Instruction levels, the most capable last; at least one.
     pub levels: Vec<Isa>,
-    /// Threads of the rows with several.
+    /// Number of threads of the rows with several threads.
     pub threads: usize,
     /// The GPU that was named.
     pub adapter: Option<String>,
-    /// Runs of each row.
+    /// Number of runs of each row.
     pub runs: usize,
-    /// What a run may take, about.
+    /// Approximate time limit of a run.
     pub run_limit_seconds: f64,
-    /// Where the JSON goes.
+    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
-    /// Where the chart goes.
+    /// Where the chart is written.
     pub plot: Option<PathBuf>,
     /// Whether progress is shown.
     pub progress: ProgressChoice,
@@ -99,37 +99,37 @@ pub struct BenchOptions {
     path_limit: u64,
 }
 
-/// A picture that is measured.
+/// A scene to measure.
 #[derive(Debug)]
 pub struct BenchScene {
     /// Its name.
     pub name: String,
-    /// The job.
+    /// The job to render.
     pub job: RenderJob,
-    /// Samples per pixel of a run, at most.
+    /// Most samples per pixel of a run.
     pub samples: u64,
 }
 
-/// What is measured if nothing is asked for.
+/// Scenes that are measured if none is named.
 const DEFAULT_SCENES: [&str; 2] = ["three-spheres", "book"];
 
-/// Most paths of a run.
+/// Most paths of a run by default.
 const PATH_LIMIT: u64 = 75_000_000;
 const QUICK_PATH_LIMIT: u64 = 3_000_000;
 
 impl BenchOptions {
-    /// Samples per pixel of a run, at most.
+    /// Most samples per pixel of a run.
     pub fn samples_of(&self, recipe: &Recipe) -> u64 {
         let (width, height) = self.size.unwrap_or((recipe.settings.width, recipe.settings.height));
         let pixels = u64::from(width) * u64::from(height);
         self.samples.unwrap_or_else(|| {
             let most = (self.path_limit / pixels).max(1);
-            // A power of two is what Sobol's points like best.
+            // Sobol points are best at powers of two.
             if recipe.samples_per_pixel <= most { recipe.samples_per_pixel } else { 1 << most.ilog2() }
         })
     }
 
-    /// The job of a recipe as the flags change it. The recipe's scene is not copied.
+    /// The job of a recipe with the changes of the flags. The recipe's scene is not copied.
     ///
     /// # Errors
     /// See [`RenderJob::new`].
@@ -141,7 +141,7 @@ impl BenchOptions {
     }
 }
 
-/// What `weekender bench` is asked for.
+/// Validates the flags of `weekender bench`.
 pub(super) fn bench(raw: RawBench) -> Result<BenchOptions, CliError> {
     let available = Isa::available();
     let levels = match raw.isa {

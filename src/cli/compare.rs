@@ -1,4 +1,4 @@
-//! The flags of `weekender compare`, and what they mean together.
+//! The flags of `weekender compare` and their validation.
 
 use super::error::CliError;
 use super::paths::Paths;
@@ -15,28 +15,28 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct RawCompare {
-    /// A film or picture (.exr, .pfm, .png, .ppm) of any program, or what is to render it now: cpu, scalar,
-    /// baseline (multiply and add rounded apart), reference (f64) or gpu
+    /// A film or picture (.exr, .pfm, .png, .ppm) of any program, or the backend that renders it now: cpu, scalar,
+    /// baseline (multiply and add rounded separately), reference (f64) or gpu
     #[arg(value_name = "FIRST")]
     pub first: String,
-    /// As the first; a backend beside a film renders the same samples, beside a picture one of its size
+    /// Like the first; compared with a film, a backend renders the same samples, with a picture, the same size
     #[arg(value_name = "SECOND")]
     pub second: String,
 
-    /// Samples per pixel of what is rendered, 1 to 4294967296 [default: the film's, or 64]
+    /// Samples per pixel to render, 1 to 4294967296 [default: the film's, or 64]
     #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
           allow_hyphen_values = true, help_heading = "Comparison")]
     pub samples: Option<u64>,
-    /// What whole numbers in pictures of other programs stand for: the square root as in the book, linear, or sRGB
+    /// Meaning of integer values in pictures of other programs: square root as in the book, linear, or sRGB
     #[arg(long, value_enum, default_value = "gamma2", help_heading = "Comparison")]
     pub encoding: RawEncoding,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
     pub adapter: Option<String>,
-    /// Write the differences as a picture, from dark (1e-4) to bright (1), the worst blocks framed
+    /// Write the differences as a picture, from dark (1e-4) to bright (1), with frames around the worst blocks
     #[arg(long, value_name = "FILE.png", help_heading = "Comparison")]
     pub heat_map: Option<PathBuf>,
-    /// Write the figures as JSON; - is standard output
+    /// Write the figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
     pub json: Option<PathBuf>,
 
@@ -61,47 +61,47 @@ impl From<RawEncoding> for Encoding {
     }
 }
 
-/// Two pictures that are compared.
+/// Options of `weekender compare`.
 #[derive(Clone, Debug)]
 pub struct CompareOptions {
     /// The pictures.
     pub sides: [CompareSide; 2],
-    /// What backends render: what flags ask for, else what a file beside them says, at the size of that file.
+    /// What backends render: as the flags say, otherwise as the file on the other side says, at that file's size.
     pub recipe: Recipe,
-    /// Samples per pixel of what is rendered, if that was said.
+    /// Samples per pixel to render, if given.
     pub samples: Option<u64>,
-    /// What whole numbers stand for where the file does not say.
+    /// Meaning of integer values, if the file does not tell.
     pub encoding: Encoding,
-    /// Where the map of differences goes.
+    /// Where the map of differences is written.
     pub heat_map: Option<PathBuf>,
-    /// Where the figures go as JSON.
+    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
 }
 
-/// A picture that is compared.
+/// A picture to compare.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CompareSide {
-    /// It is there.
+    /// An existing file.
     File(PathBuf),
-    /// It is to be rendered.
+    /// A backend that renders it.
     Backend {
         /// One of [`BackendChoice::NAMES`].
         name: String,
-        /// What renders.
+        /// The backend.
         choice: BackendChoice,
     },
 }
 
-/// Samples that are compared unless a number is asked for.
+/// Samples per pixel if none are given.
 const COMPARE_SAMPLES: u64 = 64;
 
-/// Width that pictures which are rendered to be compared have at most, pixels, unless a size is asked for.
+/// Largest width of pictures rendered for a comparison if no size is given, pixels.
 const COMPARE_WIDTH: u32 = 400;
 
-/// What `weekender compare` is asked for.
+/// Validates the flags of `weekender compare`.
 pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
     if raw.picture.is_every_stage() {
-        let reason = "two pictures are compared; choose one stage";
+        let reason = "only two pictures can be compared; choose one stage";
         return Err(CliError::Together { flag: "compare", other: "--stage all", reason });
     }
     if let Some(path) = &raw.heat_map {
@@ -114,7 +114,7 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
     };
     let is_gpu = [&raw.first, &raw.second].into_iter().any(|name| name == "gpu");
     if adapter.is_some() && !is_gpu {
-        let reason = "it chooses among GPUs; leave it out";
+        let reason = "it chooses among GPUs; otherwise leave it out";
         return Err(CliError::Needs { flag: "--adapter", other: "gpu as a side", reason });
     }
     let sides = [side(raw.first), side(raw.second)];

@@ -1,4 +1,4 @@
-//! The flags of `weekender diff`, and what they mean together.
+//! The flags of `weekender diff` and their validation.
 
 use super::error::CliError;
 use super::paths::Paths;
@@ -13,66 +13,66 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct RawDiff {
-    /// The pixel, from 0,0 at the upper left
+    /// The pixel; 0,0 is the upper left one
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel, required_unless_present = "find",
           conflicts_with = "find", help_heading = "Path")]
     pub pixel: Option<[u32; 2]>,
-    /// The sample's number, from 0
+    /// Index of the sample, from 0
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(0..SAMPLE_LIMIT),
           allow_hyphen_values = true, default_value = "0", conflicts_with = "find", help_heading = "Path")]
     pub sample: u64,
-    /// Look through this many samples of every pixel for the one that differs most; without --size the picture
-    /// is made at most 200 pixels wide for it
+    /// Search this many samples of every pixel for the one that differs most; without --size, the picture is at most
+    /// 200 pixels wide
     #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
           num_args = 0..=1, default_missing_value = "4", help_heading = "Path")]
     pub find: Option<u64>,
 
-    /// Who is compared: two of cpu (the level --isa), baseline (multiply and add rounded apart), reference (f64)
-    /// and gpu
+    /// The two backends to compare: cpu (at the level --isa), baseline (multiply and add rounded separately),
+    /// reference (f64) or gpu
     #[arg(long, value_name = "A,B", value_parser = parse_sides, default_value = "cpu,gpu",
           help_heading = "Comparison")]
     pub sides: [RawSide; 2],
-    /// Largest difference that counts as none, as a share of the larger value
+    /// Largest relative difference that does not count
     #[arg(long, value_name = "SHARE", value_parser = parse_tolerance, allow_hyphen_values = true,
           default_value = "1e-4", help_heading = "Comparison")]
     pub tolerance: f64,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
     pub adapter: Option<String>,
     /// Instruction level of the side cpu: auto, baseline, sse4.2, avx2, avx512, neon
     #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
           help_heading = "Comparison")]
     pub isa: Level,
-    /// Write both paths and the verdict as JSON; - is standard output
+    /// Write both paths and the verdict as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Comparison")]
     pub json: Option<PathBuf>,
 
     #[command(flatten)]
     pub picture: RawPicture,
-    /// As for rendering: whether samples are kept in two halves, which decides their numbers
+    /// Whether samples are kept in two halves, as for rendering; it determines their random numbers
     /// [default: on, or the scene's]
     #[arg(long, value_enum, help_heading = "Picture")]
     pub estimate_error: Option<RawSwitch>,
 }
 
-/// A path that is traced twice and compared.
+/// Options of `weekender diff`.
 #[derive(Clone, Debug)]
 pub struct DiffOptions {
-    /// What the job is called.
+    /// Name of the scene.
     pub scene: String,
-    /// The job; that of a search is small unless a size was asked for.
+    /// The job; for a search, it is small unless a size is given.
     pub job: RenderJob,
-    /// Which path.
+    /// The path.
     pub path: PathChoice,
-    /// Who traces it.
+    /// The backends.
     pub sides: [SideChoice; 2],
-    /// Largest difference that counts as none, as a share of the larger value.
+    /// Largest relative difference that does not count.
     pub tolerance: f64,
-    /// Where both paths go as JSON.
+    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
 }
 
-/// Who traces a path that is compared.
+/// A backend that traces the path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SideChoice {
     /// `f32` on the CPU.
@@ -83,38 +83,42 @@ pub enum SideChoice {
     Gpu(GpuOptions),
 }
 
-/// Which path is compared.
+/// How the path is chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PathChoice {
-    /// This one.
+    /// The path is given.
     Given {
-        /// Column and row, within the picture.
+        /// Column and row, inside the picture.
         pixel: [u32; 2],
         /// Index of the sample.
         sample: u64,
     },
-    /// That which differs most among samples `0 .. samples` of all pixels.
+    /// The path that differs most among samples `0 .. samples` of all pixels.
     Find {
-        /// Samples of every pixel.
+        /// Number of samples per pixel.
         samples: u64,
     },
 }
 
-/// Width that a search makes a picture at most, pixels.
+/// Largest width of a picture that is searched if no size is given, pixels.
 const FIND_WIDTH: u32 = 200;
 
-/// What `weekender diff` is asked for.
+/// Validates the flags of `weekender diff`.
 pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
     if raw.picture.is_every_stage() {
-        let reason = "one path is compared; choose one stage";
+        let reason = "only one path can be compared; choose one stage";
         return Err(CliError::Together { flag: "diff", other: "--stage all", reason });
     }
     for (flag, is_given, side, other) in [
-        ("--adapter", raw.adapter.is_some(), RawSide::Gpu, "gpu among --sides"),
-        ("--isa", raw.isa.0.is_some(), RawSide::Cpu, "cpu among --sides"),
+        ("--adapter", raw.adapter.is_some(), RawSide::Gpu, "the side gpu in --sides"),
+        ("--isa", raw.isa.0.is_some(), RawSide::Cpu, "the side cpu in --sides"),
     ] {
         if is_given && !raw.sides.contains(&side) {
-            return Err(CliError::Needs { flag, other, reason: "it is for that side alone; leave it out" });
+            return Err(CliError::Needs {
+                flag,
+                other,
+                reason: "it applies only to that side; otherwise leave it out",
+            });
         }
     }
     let json = raw.json.map(JsonTarget::from);

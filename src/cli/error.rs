@@ -1,4 +1,4 @@
-//! Why flags cannot be carried out.
+//! Errors on the command line.
 
 use crate::memory::MemoryError;
 use crate::output::OutputError;
@@ -8,114 +8,114 @@ use crate::saved::OpenError;
 use crate::stages::UnknownStage;
 use std::path::{Path, PathBuf};
 
-/// Flags that cannot be carried out.
+/// Why the flags cannot be carried out.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// No such scene.
+    /// There is no such scene.
     #[error(transparent)]
     SceneName(#[from] SceneNameError),
-    /// No such stage.
+    /// There is no such stage.
     #[error(transparent)]
     StageName(#[from] UnknownStage),
-    /// A scene file that cannot be read.
+    /// The scene file cannot be read.
     #[error(transparent)]
     SceneFile(#[from] file::FileError),
-    /// A value that no picture can be made with.
+    /// The job is not valid.
     #[error(transparent)]
     Job(#[from] JobError),
-    /// A picture or a scene that does not fit into memory.
+    /// A picture or scene does not fit into memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),
-    /// A film that cannot go on.
+    /// The film cannot be resumed.
     #[error(transparent)]
     Open(#[from] OpenError),
-    /// The file's name or what it says of itself.
+    /// The name of a picture has no known extension, or the picture cannot be read.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// No such device here.
+    /// The backend is not available.
     #[error(transparent)]
     Backend(#[from] crate::backends::BackendError),
-    /// A chart's name.
+    /// The name of a chart has no known extension.
     #[error(transparent)]
     Chart(#[from] crate::chart::ChartError),
-    /// Two flags that do not go together.
+    /// Two flags exclude each other.
     #[error("{flag} cannot be used with {other}: {reason}")]
     Together {
-        /// A flag.
+        /// The flag.
         flag: &'static str,
-        /// Another, with its value if that matters.
+        /// The other flag, with its value if that matters.
         other: &'static str,
-        /// Why, and what to do.
+        /// The reason, and what to do.
         reason: &'static str,
     },
-    /// A flag that needs another.
+    /// A flag requires another.
     #[error("{flag} needs {other}: {reason}")]
     Needs {
-        /// A flag.
+        /// The flag.
         flag: &'static str,
-        /// What is missing.
+        /// The missing flag.
         other: &'static str,
-        /// Why, and what to do.
+        /// The reason, and what to do.
         reason: &'static str,
     },
-    /// A pixel beside the picture.
-    #[error("--pixel is {x},{y}, but the picture has {width}x{height} pixels: the last is {},{}", width - 1, height - 1)]
+    /// The pixel is outside the picture.
+    #[error("--pixel is {x},{y}, but the picture has {width}x{height} pixels: the last one is {},{}", width - 1, height - 1)]
     Pixel {
         /// Column.
         x: u32,
         /// Row.
         y: u32,
-        /// Pixels across.
+        /// Width of the picture in pixels.
         width: u32,
-        /// Pixels down.
+        /// Height of the picture in pixels.
         height: u32,
     },
-    /// No such backend.
+    /// There is no such backend.
     #[error("there is no backend {name:?}; choose among {choices}")]
     BackendName {
-        /// What was asked for.
+        /// The name as given.
         name: String,
-        /// What there is.
+        /// The names to choose from.
         choices: String,
     },
-    /// Two outputs in one file.
-    #[error("{first} and {second} are one file, {}; give them different names", both(path, other))]
+    /// Two outputs would be written to the same file.
+    #[error("{first} and {second} are the same file, {}; give them different names", both(path, other))]
     SameFile {
-        /// A flag.
+        /// The first flag.
         first: &'static str,
-        /// Another.
+        /// The second flag.
         second: &'static str,
-        /// The first's file.
+        /// The file as the first flag names it.
         path: PathBuf,
-        /// The same file as the other names it.
+        /// The same file as the second flag names it.
         other: PathBuf,
     },
-    /// An output in the place of an input.
+    /// An output would replace an input.
     #[error("{output} {} would replace the file that {input} reads; give it another name", path.display())]
     Overwrites {
-        /// The output's flag.
+        /// The flag of the output.
         output: &'static str,
-        /// Its file.
+        /// The file.
         path: PathBuf,
-        /// The input's flag.
+        /// The flag of the input.
         input: &'static str,
     },
-    /// A file whose name says that it is something else.
+    /// The name of a file does not fit its kind.
     #[error("{flag} is {}, but the name of {what} must end in {ending}", path.display())]
     Ending {
         /// The flag.
         flag: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the file is.
+        /// The kind of file.
         what: &'static str,
-        /// What its name must end in, with the dot.
+        /// The required extension, with the dot.
         ending: &'static str,
     },
-    /// Two scenes of one name, which the report could not tell apart.
-    #[error("--scenes has two of the name {name}; leave one out, or give its file another name")]
+    /// Two scenes have the same name, so the report could not tell them apart.
+    #[error("--scenes has two scenes called {name}; leave one out or rename its file")]
     SameScene {
-        /// Their name.
+        /// The name.
         name: String,
     },
 }

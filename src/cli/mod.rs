@@ -1,4 +1,4 @@
-//! The command line: what was typed, checked, as options that can be carried out.
+//! The command line, parsed and validated.
 
 mod bench;
 mod compare;
@@ -30,44 +30,44 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use subcommands::{Raw, RawCommand};
 
-/// What the program is asked to do.
+/// What the program is to do.
 #[derive(Debug)]
 pub enum Request {
     /// Open the window.
     Window(Box<WindowOptions>),
-    /// Measure speed.
+    /// Measure the speed.
     Bench(Box<BenchOptions>),
     /// List scenes, stages and devices.
     List,
     /// Write a scene file and render nothing.
     SaveScene(Box<SaveSceneOptions>),
-    /// Add films.
+    /// Merge films.
     Merge(MergeOptions),
-    /// Compare a path.
+    /// Compare a path on two backends.
     Diff(Box<DiffOptions>),
     /// Compare two pictures.
     Compare(Box<CompareOptions>),
     /// Measure error against time.
     Report(Box<ReportOptions>),
-    /// Render stiff scenes and judge them.
+    /// Render stiff scenes and check the results.
     Stress(Box<StressOptions>),
     /// Render to files.
     Batch(Box<BatchOptions>),
 }
 
-/// Films to be added.
+/// Options of `weekender merge`.
 #[derive(Clone, Debug)]
 pub struct MergeOptions {
     /// The films.
     pub films: Vec<PathBuf>,
-    /// Where the sum goes.
+    /// Where the result is written.
     pub out: PathBuf,
 }
 
-/// Reads the command line; the first argument is the program's name.
+/// Parses the command line; the first argument is the program's name.
 ///
 /// # Errors
-/// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written then.
+/// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let typed = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());

@@ -1,11 +1,11 @@
-//! Whether the files of a command get in each other's way, found out before any is written.
+//! Checks whether the files of a command conflict, before any of them is written.
 
 use super::error::CliError;
 use super::values::JsonTarget;
 use crate::files::FileIdentity;
 use std::path::{Path, PathBuf};
 
-/// The files that a command reads and writes, each with the flag that names it.
+/// The files that a command reads and writes, each with its flag.
 #[derive(Debug, Default)]
 pub(super) struct Paths {
     inputs: Vec<Named>,
@@ -33,19 +33,19 @@ impl Named {
 }
 
 impl Paths {
-    /// Adds a file that is read, if there is one.
+    /// Adds a file to read, if there is one.
     pub fn read(mut self, flag: &'static str, path: Option<&Path>) -> Self {
         self.inputs.extend(path.map(|path| Named::new(flag, path)));
         self
     }
 
-    /// Adds a file that is written, if there is one.
+    /// Adds a file to write, if there is one.
     pub fn write(mut self, flag: &'static str, path: Option<&Path>) -> Self {
         self.outputs.extend(path.map(|path| Named::new(flag, path)));
         self
     }
 
-    /// Adds a file for JSON that is written, if it is a file.
+    /// Adds a JSON file to write, unless it is standard output.
     pub fn write_json(self, target: Option<&JsonTarget>) -> Self {
         let path = match target {
             Some(JsonTarget::File(path)) => Some(path.as_path()),
@@ -54,8 +54,8 @@ impl Paths {
         self.write("--json", path)
     }
 
-    /// Refuses two outputs in one file, and an output in the place of an input. `may_replace` lists outputs and the
-    /// inputs whose content they take over.
+    /// Returns an error if two outputs are the same file or an output would replace an input. `may_replace` lists the
+    /// outputs that may replace an input, because they continue it.
     pub fn check(&self, may_replace: &[(&str, &str)]) -> Result<(), CliError> {
         for (index, second) in self.outputs.iter().enumerate() {
             if let Some(first) = self.outputs[..index].iter().find(|first| first.is_same_as(second)) {

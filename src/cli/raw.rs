@@ -1,5 +1,5 @@
-//! The flags of rendering as they are typed, and those that subcommands share. A subcommand's own stand in its
-//! file.
+//! The flags for rendering as clap parses them, and those that subcommands share. The flags of each subcommand are in
+//! its own file.
 
 use super::values::{
     Level, Simd, parse_duration, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds,
@@ -26,7 +26,7 @@ pub(super) struct RawRender {
     #[command(flatten)]
     pub picture: RawPicture,
 
-    /// Samples per pixel, 1 to 4294967296 [default: the scene's; no limit with --time-limit or --noise-target]
+    /// Samples per pixel, 1 to 4294967296 [default: the scene's; unlimited with --time-limit or --noise-target]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
           allow_hyphen_values = true, help_heading = "When to stop (the first one met)")]
     pub samples: Option<u64>,
@@ -34,29 +34,29 @@ pub(super) struct RawRender {
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_hyphen_values = true,
           help_heading = "When to stop (the first one met)")]
     pub time_limit: Option<f64>,
-    /// Estimated error: root of the mean square over pixels and channels, linear radiance
+    /// Estimated error: root mean square over pixels and channels, linear radiance
     #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
           help_heading = "When to stop (the first one met)")]
     pub noise_target: Option<f64>,
-    /// Render samples A to B - 1 only, a part of a picture for `weekender merge`
+    /// Render only samples A to B - 1, a part of a picture for `weekender merge`
     #[arg(long, value_name = "A..B", value_parser = parse_sample_range, conflicts_with = "samples",
           help_heading = "When to stop (the first one met)")]
     pub sample_range: Option<Range<u64>>,
-    /// Keep samples in two halves, which tell the error; off takes half the memory
+    /// Keep samples in two halves, which is needed to estimate the error; off halves the memory
     /// [default: on, or the scene's]
     #[arg(long, value_enum, help_heading = "When to stop (the first one met)")]
     pub estimate_error: Option<RawSwitch>,
 
-    /// What renders; auto is the fastest there is; cpu,gpu are both at once, into one film
+    /// What renders; auto: the fastest available; cpu,gpu: both at once, into one film
     #[arg(long, value_enum, default_value = "auto", help_heading = "Device")]
     pub device: RawDevice,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "Device")]
     pub adapter: Option<String>,
-    /// Lose the GPU after so many dispatches, to see that the CPU goes on (fault injection)
+    /// Lose the GPU after this many dispatches, to see that the CPU continues (fault injection)
     #[arg(long, value_name = "DISPATCHES", help_heading = "Device")]
     pub simulate_device_lost: Option<u64>,
-    /// Use up the GPU's memory after so many dispatches: another injected fault
+    /// Use up the GPU's memory after this many dispatches (fault injection)
     #[arg(
         long,
         value_name = "DISPATCHES",
@@ -65,16 +65,16 @@ pub(super) struct RawRender {
         help_heading = "Device"
     )]
     pub simulate_out_of_memory: Option<u64>,
-    /// Make a mistake after so many dispatches: another injected fault
+    /// Make an invalid call after this many dispatches (fault injection)
     #[arg(long, value_name = "DISPATCHES", hide = true,
           conflicts_with_all = ["simulate_device_lost", "simulate_out_of_memory"], help_heading = "Device")]
     pub simulate_invalid_call: Option<u64>,
-    /// Let the GPU not answer for 10 s after so many dispatches: another injected fault
+    /// Let the GPU not answer for 10 s after this many dispatches (fault injection)
     #[arg(long, value_name = "DISPATCHES", hide = true,
           conflicts_with_all = ["simulate_device_lost", "simulate_out_of_memory", "simulate_invalid_call"],
           help_heading = "Device")]
     pub simulate_hang: Option<u64>,
-    /// Let the CPU's tracer panic after so many tiles: another injected fault
+    /// Let the CPU's tracer panic after this many tiles (fault injection)
     #[arg(long, value_name = "TILES", hide = true, help_heading = "Device")]
     pub simulate_panic: Option<u64>,
     /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16
@@ -85,80 +85,81 @@ pub(super) struct RawRender {
     #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
           help_heading = "Device")]
     pub isa: Level,
-    /// Threads of the CPU, 1 to 1024 [default: one a core]
+    /// CPU threads, 1 to 1024 [default: one per core]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1024),
           allow_hyphen_values = true, help_heading = "Device")]
     pub threads: Option<u64>,
 
-    /// The picture: .png, .ppm (binary P6) or .exr (linear film); with --stage all the directory
+    /// The picture: .png, .ppm (binary P6) or .exr (linear film); with --stage all, the directory
     /// [default: SCENE.png]
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub out: Option<PathBuf>,
-    /// Keep the film, so that it can be resumed or merged; written while it renders and at the end, after Ctrl-C, too
+    /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C
     #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
     pub checkpoint: Option<PathBuf>,
-    /// Time between two writings of --checkpoint: what a power cut can cost; 0.1s to 30d, such as 30s, 5m or 1h
+    /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
+    /// 1h
     /// [default: 60s]
     #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true,
           help_heading = "Files")]
     pub every: Option<Duration>,
-    /// Go on with a film; without --scene and --stage its own scene is taken
+    /// Continue a film; without --scene and --stage, with its own scene
     #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
     pub resume: Option<PathBuf>,
-    /// Write the scene, as the other flags make it, as a scene file
+    /// Write the scene, with the changes of the other flags, as a scene file
     #[arg(long, value_name = "FILE.toml", help_heading = "Files")]
     pub save_scene: Option<PathBuf>,
-    /// Write the closing figures as JSON; - is standard output
+    /// Write the final figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Files")]
     pub json: Option<PathBuf>,
 
-    /// What draws the window; auto: wgpu, but gl where no adapter is hardware
+    /// What draws the window; auto: wgpu, or gl if there is no hardware adapter
     #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
     pub draw_with: DrawWith,
 
-    /// Write the times of the window's frames
+    /// Write the times of the window's frames to a file
     #[arg(long, value_name = "FILE", hide = true)]
     pub frame_log: Option<PathBuf>,
 
-    /// Progress on standard error; auto: when it is a terminal
+    /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
 }
 
-/// What is rendered, for rendering and comparing alike.
+/// What is rendered; rendering and comparing share these flags.
 #[derive(Debug, Args)]
 pub(super) struct RawPicture {
     /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "stage", help_heading = "Picture")]
     pub scene: Option<String>,
-    /// A stage of the book; "all" renders every one into the directory --out
+    /// A stage of the book; "all" renders all of them to the directory --out
     #[arg(long, value_name = "ID", help_heading = "Picture")]
     pub stage: Option<String>,
     /// Width and height in pixels, each 1 to 16384 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Picture")]
     pub size: Option<(u32, u32)>,
-    /// Most rays of a path, the camera's included, 1 to 10000 [default: the scene's]
+    /// Most rays per path, including the camera's, 1 to 10000 [default: the scene's]
     #[arg(long, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(1..=i64::from(DEPTH_LIMIT)),
           allow_hyphen_values = true, help_heading = "Picture")]
     pub depth: Option<u32>,
-    /// Where random numbers come from: scrambled Sobol points, or independent ones as in the book
+    /// Source of random numbers: scrambled Sobol points, or independent numbers as in the book
     /// [default: sobol, or the scene's]
     #[arg(long, value_enum, help_heading = "Picture")]
     pub sampler: Option<SamplerKind>,
-    /// Chooses among pictures that differ in noise alone, 0 to 4294967295 [default: 0, or the scene's]
+    /// Seed: pictures with different seeds differ only in their noise, 0 to 4294967295 [default: 0, or the scene's]
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..),
           allow_hyphen_values = true, help_heading = "Picture")]
     pub seed: Option<u32>,
 
-    /// The eye, scene units
+    /// Position of the eye, scene units
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub look_from: Option<DVec3>,
-    /// A point in the middle of the picture, scene units
+    /// The point in the centre of the picture, scene units
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub look_at: Option<DVec3>,
-    /// What is up in the picture; its length does not matter
+    /// Up direction of the picture; its length does not matter
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub vup: Option<DVec3>,
@@ -166,27 +167,27 @@ pub(super) struct RawPicture {
     #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub vfov: Option<f64>,
-    /// Angle of the cone from the focus point to the lens, 0 (a pinhole) to below 179 degrees
+    /// Angle of the cone from the focus point to the lens, from 0 (a pinhole) to below 179 degrees
     #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub defocus_angle: Option<f64>,
-    /// Distance to the plane that is sharp, more than 0 scene units
+    /// Distance to the plane in focus, above 0 scene units
     #[arg(long, value_name = "UNITS", value_parser = parse_number, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub focus_distance: Option<f64>,
 }
 
 impl RawPicture {
-    /// Whether all stages are asked for, not one picture.
+    /// Whether all stages are requested instead of one picture.
     pub fn is_every_stage(&self) -> bool {
         self.stage.as_deref() == Some("all")
     }
 }
 
-/// What draws the window; it has nothing to do with what traces.
+/// What draws the window; independent of what traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, ValueEnum)]
 pub enum DrawWith {
-    /// What is faster on this machine.
+    /// Whatever is faster on this machine.
     #[default]
     Auto,
     /// Vulkan, Metal or DX12.
@@ -224,15 +225,15 @@ pub(super) enum RawSwitch {
 /// Whether progress is shown on standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ProgressChoice {
-    /// If it is a terminal.
+    /// If standard error is a terminal.
     Auto,
-    /// Always; as lines where it is no terminal.
+    /// Always; as lines if it is not a terminal.
     On,
     /// Never.
     Off,
 }
 
-/// Puts the flags' values in place of the recipe's.
+/// Replaces values of the recipe by those of the flags.
 pub(super) fn change(recipe: &mut Recipe, raw: &RawPicture, estimate_error: Option<RawSwitch>) {
     fn set<T: Copy>(value: &mut T, flag: Option<T>) {
         if let Some(flag) = flag {

@@ -1,4 +1,4 @@
-//! What the flags of rendering mean together, for the window and for files.
+//! Validates the flags for rendering, in the window or to files.
 
 use super::Request;
 use super::error::CliError;
@@ -18,82 +18,82 @@ use crate::stages::Stage;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Time between two writings of a film while it renders, unless another is asked for.
+/// Interval at which a checkpoint is written by default.
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
 
-/// What `--batch` renders.
+/// Options of `--batch`.
 #[derive(Debug)]
 pub struct BatchOptions {
-    /// The pictures, one or those of all stages.
+    /// The pictures: one, or those of all stages.
     pub renders: Vec<RenderOptions>,
-    /// The directory of all stages' pictures, to be made if need be.
+    /// The directory for the pictures of all stages, which is created if necessary.
     pub directory: Option<PathBuf>,
-    /// A scene file to be written besides.
+    /// A scene file to write as well.
     pub save_scene: Option<SaveSceneOptions>,
-    /// Who renders.
+    /// The backend.
     pub backend: BackendChoice,
     /// Whether progress is shown.
     pub progress: ProgressChoice,
-    /// Where the closing figures go.
+    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
 }
 
-/// What the window opens with.
+/// Options of the window.
 #[derive(Clone, Debug)]
 pub struct WindowOptions {
-    /// What is rendered.
+    /// The picture at the start.
     pub recipe: Recipe,
-    /// The same without the changes that flags make.
+    /// The same without the changes of the flags.
     pub unchanged: Recipe,
-    /// The stage that it is from.
+    /// The stage that it comes from.
     pub stage: Option<&'static Stage>,
-    /// The scene file that it is from.
+    /// The scene file that it comes from.
     pub file: Option<PathBuf>,
-    /// Who renders.
+    /// The backend.
     pub backend: BackendChoice,
-    /// Whether flags said who renders.
+    /// Whether flags chose the backend.
     pub is_device_given: bool,
-    /// When it ends, if that was said.
+    /// When to stop, if given.
     pub stop: Option<Stop>,
-    /// The film that goes on.
+    /// The film to resume.
     pub resume: Option<PathBuf>,
     /// What draws the window.
     pub draw_with: DrawWith,
-    /// Where the times of the window's frames go.
+    /// File for the times of the window's frames.
     pub frame_log: Option<PathBuf>,
 }
 
-/// One picture.
+/// A picture to render.
 #[derive(Clone, Debug)]
 pub struct RenderOptions {
-    /// What is rendered.
+    /// What to render.
     pub recipe: Recipe,
-    /// The recipe, checked.
+    /// The validated job of the recipe.
     pub job: RenderJob,
-    /// The stage that it is from.
+    /// The stage that it comes from.
     pub stage: Option<&'static Stage>,
-    /// When it ends.
+    /// When to stop.
     pub plan: Plan,
-    /// The picture's file.
+    /// File of the picture.
     pub out: PathBuf,
-    /// Where the film is kept.
+    /// File of the film, if it is kept.
     pub checkpoint: Option<PathBuf>,
-    /// Time between two writings of that film while it renders.
+    /// Interval at which the film is written.
     pub every: Duration,
-    /// The film that goes on.
+    /// The film to resume.
     pub resume: Option<PathBuf>,
 }
 
-/// A scene file to be written.
+/// A scene file to write.
 #[derive(Clone, Debug)]
 pub struct SaveSceneOptions {
-    /// What it will hold; it has been checked.
+    /// Its content, which has been validated.
     pub recipe: Recipe,
-    /// The file.
+    /// Path of the file.
     pub path: PathBuf,
 }
 
-/// What the flags ask for, but `--list` and the subcommands.
+/// Validates the flags, except `--list` and the subcommands.
 pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
     let backend = backend(&raw)?;
     check_film_names(&raw)?;
@@ -139,7 +139,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         return Err(CliError::Needs {
             flag: "--stage all",
             other: "--batch",
-            reason: "the window shows one stage at a time, and leads from each to the next",
+            reason: "the window shows one stage at a time, with buttons for the previous and the next one",
         });
     }
     for (flag, is_given) in [
@@ -199,7 +199,7 @@ fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOpt
     }
     OutputFormat::from_path(&out)?;
     if raw.every.is_some() && raw.checkpoint.is_none() {
-        let reason = "it says how often the film is written there";
+        let reason = "it is the interval at which that film is written";
         return Err(CliError::Needs { flag: "--every", other: "--checkpoint FILE.exr", reason });
     }
     Ok(RenderOptions {
@@ -223,7 +223,7 @@ fn check_film_names(raw: &RawRender) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Refuses outputs that would replace each other or what is read. A film that goes on may be replaced by its
+/// Returns an error if outputs would replace each other or an input. A resumed film may be replaced by its
 /// continuation.
 fn check_paths(
     raw: &RawRender,
@@ -272,7 +272,11 @@ fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
     let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { injection.map(|(_, flag)| flag) };
     if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, raw.device) {
         let other = if raw.device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
-        return Err(CliError::Together { flag, other, reason: "it is for the GPU; leave one of them out" });
+        return Err(CliError::Together {
+            flag,
+            other,
+            reason: "it applies only to the GPU; leave one of them out",
+        });
     }
     match raw.device {
         RawDevice::Auto if raw.adapter.is_some() => Ok(BackendChoice::Gpu(gpu)),
@@ -289,7 +293,7 @@ fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
     }
 }
 
-/// The directory of `--stage all`, which goes with few other flags.
+/// The directory of `--stage all`, which excludes many other flags.
 fn directory_of_all(raw: &RawRender) -> Result<PathBuf, CliError> {
     let single = [
         ("--checkpoint", raw.checkpoint.is_some()),
@@ -297,13 +301,13 @@ fn directory_of_all(raw: &RawRender) -> Result<PathBuf, CliError> {
         ("--save-scene", raw.save_scene.is_some()),
     ];
     if let Some((flag, _)) = single.into_iter().find(|(_, is_given)| *is_given) {
-        let reason = "it stands for one picture; choose one stage";
+        let reason = "it applies to a single picture; choose one stage";
         return Err(CliError::Together { flag, other: "--stage all", reason });
     }
     raw.out.clone().ok_or(CliError::Needs {
         flag: "--stage all",
         other: "--out DIR",
-        reason: "it writes a picture for every stage",
+        reason: "it writes one picture for each stage",
     })
 }
 

@@ -1,4 +1,4 @@
-//! The flags of `weekender report`, and what they mean together.
+//! The flags of `weekender report` and their validation.
 
 use super::error::CliError;
 use super::paths::Paths;
@@ -15,16 +15,17 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(super) struct RawReport {
-    /// Where the report goes: report.md, .csv and .json, error-vs-time.png and .svg, references
+    /// Directory of the report: report.md, .csv and .json, error-vs-time.png and .svg, references
     #[arg(long, value_name = "DIRECTORY")]
     pub out: PathBuf,
 
-    /// See whether the error that pictures tell of themselves is true. Unless said otherwise: 24 pictures of 96x54
-    /// a curve, 256 samples, no time limit; three-spheres, book, close-up, hollow glass from near by; cpu, and gpu
-    /// where there is one
+    /// Check the accuracy of the error estimates. Other defaults apply: 24 pictures of 96x54 per curve, 256 samples, no
+    /// time limit; scenes three-spheres, book, close-up and hollow glass from nearby; backends cpu and, if there is
+    /// one,
+    /// gpu
     #[arg(long, help_heading = "What is compared")]
     pub calibration: bool,
-    /// Built-in scenes, field:N or scene files, with commas between them [default: three-spheres,book]
+    /// Built-in scenes, field:N or scene files, separated by commas [default: three-spheres,book]
     #[arg(
         long = "scenes",
         alias = "scene",
@@ -34,7 +35,7 @@ pub(super) struct RawReport {
     )]
     pub scenes: Vec<String>,
     /// Backends: cpu (the widest packets), scalar (one lane), baseline, reference (f64), gpu,
-    /// c89 (the plain C program) [default: cpu,scalar, gpu where there is one, c89 where there is a C compiler]
+    /// c89 (the plain C program) [default: cpu,scalar, gpu if there is one, c89 if there is a C compiler]
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', help_heading = "What is compared")]
     pub backends: Vec<String>,
     /// Samplers
@@ -47,18 +48,18 @@ pub(super) struct RawReport {
         help_heading = "What is compared"
     )]
     pub samplers: Vec<SamplerKind>,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
+    /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "What is compared")]
     pub adapter: Option<String>,
 
     /// Width and height of all pictures in pixels, each 1 to 16384 [default: 160x90]
     #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "How it is measured")]
     pub size: Option<(u32, u32)>,
-    /// Pictures of each curve, which differ in their random numbers alone, 1 to 1000 [default: 8]
+    /// Pictures per curve, which differ only in their random numbers, 1 to 1000 [default: 8]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000),
           allow_hyphen_values = true, help_heading = "How it is measured")]
     pub seeds: Option<u32>,
-    /// Seconds of tracing for all pictures of a curve; a picture ends with the last doubling that fits in
+    /// Seconds of tracing for all pictures of a curve; each picture ends with the last doubling that fits
     /// [default: 12]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, allow_hyphen_values = true,
           help_heading = "How it is measured")]
@@ -67,7 +68,7 @@ pub(super) struct RawReport {
     #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
           allow_hyphen_values = true, help_heading = "How it is measured")]
     pub max_samples: Option<u64>,
-    /// Keep samples in two halves, which tell the error; off makes one set of points of them
+    /// Keep samples in two halves, which is needed to estimate the error; off keeps them as a single point set
     #[arg(
         long,
         value_enum,
@@ -76,14 +77,14 @@ pub(super) struct RawReport {
         help_heading = "How it is measured"
     )]
     pub estimate_error: RawSwitch,
-    /// Tell the seconds to this RMSE, too, and mark it in the plot [default: 0.01]
+    /// Also tell the seconds until this RMSE, and mark it in the plot [default: 0.01]
     #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
           help_heading = "How it is measured")]
     pub target: Option<f64>,
-    /// A film to measure against, of the one scene at this size and with two halves
+    /// Measure relative to this film: of the only scene, at this size and with two halves
     #[arg(long, value_name = "FILM.exr", help_heading = "How it is measured")]
     pub reference: Option<PathBuf>,
-    /// What renders the references otherwise: as --backends
+    /// Otherwise, the backend that renders the references, named as for --backends
     #[arg(
         long,
         value_name = "BACKEND",
@@ -92,26 +93,26 @@ pub(super) struct RawReport {
         help_heading = "How it is measured"
     )]
     pub reference_backend: String,
-    /// Samples per pixel of the references [default: 4 times --max-samples, for --calibration 16 times]
+    /// Samples per pixel of the references [default: 4 times --max-samples, with --calibration 16 times]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
           allow_hyphen_values = true, conflicts_with = "reference", help_heading = "How it is measured")]
     pub reference_samples: Option<u64>,
 
-    /// Progress on standard error; auto: when it is a terminal
+    /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
 }
 
-/// What a report measures.
+/// Options of `weekender report`.
 #[derive(Clone, Debug)]
 pub struct ReportOptions {
-    /// Scenes, at their size.
+    /// The scenes, at their final size.
     pub scenes: Vec<Recipe>,
-    /// Backends by their names.
+    /// Names and backends.
     pub backends: Vec<(String, ReportBackend)>,
     /// Samplers.
     pub samplers: Vec<SamplerKind>,
-    /// Pictures of each curve.
+    /// Number of pictures of each curve.
     pub seeds: u32,
     /// Width and height of all pictures.
     pub size: (u32, u32),
@@ -121,47 +122,47 @@ pub struct ReportOptions {
     pub max_samples: u64,
     /// Whether samples are kept in two halves.
     pub estimate_error: bool,
-    /// Errors that times are told for; the first is marked in the plot.
+    /// Target errors; the first is marked in the plot.
     pub targets: Vec<f64>,
-    /// What errors are measured against.
+    /// The reference for errors.
     pub reference: ReferenceChoice,
-    /// Where the report goes.
+    /// Directory of the report.
     pub out: PathBuf,
     /// Whether progress is shown.
     pub progress: ProgressChoice,
-    /// What was typed.
+    /// The command as typed.
     pub command: String,
 }
 
-/// What a curve of a report is rendered by.
+/// What renders a curve.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReportBackend {
     /// A backend of this program.
     Renderer(BackendChoice),
     /// The plain C89 program.
     Baseline {
-        /// Whether it was asked for by name; otherwise it may be missing.
+        /// Whether it was named; otherwise it may be missing.
         is_asked_for: bool,
     },
 }
 
-/// What errors are measured against.
+/// The reference for errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ReferenceChoice {
-    /// A film that is there.
+    /// An existing film.
     File(PathBuf),
-    /// One that is made.
+    /// A reference that is rendered.
     Make {
-        /// The backend's name.
+        /// Name of the backend.
         name: String,
-        /// What renders it.
+        /// The backend.
         choice: BackendChoice,
         /// Samples per pixel.
         samples: u64,
     },
 }
 
-/// What a report's flags stand for when they are left out.
+/// Defaults for the flags of a report.
 struct ReportDefaults {
     scenes: &'static [&'static str],
     backends: &'static [&'static str],
@@ -169,7 +170,7 @@ struct ReportDefaults {
     size: (u32, u32),
     time_limit: f64,
     max_samples: u64,
-    /// Times as many samples as the longest curve's has the reference.
+    /// Samples of the reference, relative to those of the longest curve.
     reference_factor: u64,
 }
 
@@ -193,17 +194,17 @@ const CALIBRATION: ReportDefaults = ReportDefaults {
     reference_factor: 16,
 };
 
-/// The baseline's name among a report's backends.
+/// Name of the baseline among the backends of a report.
 const BASELINE: &str = "c89";
 
-/// Errors that times are told for in any case.
+/// Target errors that every report has.
 const TARGETS: [f64; 2] = [0.01, 0.001];
 
-/// What a report writes into its directory, beside references.
+/// The files that a report writes to its directory, apart from references.
 const REPORT_FILES: [&str; 5] =
     ["report.json", "report.md", "report.csv", "error-vs-time.png", "error-vs-time.svg"];
 
-/// What `weekender report` is asked for; `command` is what was typed.
+/// Validates the flags of `weekender report`; `command` is the command as typed.
 pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, CliError> {
     let defaults = if raw.calibration { CALIBRATION } else { RACE };
     let backends = report_backends(&raw, &defaults)?;
@@ -213,7 +214,7 @@ pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, C
     let max_samples = raw.max_samples.unwrap_or(defaults.max_samples);
     let reference = match raw.reference {
         Some(_) if scenes.len() > 1 => {
-            let reason = "one film is the reference of one scene; say which with --scenes";
+            let reason = "a film is the reference for only one scene; name that scene with --scenes";
             return Err(CliError::Together { flag: "--reference", other: "several --scenes", reason });
         }
         Some(path) => ReferenceChoice::File(path),
@@ -243,7 +244,7 @@ pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, C
     })
 }
 
-/// Refuses a report that would replace what it reads.
+/// Returns an error if the report would replace one of its inputs.
 fn check_paths(raw: &RawReport) -> Result<(), CliError> {
     let files = raw.scenes.iter().filter_map(|scene| sources::scene_file(Some(scene)));
     let paths = files.fold(Paths::default(), |paths, file| paths.read("--scenes", Some(file)));
@@ -255,7 +256,7 @@ fn check_paths(raw: &RawReport) -> Result<(), CliError> {
         .check(&[])
 }
 
-/// `more` are names that are possible besides.
+/// Finds a backend; `more` are further names to list if there is none with this name.
 fn backend_named(name: &str, adapter: Option<&str>, more: &[&str]) -> Result<BackendChoice, CliError> {
     BackendChoice::named(name, adapter).ok_or_else(|| {
         let choices = [&BackendChoice::NAMES[..], more].concat().join(", ");
@@ -278,8 +279,8 @@ fn report_backends(
         present.map(|name| (*name).to_owned()).collect()
     };
     if adapter.is_some() && !names.iter().chain([&raw.reference_backend]).any(|name| name == "gpu") {
-        let reason = "it chooses among GPUs; leave it out";
-        return Err(CliError::Needs { flag: "--adapter", other: "gpu among --backends", reason });
+        let reason = "it chooses among GPUs; otherwise leave it out";
+        return Err(CliError::Needs { flag: "--adapter", other: "gpu in --backends", reason });
     }
     let of_name = |name: String| {
         let backend = match name.as_str() {
@@ -299,7 +300,7 @@ fn report_scenes(
     let sized = |recipe: Result<Recipe, CliError>| {
         let mut recipe = recipe?;
         (recipe.settings.width, recipe.settings.height) = size;
-        // A film, what it is compared with, and one of a pass.
+        // A film, its reference, and the film of a pass.
         recipe.job()?.check_memory(4)?;
         Ok::<Recipe, CliError>(recipe)
     };

@@ -1,4 +1,4 @@
-//! Where a picture comes from: a built-in scene, a stage, a scene file or a film; and what flags change in it.
+//! Where a picture comes from (a built-in scene, a stage, a scene file or a film), with the changes of the flags.
 
 use super::error::CliError;
 use super::raw::RawPicture;
@@ -7,17 +7,17 @@ use crate::saved::Saved;
 use crate::stages::Stage;
 use std::path::Path;
 
-/// The scene that is rendered if none is asked for.
+/// The scene that is rendered if none is named.
 const DEFAULT_SCENE: &str = "three-spheres";
 
-/// A recipe and the stage that it is from, if from one.
+/// A recipe and, if it comes from one, its stage.
 #[derive(Clone, Debug)]
 pub(super) struct Source {
     pub recipe: Recipe,
     pub stage: Option<&'static Stage>,
 }
 
-/// The source that the flags name, before other flags change it.
+/// The source that the flags name, before the changes of other flags.
 pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<Source, CliError> {
     match (&raw.stage, &raw.scene, resume) {
         (Some(id), _, _) => {
@@ -30,12 +30,12 @@ pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<Source, Cl
     }
 }
 
-/// The scene of this name or in this file.
+/// The scene with this name or in this file.
 pub(super) fn scene(name: &str) -> Result<Recipe, CliError> {
     if is_file(name) { Ok(file::load(Path::new(name))?) } else { Ok(Recipe::find(name)?) }
 }
 
-/// The example scene `near-glass`, which the program carries for reports.
+/// The example scene `near-glass`, which is part of the program for use in reports.
 pub(super) const NEAR_GLASS: &str = "near-glass";
 
 /// A built-in scene, or [`NEAR_GLASS`].
@@ -47,18 +47,18 @@ pub(super) fn carried(name: &str) -> Result<Recipe, CliError> {
     Ok(Recipe { name: name.to_owned(), ..recipe })
 }
 
-/// Whether `--scene` names a file: a name with an ending or a directory.
+/// Whether `--scene` names a file: the name has an extension or a directory.
 pub(super) fn is_file(scene: &str) -> bool {
     let path = Path::new(scene);
     path.extension().is_some() || path.components().count() > 1
 }
 
-/// The scene file that `--scene` names, if it names one.
+/// The scene file that `--scene` names, if it is a file.
 pub(super) fn scene_file(scene: Option<&str>) -> Option<&Path> {
     scene.filter(|scene| is_file(scene)).map(Path::new)
 }
 
-/// Refuses a file whose name does not end in `ending`, with the dot, in capitals or not.
+/// Returns an error unless the file name ends in `ending`, with the dot, in upper or lower case.
 pub(super) fn check_ending(
     flag: &'static str,
     path: &Path,
@@ -69,7 +69,7 @@ pub(super) fn check_ending(
     if is_so { Ok(()) } else { Err(CliError::Ending { flag, path: path.to_owned(), what, ending }) }
 }
 
-/// Makes a picture at most `width` pixels wide, of the same shape, unless its size was asked for.
+/// Reduces the picture to at most `width` pixels across, keeping its shape, unless its size was given.
 pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
     let settings = &mut recipe.settings;
     if raw.size.is_none() && settings.width > width {

@@ -1,4 +1,4 @@
-//! The flags of `weekender stress`, and what they mean together.
+//! The flags of `weekender stress` and their validation.
 
 use super::error::CliError;
 use super::paths::Paths;
@@ -12,61 +12,61 @@ use std::time::Duration;
 
 #[derive(Debug, Args)]
 pub(super) struct RawStress {
-    /// Only cases whose id has this in it, such as copies or moved/1e5
-    #[arg(long, value_name = "TEXT", help_heading = "What is run")]
+    /// Run only cases whose id contains this, such as copies or moved/1e5
+    #[arg(long, value_name = "TEXT", help_heading = "Cases")]
     pub filter: Option<String>,
-    /// Go on with random scenes for so many seconds; what fails is made as small as can be and saved as a scene file
-    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "What is run")]
+    /// Afterwards, try random scenes for this many seconds; failing ones are shrunk and saved as scene files
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "Cases")]
     pub search: Option<f64>,
-    /// Chooses the random scenes, 0 to 4294967295
+    /// Seed of the random scenes, 0 to 4294967295
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..), default_value = "0",
-          allow_hyphen_values = true, requires = "search", help_heading = "What is run")]
+          allow_hyphen_values = true, requires = "search", help_heading = "Cases")]
     pub seed: u32,
 
-    /// Instruction levels with commas between them; auto: the best that fuses multiply and add and the best that
-    /// does not, all: all that this processor has
+    /// Instruction levels, separated by commas; auto: the best that fuses multiply and add and the best that does not,
+    /// all: all that this processor has
     #[arg(long, value_name = "LEVEL,...", value_parser = parse_levels, default_value = "auto",
-          help_heading = "Who is tested")]
+          help_heading = "Backends")]
     pub isa: Levels,
-    /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter [default: the
-    /// best there is, or none]
-    #[arg(long, value_name = "SUBSTRING", help_heading = "Who is tested")]
+    /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter [default: the
+    /// best one, if there is one]
+    #[arg(long, value_name = "SUBSTRING", help_heading = "Backends")]
     pub adapter: Option<String>,
 
-    /// Write all figures as JSON; - is standard output
+    /// Write all figures as JSON; - for standard output
     #[arg(long, value_name = "FILE|-", help_heading = "Files")]
     pub json: Option<PathBuf>,
-    /// Write pictures, the table as Markdown and a page that shows them side by side into this directory; scenes that
-    /// a search finds go there, too [default for those: stress]
+    /// Write pictures, the table as Markdown and an HTML page to this directory; failing scenes of a search are saved
+    /// there, too [default for these: stress]
     #[arg(long, value_name = "DIRECTORY", help_heading = "Files")]
     pub out: Option<PathBuf>,
-    /// Progress on standard error; auto: when it is a terminal
+    /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
 }
 
-/// What `weekender stress` is asked for.
+/// Options of `weekender stress`.
 #[derive(Clone, Debug)]
 pub struct StressOptions {
-    /// What a case's id must contain.
+    /// Text that the id of a case must contain.
     pub filter: String,
-    /// How long to search among random scenes.
+    /// Duration of the search among random scenes.
     pub search: Option<Duration>,
-    /// Which random scenes.
+    /// Seed of the random scenes.
     pub seed: u32,
     /// Instruction levels of the CPU.
     pub levels: Vec<Isa>,
     /// The GPU that was named.
     pub adapter: Option<String>,
-    /// Where the figures go as JSON.
+    /// Where the JSON is written.
     pub json: Option<JsonTarget>,
-    /// Where pictures and tables go.
+    /// Directory for pictures and tables.
     pub out: Option<PathBuf>,
     /// Whether progress is shown.
     pub progress: ProgressChoice,
 }
 
-/// What `weekender stress` is asked for.
+/// Validates the flags of `weekender stress`.
 pub(super) fn stress(raw: RawStress) -> Result<StressOptions, CliError> {
     let available = Isa::available();
     let best = |is_fused: bool| available.iter().copied().rfind(|isa| isa.is_fused() == is_fused);

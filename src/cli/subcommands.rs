@@ -1,4 +1,4 @@
-//! The whole command line as it is typed: rendering, or a subcommand.
+//! The whole command line as clap parses it: rendering, or a subcommand.
 
 use super::bench::RawBench;
 use super::compare::RawCompare;
@@ -22,36 +22,36 @@ pub(super) struct Raw {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum RawCommand {
-    /// Measure how fast this machine renders, beside a plain C program: tables, JSON, a chart
+    /// Measure the speed of this machine, compared with a plain C program: tables, JSON, a chart
     ///
-    /// Rows take turns, after a warm-up that is not counted. Medians are shown with the least and the most. Reading,
-    /// preparing and writing are in no figure. The C program is compiled by the compiler that CC names, or cc.
+    /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
+    /// preparing and writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
     Bench(Box<RawBench>),
-    /// Add film files of one picture that hold different samples
+    /// Merge film files of the same picture that hold different samples
     Merge {
         /// Film files (.exr), as --checkpoint, --out and merge write them
         #[arg(required = true, num_args = 1.., value_name = "FILM")]
         films: Vec<PathBuf>,
-        /// Where the sum goes: .exr for the film, .png or .ppm for the picture
+        /// Where the result is written: .exr for the film, .png or .ppm for the picture
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// Show one path as two backends trace it, side by side, and where they part
+    /// Show a path as two backends trace it, side by side, and where the paths part
     ///
-    /// The exit code is 0 where the two agree, 1 where they differ and 2 where they could not be compared.
+    /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.
     Diff(Box<RawDiff>),
-    /// Say whether two pictures are the same but for their noise, and where they are not
+    /// Tell whether two pictures are equal apart from noise, and where they are not
     ///
-    /// The exit code is 0 where they are equal, 1 where they differ and 2 where they could not be compared.
+    /// The exit code is 0 if they are equal, 1 if they differ and 2 if they could not be compared.
     Compare(Box<RawCompare>),
     /// Measure how the error falls with time, for scenes, backends and samplers, and write tables and plots
     ///
-    /// Goes on where an interrupted report of the same settings ended.
+    /// Continues an interrupted report that has the same settings.
     Report(Box<RawReport>),
-    /// Render stiff and extreme scenes and say whether each is right: a table beside the book's own arithmetic
+    /// Render stiff and extreme scenes and check the results, compared with the book's own arithmetic
     ///
-    /// Each scene is rendered as it is and with 40 distant spheres, which switch the hierarchy on, by a CPU level
-    /// that fuses multiply and add, by one that does not, in f64, and by the GPU that there is. The exit code is 0
-    /// where all are right, 1 where one is not and 2 where nothing could be run.
+    /// Each scene is rendered as it is and with 40 distant spheres, which switch the hierarchy on: by a CPU level that
+    /// fuses multiply and add, by one that does not, in f64, and by the GPU, if there is one. The exit code is 0 if all
+    /// are right, 1 if one is not and 2 if nothing could be run.
     Stress(Box<RawStress>),
 }

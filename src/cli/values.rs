@@ -1,5 +1,4 @@
-//! Values of flags, and what they stand for. A message says what is allowed; clap puts the value and the flag
-//! before it.
+//! Parses the values of flags. An error message says what is allowed; clap puts the value and the flag before it.
 
 use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::render_cpu::Isa;
@@ -9,7 +8,7 @@ use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Where JSON goes.
+/// Where JSON is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JsonTarget {
     /// Standard output.
@@ -24,7 +23,7 @@ impl From<PathBuf> for JsonTarget {
     }
 }
 
-/// Lanes as typed: `None` leaves the choice to the backend.
+/// Number of lanes; `None` leaves the choice to the backend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Simd(pub Option<usize>);
 
@@ -37,7 +36,7 @@ pub(super) fn parse_simd(text: &str) -> Result<Simd, String> {
     }
 }
 
-/// An instruction level as typed: `None` leaves the choice to the backend.
+/// An instruction level; `None` leaves the choice to the backend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Level(pub Option<Isa>);
 
@@ -51,10 +50,10 @@ pub(super) fn parse_isa(text: &str) -> Result<Level, String> {
     })
 }
 
-/// Instruction levels as typed.
+/// Instruction levels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Levels {
-    /// The best.
+    /// The best one.
     Auto,
     /// All that the processor has.
     All,
@@ -72,14 +71,14 @@ pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
     let named: Option<Vec<Isa>> = text.split(',').map(level).collect();
     let mut named = named.ok_or_else(|| {
         let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
-        format!("must be auto, all, or levels of {} with commas between them", names.join(", "))
+        format!("must be auto, all, or some of {}, separated by commas", names.join(", "))
     })?;
     named.sort_unstable();
     named.dedup();
     Ok(Levels::Named(named))
 }
 
-/// Numbers of spheres from `A` to `B`: `A` and three times `A`, with powers of ten.
+/// Numbers of spheres from `A` to `B`: `A` times powers of ten, and three times these.
 pub(super) fn parse_counts(text: &str) -> Result<Box<[u64]>, String> {
     let limits = FIELD_COUNT_LIMITS;
     // 1e6 is easier to type than a million.
@@ -91,7 +90,7 @@ pub(super) fn parse_counts(text: &str) -> Result<Box<[u64]>, String> {
     let ends = text.split_once("..").and_then(|(a, b)| Some((count(a)?, count(b)?)));
     let (first, last) = ends.filter(|(first, last)| first <= last).ok_or_else(|| {
         format!(
-            "must be A..B with A at most B, both within {} and {}, such as 1e3..1e6",
+            "must be A..B with A at most B, both from {} to {}, such as 1e3..1e6",
             limits.start(),
             limits.end()
         )
@@ -102,9 +101,9 @@ pub(super) fn parse_counts(text: &str) -> Result<Box<[u64]>, String> {
 
 pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let pixels = |text: &str| text.parse::<u32>().ok().filter(|pixels| (1..=SIZE_LIMIT).contains(pixels));
-    text.split_once('x').and_then(|(width, height)| Some((pixels(width)?, pixels(height)?))).ok_or_else(
-        || format!("must be WIDTHxHEIGHT, each within 1 and {SIZE_LIMIT} pixels, such as 800x450"),
-    )
+    text.split_once('x')
+        .and_then(|(width, height)| Some((pixels(width)?, pixels(height)?)))
+        .ok_or_else(|| format!("must be WIDTHxHEIGHT, each from 1 to {SIZE_LIMIT} pixels, such as 800x450"))
 }
 
 pub(super) fn parse_vector(text: &str) -> Result<DVec3, String> {
@@ -112,7 +111,7 @@ pub(super) fn parse_vector(text: &str) -> Result<DVec3, String> {
         text.split(',').map(|part| part.trim().parse()).collect::<Result<_, _>>().unwrap_or_default();
     <[f64; 3]>::try_from(parts)
         .map(DVec3::from)
-        .map_err(|_| "must be three numbers with commas between them, such as 13,2,3".to_owned())
+        .map_err(|_| "must be three numbers separated by commas, such as 13,2,3".to_owned())
 }
 
 pub(super) fn parse_number(text: &str) -> Result<f64, String> {
@@ -123,10 +122,10 @@ pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
     positive(text, 1e9).ok_or_else(|| "must be above 0 and at most 1e9 seconds, such as 60".to_owned())
 }
 
-/// Shortest and longest [`parse_duration`], seconds.
+/// Shortest and longest duration for [`parse_duration`], seconds.
 const DURATION_LIMITS: RangeInclusive<f64> = 0.1..=30.0 * 86_400.0;
 
-/// A time with its unit; seconds without one.
+/// A duration with a unit, by default seconds.
 pub(super) fn parse_duration(text: &str) -> Result<Duration, String> {
     let text = text.trim();
     let units = [("ms", 1e-3), ("s", 1.0), ("min", 60.0), ("m", 60.0), ("h", 3600.0), ("d", 86_400.0)];
@@ -134,9 +133,9 @@ pub(super) fn parse_duration(text: &str) -> Result<Duration, String> {
     let (number, unit_seconds) = with_unit.unwrap_or((text, 1.0));
     let seconds = number.trim_end().parse().ok().map(|number: f64| number * unit_seconds);
     let seconds = seconds.filter(|seconds| DURATION_LIMITS.contains(seconds));
-    seconds.map(Duration::from_secs_f64).ok_or_else(|| {
-        "must be within 0.1s and 30d, with s, m, h or d behind the number, such as 90s".to_owned()
-    })
+    seconds
+        .map(Duration::from_secs_f64)
+        .ok_or_else(|| "must be from 0.1s to 30d, with s, m, h or d after the number, such as 90s".to_owned())
 }
 
 pub(super) fn parse_rmse(text: &str) -> Result<f64, String> {
@@ -157,7 +156,7 @@ pub(super) fn parse_sample_range(text: &str) -> Result<Range<u64>, String> {
         .ok_or_else(|| format!("must be A..B with A below B and B at most {SAMPLE_LIMIT}, such as 0..64"))
 }
 
-/// Who traces a path that is compared.
+/// A backend that traces a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RawSide {
     Cpu,
@@ -179,21 +178,21 @@ pub(super) fn parse_sides(text: &str) -> Result<[RawSide; 2], String> {
     let side = |name: &str| RawSide::ALL.into_iter().find(|(known, _)| *known == name.trim()).map(|(_, s)| s);
     text.split_once(',').and_then(|(a, b)| Some([side(a)?, side(b)?])).ok_or_else(|| {
         let names = RawSide::ALL.map(|(name, _)| name).join(", ");
-        format!("must be two of {names} with a comma between them, such as cpu,reference")
+        format!("must be two of {names} separated by a comma, such as cpu,reference")
     })
 }
 
 pub(super) fn parse_pixel(text: &str) -> Result<[u32; 2], String> {
     text.split_once(',')
         .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]))
-        .ok_or_else(|| "must be a column and a row with a comma between them, such as 120,45".to_owned())
+        .ok_or_else(|| "must be a column and a row separated by a comma, such as 120,45".to_owned())
 }
 
 pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|share: &f64| (0.0..=1.0).contains(share))
-        .ok_or_else(|| "must be within 0 and 1, such as 1e-4".to_owned())
+        .ok_or_else(|| "must be from 0 to 1, such as 1e-4".to_owned())
 }
 
 #[cfg(test)]

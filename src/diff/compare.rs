@@ -1,4 +1,4 @@
-//! Two records of one path: where they differ, in what, and by how much.
+//! Compares two records of the same path: where they differ, in which quantity, and by how much.
 
 use crate::film::FIXED_POINT_SCALE;
 use crate::record::{PathRecord, RecordedRay};
@@ -7,28 +7,28 @@ use crate::scene::Material;
 use crate::stages::Shading;
 use serde::Serialize;
 
-/// What can differ at a bounce, in the order in which it comes about.
+/// A quantity that can differ at a bounce, in the order in which they are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Quantity {
-    /// Where the ray starts.
+    /// Origin of the ray.
     Origin,
-    /// Where it goes.
+    /// Direction of the ray.
     Direction,
-    /// What its light counts for.
+    /// Throughput of the path before the ray hits anything.
     Throughput,
-    /// The sphere that it meets, or the sky.
+    /// The sphere that the ray hits, or the sky.
     Object,
-    /// How far that is.
+    /// Distance to the hit.
     Distance,
-    /// How the path goes on, or why it ends.
+    /// How the path continues, or why it ends.
     Departure,
-    /// What the sample adds to the pixel.
+    /// Radiance of the sample.
     Radiance,
 }
 
 impl Quantity {
-    /// Those of a ray.
+    /// The quantities of a ray.
     pub const OF_RAY: [Quantity; 6] = [
         Quantity::Origin,
         Quantity::Direction,
@@ -39,25 +39,25 @@ impl Quantity {
     ];
 }
 
-/// What becomes of a path where it has met a sphere.
+/// What happens to a path at a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Departure {
-    /// In any direction.
+    /// Scattered in a random direction.
     Scattered,
-    /// As by a mirror.
+    /// Reflected, with or without fuzz.
     Reflected,
-    /// Through the surface.
+    /// Refracted through the surface.
     Refracted,
-    /// A fuzzy reflection went into the surface.
+    /// Absorbed, because the fuzzy reflection went into the surface.
     Absorbed,
-    /// The path has as many rays as it may.
+    /// Cut off at the maximum depth.
     CutOff,
-    /// The stage follows no ray further.
+    /// Shown as it is: the stage follows no further rays.
     Shown,
 }
 
 impl Departure {
-    /// In words that follow "is".
+    /// A word that can follow "is".
     pub fn word(self) -> &'static str {
         match self {
             Departure::Scattered => "scattered",
@@ -70,7 +70,7 @@ impl Departure {
     }
 }
 
-/// What becomes of a path after ray `bounce`; `None` where it meets no sphere.
+/// What happens to a path after ray `bounce`; `None` if that ray hits no sphere.
 pub fn departure(job: &RenderJob, path: &PathRecord, bounce: usize) -> Option<Departure> {
     let ray = path.rays.get(bounce)?;
     let hit = ray.hit?;
@@ -93,11 +93,11 @@ pub fn departure(job: &RenderJob, path: &PathRecord, bounce: usize) -> Option<De
 /// A difference above the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Difference {
-    /// Number of the ray, 0 for the camera's.
+    /// Index of the ray, 0 for the camera's.
     pub bounce: usize,
-    /// What differs.
+    /// The quantity that differs.
     pub quantity: Quantity,
-    /// By how much, as a share of the larger value; infinite where there is no more or less.
+    /// The difference relative to the larger value; infinite if the quantity has no magnitude.
     pub amount: f64,
 }
 
@@ -106,15 +106,15 @@ pub struct Difference {
 pub struct Comparison {
     /// The first difference above the tolerance.
     pub first: Option<Difference>,
-    /// The first bounce at which the paths go different ways; the numbers may drift apart before.
+    /// The first bounce at which the paths part. Their numbers may drift apart before that.
     pub parting: Option<Difference>,
-    /// Largest difference of a ray's quantity before the parting.
+    /// Largest difference of any quantity before the paths part.
     pub largest: f64,
-    /// Of the radiance, as a share of the larger one.
+    /// Difference of the radiances, relative to the larger one.
     pub radiance: f64,
 }
 
-/// Compares two records of a path of `job`.
+/// Compares two records of the same path of `job`.
 pub fn compare(job: &RenderJob, [a, b]: [&PathRecord; 2], tolerance: f64) -> Comparison {
     let mut comparison = Comparison {
         first: None,
@@ -145,7 +145,7 @@ pub fn compare(job: &RenderJob, [a, b]: [&PathRecord; 2], tolerance: f64) -> Com
     comparison
 }
 
-/// How much a quantity of ray `bounce` differs, as a share of the larger value.
+/// Difference of a quantity of ray `bounce`, relative to the larger value.
 pub fn amount(job: &RenderJob, [a, b]: [&PathRecord; 2], bounce: usize, quantity: Quantity) -> f64 {
     let (ray_a, ray_b) = match (a.rays.get(bounce), b.rays.get(bounce)) {
         (Some(ray_a), Some(ray_b)) => (ray_a, ray_b),
@@ -155,7 +155,7 @@ pub fn amount(job: &RenderJob, [a, b]: [&PathRecord; 2], bounce: usize, quantity
     let apart = |is_apart: bool| if is_apart { f64::INFINITY } else { 0.0 };
     match quantity {
         Quantity::Origin => {
-            // Coordinates are as exact as the largest of the scene that the path has come through.
+            // Positions are only as exact as the largest coordinate that the path has passed through.
             let extent = a.rays[..=bounce].iter().map(|ray| length(ray.origin)).fold(0.0, f64::max);
             share(length(minus(ray_a.origin, ray_b.origin)), extent.max(length(ray_b.origin)))
         }
@@ -173,12 +173,12 @@ pub fn amount(job: &RenderJob, [a, b]: [&PathRecord; 2], bounce: usize, quantity
     }
 }
 
-/// How much two samples' radiances differ. The film's last unit on either side is no difference.
+/// Relative difference of two radiances. The last unit of the film in either direction does not count.
 pub fn radiance_amount(a: [f64; 3], b: [f64; 3]) -> f64 {
     vector_share(a, b, 2.0 / FIXED_POINT_SCALE)
 }
 
-/// The largest component's difference beyond `forgiven`, as a share of the largest component.
+/// Difference of the largest component beyond `forgiven`, relative to the largest component.
 fn vector_share(a: [f64; 3], b: [f64; 3], forgiven: f64) -> f64 {
     let largest = |v: [f64; 3]| v.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     share((largest(minus(a, b)) - forgiven).max(0.0), largest(a).max(largest(b)))

@@ -1,26 +1,26 @@
-//! The path that differs most.
+//! Finds the path that differs most.
 
 use super::compare::radiance_amount;
 use super::side::Side;
 use crate::render::{RenderError, RenderJob};
 
-/// What a search found.
+/// The result of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     /// Column and row.
     pub pixel: [u32; 2],
     /// Index of the sample.
     pub sample: u64,
-    /// Samples of a pixel that were looked through.
+    /// Number of samples per pixel that were searched.
     pub searched: u64,
-    /// Samples, over all pixels, that differ by more than the tolerance.
+    /// Number of samples, over all pixels, that differ by more than the tolerance.
     pub differing: u64,
 }
 
-/// Looks through samples `0 .. samples` of all pixels for that whose radiance differs most.
+/// Searches samples `0 .. samples` of all pixels for the one whose radiance differs most.
 ///
 /// # Errors
-/// [`RenderError`] of a side.
+/// [`RenderError`] of either side.
 pub fn find(
     job: &RenderJob,
     sides: &mut [Side; 2],

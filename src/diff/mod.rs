@@ -1,4 +1,4 @@
-//! `weekender diff`: one path as traced by two backends, side by side, and the point where they diverge.
+//! `weekender diff`: shows a path as two backends trace it, side by side, and where the paths part.
 
 mod compare;
 mod find;
@@ -22,7 +22,7 @@ use std::io::IsTerminal;
 use std::process::ExitCode;
 use text::{Paint, Tone};
 
-/// Version of the JSON: it grows when a key changes its meaning or goes away.
+/// Version of the JSON. It is raised when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
@@ -48,10 +48,10 @@ struct ReportedSide<'a> {
     path: &'a PathRecord,
 }
 
-/// Compares a path and prints it. The exit code is 0 where the sides agree within the tolerance, else 1.
+/// Compares a path and prints it. The exit code is 0 if the sides agree within the tolerance, otherwise 1.
 ///
 /// # Errors
-/// [`Failure::Input`], also where a backend fails on the way: exit code 1 says that the paths differ.
+/// [`Failure::Input`], even if a backend fails on the way, because exit code 1 means that the paths differ.
 pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
     if let Some(JsonTarget::File(path)) = &options.json {
         check_writable(path).map_err(Failure::input)?;
@@ -115,7 +115,7 @@ pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
     Ok(if comparison.first.is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-/// What is compared.
+/// The lines that say what is compared.
 fn opening(
     options: &DiffOptions,
     sides: &[Side; 2],

@@ -1,4 +1,4 @@
-//! A backend that tells what it does along a path.
+//! A backend that can record what it does along a path.
 
 use crate::cli::SideChoice;
 use crate::film::Film;
@@ -9,33 +9,33 @@ use crate::render_gpu::{GpuError, GpuRenderer};
 use std::sync::atomic::AtomicBool;
 use thiserror::Error;
 
-/// One of the two that are compared.
+/// One of the two backends that are compared.
 pub struct Side {
-    /// Short, as it stands in sentences: `cpu avx2`.
+    /// Short name for sentences: `cpu avx2`.
     pub name: String,
-    /// Longer: the adapter, the precision.
+    /// Long name, with adapter and precision.
     pub about: String,
     tracer: Tracer,
 }
 
 enum Tracer {
-    /// With the level of its records; `None` is the reference.
+    /// The level is that of the recorder; `None` is the reference.
     Cpu(Box<CpuRenderer>, Option<Isa>),
     Gpu(Box<GpuRenderer>),
 }
 
-/// A side that cannot be had.
+/// Why a side is not available.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum SideError {
-    /// The CPU's options cannot be met.
+    /// The CPU cannot fulfil the options.
     #[error(transparent)]
     Cpu(#[from] CpuError),
-    /// There is no GPU to be had.
+    /// No GPU is available.
     #[error(
-        "the side gpu cannot be had: {reason}. Other sides can be compared: --sides cpu,reference or --sides cpu,baseline"
+        "the side gpu is not available: {reason}; compare other sides, such as --sides cpu,reference or --sides cpu,baseline"
     )]
     Gpu {
-        /// Why, with the adapters that there are.
+        /// The reason, with the adapters that exist.
         reason: GpuError,
     },
 }
@@ -44,14 +44,14 @@ impl Side {
     /// Starts a side.
     ///
     /// # Errors
-    /// [`SideError`], with what can be had instead.
+    /// [`SideError`], which says what is available instead.
     pub fn open(choice: &SideChoice) -> Result<Self, SideError> {
         Ok(match choice {
             SideChoice::Cpu(options) => {
                 let renderer = CpuRenderer::new(*options)?;
                 let best = Isa::available().last().copied().unwrap_or(Isa::Baseline);
                 let isa = options.isa.unwrap_or(best);
-                let rounding = if isa.is_fused() { "rounded once" } else { "rounded apart" };
+                let rounding = if isa.is_fused() { "rounded once" } else { "rounded separately" };
                 Side {
                     name: format!("cpu {isa}"),
                     about: format!("cpu {isa}, f32, multiply and add {rounding}"),
@@ -75,7 +75,7 @@ impl Side {
         })
     }
 
-    /// Records a path; `pixel` must lie in the picture.
+    /// Records a path; `pixel` must be inside the picture.
     ///
     /// # Errors
     /// [`RenderError::Backend`].
@@ -91,7 +91,7 @@ impl Side {
         }
     }
 
-    /// One sample of every pixel.
+    /// Renders one sample of every pixel.
     ///
     /// # Errors
     /// [`RenderError`].

@@ -1,41 +1,41 @@
-//! Two paths side by side, for a terminal.
+//! Shows two paths side by side on a terminal.
 
 use super::compare::{Comparison, Quantity, amount, departure};
 use super::words::Told;
 use crate::record::PathRecord;
 use std::fmt::Write;
 
-/// Characters of a line.
+/// Width of a line in characters.
 const WIDTH: usize = 78;
 
-/// Characters before the first side.
+/// Width of the label column in characters.
 const LABEL: usize = 13;
 
-/// Characters of a side.
+/// Width of each side's column in characters.
 const COLUMN: usize = 31;
 
-/// Colours, where the reader can see them.
+/// Whether and how text is coloured.
 #[derive(Clone, Copy, Debug)]
 pub struct Paint {
-    /// Whether there are any.
+    /// Whether colours are used.
     pub is_on: bool,
 }
 
-/// What a piece of text is.
+/// The meaning of a piece of text.
 #[derive(Clone, Copy, Debug)]
 pub enum Tone {
     /// A heading.
     Strong,
-    /// What matters little.
+    /// Unimportant text.
     Faint,
-    /// All is well.
+    /// Agreement.
     Good,
     /// A difference.
     Bad,
 }
 
 impl Paint {
-    /// `text` in the colour of its tone.
+    /// `text` in the colour of `tone`.
     pub fn paint(self, tone: Tone, text: &str) -> String {
         let code = match tone {
             Tone::Strong => "1",
@@ -47,7 +47,7 @@ impl Paint {
     }
 }
 
-/// All bounces of both paths, the first difference marked.
+/// All bounces of both paths, with the first difference marked.
 pub fn bounces(told: &Told, comparison: &Comparison, paint: Paint) -> String {
     let mut text = String::new();
     let [a, b] = told.names.map(|name| cut(name, COLUMN));
@@ -68,7 +68,7 @@ pub fn bounces(told: &Told, comparison: &Comparison, paint: Paint) -> String {
     text
 }
 
-/// A quantity on both sides, and the sentence below it where it is the first difference or the parting.
+/// A quantity on both sides; the first difference and the parting get a sentence below.
 fn row(
     text: &mut String,
     told: &Told,
@@ -90,7 +90,7 @@ fn row(
         Quantity::Departure => "then",
         Quantity::Radiance => "radiance",
     };
-    // Where a side has no value, the row of what it met says why.
+    // If a side has no value, the row of what it hit says why.
     let difference = amount(told.job, told.paths, bounce, quantity);
     let sign = if values.iter().all(Option::is_some) {
         sign(difference, told.tolerance, paint)
@@ -118,7 +118,7 @@ fn row(
     }
 }
 
-/// Both radiances, their difference and what it comes to.
+/// Both radiances, their difference and the verdict.
 pub fn closing(told: &Told, comparison: &Comparison, paint: Paint) -> String {
     let mut text = String::new();
     line(&mut text, &paint.paint(Tone::Faint, &"─".repeat(WIDTH)));
@@ -129,6 +129,7 @@ pub fn closing(told: &Told, comparison: &Comparison, paint: Paint) -> String {
     let [a, b] = told.paths.map(|path| path.radiance);
     let by = vector([b[0] - a[0], b[1] - a[1], b[2] - a[2]]);
     let share = match comparison.radiance {
+        0.0 => "0 of the larger".to_owned(),
         share if share < 1e-3 => format!("{share:.1e} of the larger"),
         share => format!("{:.1} % of the larger", 100.0 * share),
     };
@@ -142,7 +143,7 @@ pub fn closing(told: &Told, comparison: &Comparison, paint: Paint) -> String {
     text
 }
 
-/// Equal to the bit, near enough, or apart.
+/// A sign for equal to the bit, equal within the tolerance, or different.
 fn sign(difference: f64, tolerance: f64, paint: Paint) -> String {
     if difference == 0.0 {
         paint.paint(Tone::Good, "=")
@@ -176,7 +177,7 @@ fn vector(v: [f64; 3]) -> String {
     v.map(number).join(" ")
 }
 
-/// Nine characters with as many digits as fit.
+/// Nine characters, with as many digits as fit.
 fn number(x: f64) -> String {
     let text = match x.abs() {
         0.0 => "0".to_owned(),

@@ -1,4 +1,4 @@
-//! A difference in a sentence.
+//! Describes differences in sentences.
 
 use super::compare::{Comparison, Difference, Quantity, departure};
 use crate::console::printable;
@@ -7,31 +7,31 @@ use crate::render::RenderJob;
 use glam::DVec3;
 use std::borrow::Cow;
 
-/// Rays that miss a sphere by less than this share of its radius graze it.
+/// A ray that misses a sphere by less than this fraction of the radius grazes it.
 const GRAZING_SHARE: f64 = 0.01;
 
-/// What two sides did, to be told.
+/// The two paths that are compared, with what is needed to describe them.
 #[derive(Clone, Copy)]
 pub struct Told<'a> {
-    /// What was rendered.
+    /// The job that was rendered.
     pub job: &'a RenderJob,
-    /// The sides' short names.
+    /// Short names of the sides.
     pub names: [&'a str; 2],
-    /// Their paths.
+    /// The recorded paths.
     pub paths: [&'a PathRecord; 2],
-    /// Largest difference that counts as none.
+    /// Largest difference that does not count.
     pub tolerance: f64,
 }
 
 impl Told<'_> {
-    /// The result in a sentence or two.
+    /// The result in one or two sentences.
     pub fn verdict(&self, comparison: &Comparison) -> String {
         match (comparison.first, comparison.parting) {
             (None, _) if comparison.largest == 0.0 && comparison.radiance == 0.0 => {
                 "the paths agree to the bit".to_owned()
             }
             (None, _) => format!(
-                "the paths agree: nothing differs by more than {:.1e}, and {:.0e} is allowed",
+                "the paths agree: the largest difference is {:.1e}, and up to {:.0e} is allowed",
                 comparison.largest.max(comparison.radiance),
                 self.tolerance
             ),
@@ -42,21 +42,24 @@ impl Told<'_> {
         }
     }
 
-    /// A difference in a sentence: `bounce 2: the paths part: cpu avx2 meets sphere 7 (glass), gpu the sky`.
+    /// A difference in a sentence: `bounce 2: the paths part: cpu avx2 hits sphere 7 (glass), gpu the sky`.
     pub fn sentence(&self, difference: &Difference) -> String {
         let Difference { bounce, quantity, amount } = *difference;
         let [a, b] = self.names;
         let [ray_a, ray_b] = self.paths.map(|path| path.rays.get(bounce));
         let drift = |what: &str| {
-            format!("bounce {bounce}: {what} differ by {amount:.1e}, and {:.0e} is allowed", self.tolerance)
+            format!(
+                "bounce {bounce}: {what} differ by {amount:.1e}, but only {:.0e} is allowed",
+                self.tolerance
+            )
         };
         match quantity {
-            Quantity::Origin => drift("the points that the rays leave from"),
+            Quantity::Origin => drift("the origins of the rays"),
             Quantity::Direction => drift("the directions"),
             Quantity::Throughput => drift("the throughputs"),
             Quantity::Distance => drift("the distances"),
             Quantity::Radiance => format!(
-                "the radiances differ by {amount:.1e}, and {:.0e} is allowed, though the rays agree",
+                "the radiances differ by {amount:.1e}, but only {:.0e} is allowed, although the rays agree",
                 self.tolerance
             ),
             Quantity::Object => {
@@ -90,14 +93,14 @@ impl Told<'_> {
         }
     }
 
-    /// A sphere's material: its name, as it can be printed, and kind.
+    /// Name (printable) and kind of a sphere's material.
     pub fn material(&self, sphere: usize) -> Option<(Cow<'_, str>, &'static str)> {
         let scene = self.job.scene();
         let named = scene.materials.get(scene.spheres.get(sphere)?.material)?;
         Some((printable(&named.name), named.material.kind()))
     }
 
-    /// Says so where a side just misses what the other meets: then it was rounding that decided.
+    /// A note if one side only just misses the sphere that the other hits, so that rounding decided.
     fn near_miss(&self, a: Option<&RecordedRay>, b: Option<&RecordedRay>) -> Option<String> {
         let (a, b) = (a?, b?);
         [(a, b, self.names[1]), (b, a, self.names[0])].into_iter().find_map(|(hitting, missing, name)| {

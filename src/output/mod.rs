@@ -1,5 +1,5 @@
-//! Picture files: 8-bit PNG, binary PPM (P6), and OpenEXR, which contains the whole film. All of them include a
-//! [`Description`]. Pictures of other programs can be read too: [`read_picture`].
+//! Picture files: 8-bit PNG, binary PPM (P6), and OpenEXR with the whole film. All of them contain a [`Description`].
+//! Pictures of other programs can be read, too: [`read_picture`].
 
 mod limits;
 mod pfm;
@@ -17,22 +17,22 @@ use crate::stages::Transfer;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
-/// How a picture is kept in a file.
+/// File format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OutputFormat {
     /// 8-bit RGB.
     Png,
-    /// Binary PPM, 8-bit RGB: the book's format, as bytes.
+    /// Binary PPM, 8-bit RGB: the book's format in binary form.
     P6,
     /// Linear float RGB and the film's exact sums: see [`crate::film::checkpoint`].
     Exr,
 }
 
 impl OutputFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: [OutputFormat; 3] = [OutputFormat::Png, OutputFormat::P6, OutputFormat::Exr];
 
-    /// What its files end in, with the dot.
+    /// File extension, with the dot.
     pub fn ending(self) -> &'static str {
         match self {
             OutputFormat::Png => ".png",
@@ -41,10 +41,10 @@ impl OutputFormat {
         }
     }
 
-    /// The format that a file's ending stands for, in capitals or not.
+    /// The format that belongs to a file name's extension, in upper or lower case.
     ///
     /// # Errors
-    /// [`OutputError::UnknownEnding`], which lists those that are known.
+    /// [`OutputError::UnknownEnding`], which lists the known extensions.
     pub fn from_path(path: &Path) -> Result<Self, OutputError> {
         let ending = path.extension().map(|ending| format!(".{}", ending.to_string_lossy().to_lowercase()));
         OutputFormat::ALL
@@ -54,38 +54,38 @@ impl OutputFormat {
     }
 }
 
-/// A picture that cannot be written, or cannot be read for what it says.
+/// Why a picture cannot be written, or its description cannot be read.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// The file's name does not say what to write.
+    /// The file name has no known extension.
     #[error(
-        "the name {} does not end in a known picture format; let it end in one of {}",
+        "cannot tell the picture format of {}; let the name end in one of {}",
         path.display(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
     )]
     UnknownEnding {
         /// The file.
         path: PathBuf,
     },
-    /// The file system, or what it says.
+    /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// The file cannot be read, or is none.
+    /// The file cannot be opened, or is not a regular file.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// A film that is damaged, or of another version.
+    /// The film is damaged or of another version.
     #[error(transparent)]
     Film(#[from] CheckpointError),
-    /// What is in the file cannot be read.
-    #[error("cannot read {}: {reason}; check the name and that it is a whole picture", path.display())]
+    /// The content of the file cannot be read.
+    #[error("cannot read {}: {reason}; check the name and whether the picture is complete", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// What is wrong.
         reason: io::Error,
     },
-    /// A picture of somebody else's.
+    /// The picture does not contain a description.
     #[error(
-        "{} does not say how it was made; only PNG, PPM and EXR files that Weekender wrote do, as long as no other program saved them again",
+        "{} does not say how it was made; only PNG, PPM and EXR files written by Weekender do, unless another program has saved them again",
         path.display()
     )]
     NoDescription {
@@ -94,11 +94,11 @@ pub enum OutputError {
     },
 }
 
-/// Writes a picture in place of `path`, in the format of its ending. `transfer` matters for 8 bits only; an EXR
-/// file is linear and holds the film.
+/// Writes a picture to `path`, replacing an existing file, in the format of its extension. `transfer` only matters
+/// for 8-bit formats; an EXR file is linear and holds the film.
 ///
 /// # Errors
-/// [`OutputError`]; the file that was there is then as it was.
+/// [`OutputError`]; an existing file is then unchanged.
 pub fn write_image(
     path: &Path,
     film: &Film,
@@ -114,7 +114,7 @@ pub fn write_image(
     Ok(())
 }
 
-/// Reads what a picture says about itself. What the file is shows in its first bytes; its name does not matter.
+/// Reads the description of a picture. The first bytes of the file tell its format; the name does not matter.
 ///
 /// # Errors
 /// [`OutputError::Input`], [`OutputError::Read`], [`OutputError::Film`] or [`OutputError::NoDescription`].
@@ -123,10 +123,10 @@ pub fn read_description(path: &Path) -> Result<Description, OutputError> {
     decode_description(BufReader::new(file), path)
 }
 
-/// The same from a reader; `path` stands in messages.
+/// The same from a reader; `path` is only used in messages.
 ///
 /// # Errors
-/// As [`read_description`].
+/// As for [`read_description`].
 pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Result<Description, OutputError> {
     let unreadable = |reason| OutputError::Read { path: path.to_owned(), reason };
     let start = start_of(&mut reader).map_err(unreadable)?;
@@ -139,7 +139,7 @@ pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Resul
     found.ok_or_else(|| OutputError::NoDescription { path: path.to_owned() })
 }
 
-/// The first bytes, which tell what a file is.
+/// The first bytes, which tell the format of a file.
 fn start_of(reader: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     reader.by_ref().take(8).read_to_end(&mut start)?;
@@ -147,10 +147,10 @@ fn start_of(reader: &mut (impl Read + Seek)) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
-/// Most bytes that the texts of a picture may have when unpacked.
+/// Largest size of a picture's texts when decompressed, bytes.
 const TEXT_LIMIT: usize = 64 << 20;
 
-/// All pixels, 8-bit RGB, a row at a time: a picture may be larger than one likes to have in memory again.
+/// Writes all pixels as 8-bit RGB, row by row, because a second copy of a large picture may not fit into memory.
 fn write_rows(film: &Film, transfer: Transfer, writer: &mut impl Write) -> io::Result<()> {
     let mut bytes = vec![0; 3 * film.width() as usize];
     for row in 0..film.height() {

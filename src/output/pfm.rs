@@ -8,12 +8,12 @@ use std::io::{self, BufRead, Read};
 /// Longest word of the header, bytes.
 const WORD_LIMIT: usize = 32;
 
-/// Width, height and linear RGB, top row first, of a file of `length` bytes. Grey becomes three equal channels.
+/// Reads width, height and linear RGB, top row first, from a file of `length` bytes. Grey becomes three equal channels.
 pub(super) fn read(mut reader: impl BufRead, length: u64) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
     let channels = match word(&mut reader)?.as_str() {
         "PF" => 3,
         "Pf" => 1,
-        other => return Err(invalid(format!("it begins with {other:?} where a PFM has PF or Pf"))),
+        other => return Err(invalid(format!("it begins with {other:?}; a PFM begins with PF or Pf"))),
     };
     let mut side = |what: &str| -> io::Result<u32> {
         let text = word(&mut reader)?;
@@ -24,17 +24,17 @@ pub(super) fn read(mut reader: impl BufRead, length: u64) -> io::Result<(u32, u3
     let scale: f32 = text.parse().map_err(|_| invalid(format!("its scale is {text:?}")))?;
     let count = pixel_count(width, height)? * channels;
     if length < 4 * count as u64 {
-        return Err(invalid(format!("it has {length} bytes, but its pixels alone take {}", 4 * count)));
+        return Err(invalid(format!("it has {length} bytes, but its pixels alone need {}", 4 * count)));
     }
     check_memory(width, height)?;
     let mut bytes = Vec::new();
     bytes.try_reserve_exact(4 * count)?;
     reader.take(4 * count as u64).read_to_end(&mut bytes)?;
     if bytes.len() != 4 * count {
-        return Err(invalid(format!("it ends after {} of {} bytes of pixels", bytes.len(), 4 * count)));
+        return Err(invalid(format!("its pixels end after {} of {} bytes", bytes.len(), 4 * count)));
     }
     let (words, _) = bytes.as_chunks::<4>();
-    // The scale's sign tells the order of bytes; its size, a unit that renderers leave at 1, is not applied.
+    // The scale's sign tells the byte order. Its magnitude is a unit that renderers leave at 1; it is ignored.
     let value =
         |word: &[u8; 4]| if scale < 0.0 { f32::from_le_bytes(*word) } else { f32::from_be_bytes(*word) };
     let rows = words.chunks_exact(width as usize * channels).rev();
@@ -45,7 +45,7 @@ pub(super) fn read(mut reader: impl BufRead, length: u64) -> io::Result<(u32, u3
     Ok((width, height, pixels))
 }
 
-/// The next word of the header and the one white space after it.
+/// Reads the next word of the header and one whitespace character after it.
 fn word(reader: &mut impl BufRead) -> io::Result<String> {
     let mut text = String::new();
     loop {
@@ -55,7 +55,7 @@ fn word(reader: &mut impl BufRead) -> io::Result<String> {
             space if space.is_ascii_whitespace() && text.is_empty() => {}
             space if space.is_ascii_whitespace() => return Ok(text),
             other if text.len() < WORD_LIMIT && other.is_ascii_graphic() => text.push(char::from(other)),
-            _ => return Err(invalid("its header is not that of a PFM".to_owned())),
+            _ => return Err(invalid("it has no PFM header".to_owned())),
         }
     }
 }
@@ -96,7 +96,7 @@ mod tests {
             (b"PF\nx 1\n-1\n", "width"),
             (b"PF\n0 1\n-1\n", "0x1"),
             (b"PF\n99999 99999\n-1\n", "99999x99999"),
-            (b"PF\n9999 9999\n-1\n1234", "it has 20 bytes, but its pixels alone take 1199760012"),
+            (b"PF\n9999 9999\n-1\n1234", "it has 20 bytes, but its pixels alone need 1199760012"),
             (b"PF\n2 1\n-1\n12345678901234567890", "20 of 24 bytes"),
         ];
         for (bytes, part) in cases {

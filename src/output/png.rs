@@ -1,4 +1,4 @@
-//! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe is a compressed one.
+//! 8-bit PNG. Each key of the description is the keyword of a text chunk; the recipe's chunk is compressed.
 
 use super::{Description, RECIPE_KEY, TEXT_LIMIT, write_rows};
 use crate::film::Film;
@@ -16,7 +16,7 @@ pub(super) fn write(
     result.map_err(|error| writer.error.take().unwrap_or(error))
 }
 
-/// Remembers what the file system said, of which the encoder keeps the text alone.
+/// Remembers the file system's error, of which the encoder would keep only the text.
 struct FirstError<W> {
     inner: W,
     error: Option<io::Error>,
@@ -53,7 +53,8 @@ fn encode(
     let mut encoder = ::png::Encoder::new(writer, film.width(), film.height());
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_depth(::png::BitDepth::Eight);
-    // Readers keep the two kinds of chunks apart, so one kind for all: else their order would be lost.
+    // Readers keep the two kinds of text chunks apart, so all chunks are of one kind; otherwise their order would be
+    // lost.
     let latin_1 = description.entries().all(|(_, value)| value.chars().all(|c| c <= 'ÿ'));
     for (key, value) in description.entries() {
         let (key, value) = (key.to_owned(), value.to_owned());

@@ -1,5 +1,5 @@
-//! Binary PPM (P6). The header's comments hold the description: lines `# key: value`, then a line with the
-//! recipe's key and nothing after it, then the recipe's lines.
+//! Binary PPM (P6). Comments in the header hold the description: lines `# key: value`, then a line with the recipe's
+//! key alone, then the lines of the recipe.
 
 use super::{Description, RECIPE_KEY, TEXT_LIMIT, write_rows};
 use crate::film::Film;

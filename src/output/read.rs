@@ -1,4 +1,4 @@
-//! Pictures of any program, as linear radiance: PFM, EXR, PNG and binary PPM.
+//! Reads pictures of any program as linear radiance: PFM, EXR, PNG and binary PPM.
 
 use super::OutputError;
 use super::limits::{PIXEL_LIMIT, check_memory, pixel_count};
@@ -10,32 +10,33 @@ use image::ImageDecoder;
 use std::io::{self, BufRead, BufReader, Seek};
 use std::path::Path;
 
-/// What numbers of 8 or 16 bits stand for.
+/// What integer values of 8 or 16 bits mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     /// As Weekender and the book write them: the transfer, then `floor(256 v)`.
     Book(Transfer),
-    /// The curve of sRGB, rounded, as most other programs write pictures.
+    /// The sRGB curve, rounded, as most other programs write pictures.
     Srgb,
 }
 
-/// A picture from a file.
+/// A picture that was read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadPicture {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Pixels down.
+    /// Height in pixels.
     pub height: u32,
-    /// Linear RGB, row by row from the top; NaN where an 8-bit channel is at its end and tells only a limit.
+    /// Linear RGB, row by row from the top. A channel at the top of its integer range is NaN, since it only tells a
+    /// limit.
     pub pixels: Vec<[f64; 3]>,
-    /// By how much a channel can be off for being a whole number, to either side, linear; `None` in float files.
+    /// Largest quantisation error of each channel in either direction, linear; `None` for float files.
     pub steps: Option<Vec<[f64; 3]>>,
-    /// Channels at or above this, linear, are NaN; infinite in float files.
+    /// Linear value from which on a channel is NaN; infinite for float files.
     pub limit: f64,
 }
 
-/// Reads a picture. What the file is shows in its first bytes; its name does not matter. `encoding` is that of
-/// whole numbers.
+/// Reads a picture. The first bytes of the file tell its format; the name does not matter. `encoding` is the meaning
+/// of integer values.
 ///
 /// # Errors
 /// [`OutputError::Input`] or [`OutputError::Read`].
@@ -45,10 +46,10 @@ pub fn read_picture(path: &Path, encoding: Encoding) -> Result<ReadPicture, Outp
         .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
 }
 
-/// The same from a reader that gives `length` bytes.
+/// The same from a reader of `length` bytes.
 ///
 /// # Errors
-/// What is wrong, or what the reader says.
+/// What is wrong with the file, or the reader's error.
 pub fn decode_picture(
     mut reader: impl BufRead + Seek,
     length: u64,
@@ -60,7 +61,7 @@ pub fn decode_picture(
         start if start.starts_with(&checkpoint::MAGIC) => read_exr(reader, length).map(float),
         [0x89, b'P', b'N', b'G', ..] => read_whole(reader, length, image::ImageFormat::Png, encoding),
         [b'P', b'2'..=b'6', ..] => read_whole(reader, length, image::ImageFormat::Pnm, encoding),
-        _ => Err(invalid("it is no PFM, EXR, PNG or PPM")),
+        _ => Err(invalid("it is not a PFM, EXR, PNG or PPM file")),
     }
 }
 
@@ -76,7 +77,7 @@ fn float((width, height, pixels): (u32, u32, Vec<[f32; 3]>)) -> ReadPicture {
 fn read_exr(mut reader: impl BufRead + Seek, length: u64) -> io::Result<(u32, u32, Vec<[f32; 3]>)> {
     use exr::prelude::*;
     type Pixels = (usize, Vec<[f32; 3]>);
-    // Every layer is looked at: which of them is shown is the reader's choice.
+    // All layers are checked, because the EXR library chooses which one to read.
     let meta = MetaData::read_from_buffered(&mut reader, false).map_err(invalid)?;
     for header in &meta.headers {
         checkpoint::check_length(header, length).map_err(invalid)?;
@@ -89,7 +90,7 @@ fn read_exr(mut reader: impl BufRead + Seek, length: u64) -> io::Result<(u32, u3
         .no_deep_data()
         .largest_resolution_level()
         .rgb_channels(
-            // What the header promises beyond the limit is not made room for; it is refused below.
+            // Nothing is allocated for a size beyond the limit; such a size is refused below.
             |size: Vec2<usize>, _: &RgbChannels| {
                 let fits = size.x().checked_mul(size.y()).filter(|count| *count as u64 <= PIXEL_LIMIT);
                 (size.x(), vec![[0.0_f32; 3]; fits.unwrap_or(0)])
@@ -113,11 +114,11 @@ fn read_exr(mut reader: impl BufRead + Seek, length: u64) -> io::Result<(u32, u3
 fn size_of_layer(size: exr::prelude::Vec2<usize>) -> io::Result<(u32, u32)> {
     match (u32::try_from(size.x()), u32::try_from(size.y())) {
         (Ok(width), Ok(height)) => Ok((width, height)),
-        _ => Err(invalid(format!("a size of {}x{}", size.x(), size.y()))),
+        _ => Err(invalid(format!("its size is {}x{}", size.x(), size.y()))),
     }
 }
 
-/// What a byte of a file of whole numbers may become at most: 1032 by deflation, and a bit of a palette 3 bytes.
+/// Largest expansion of a byte: deflate expands up to 1032 times, and one bit of a palette index becomes 3 bytes.
 const LARGEST_RATIO: u64 = 1032 * 24;
 
 fn read_whole(
@@ -137,7 +138,7 @@ fn read_whole(
     if decoder.total_bytes() / ratio > length {
         let least = decoder.total_bytes() / ratio;
         return Err(invalid(format!(
-            "it has {length} bytes, but {width}x{height} pixels take at least {least}"
+            "it has {length} bytes, but {width}x{height} pixels need at least {least}"
         )));
     }
     check_memory(width, height)?;
@@ -163,7 +164,8 @@ fn read_whole(
 }
 
 impl Encoding {
-    /// The linear values that become `value` of `levels`; NaN at the upper end, where all brighter ones are, too.
+    /// The interval of linear values that are stored as `value` of `levels`. At the top it is NaN, as all brighter
+    /// values are stored so.
     fn interval(self, value: u16, levels: u32, row: usize, height: usize) -> [f64; 2] {
         if u32::from(value) + 1 == levels {
             return [f64::NAN; 2];
@@ -195,7 +197,7 @@ mod tests {
     use crate::film::to_byte;
     use proptest::prelude::*;
 
-    /// A PPM of one row of these bytes.
+    /// Reads a PPM whose only row has these bytes.
     fn of_bytes(bytes: &[u8], encoding: Encoding) -> ReadPicture {
         let header = format!("P6 {} 1 255 ", bytes.len() / 3);
         let file = [header.as_bytes(), bytes].concat();

@@ -4,13 +4,13 @@ use super::data::{Curve, Data, Measured};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The estimate counts as true if it is off by at most this share.
+/// An estimate counts as accurate if its ratio to the true error differs from 1 by at most this.
 pub const TOLERANCE: f64 = 0.05;
 
-/// Pictures of fewer samples are not held against their estimate: no stop is decided by it.
+/// Pictures with fewer samples are not checked, because no stop condition uses their estimates.
 const FROM_SAMPLES: u64 = 16;
 
-/// The estimates of one curve's pictures at one number of samples, held against their true errors.
+/// Estimated and true errors of a curve's pictures at one number of samples.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Calibration {
     /// The curve.
@@ -18,20 +18,20 @@ pub struct Calibration {
     pub curve: Curve,
     /// Samples per pixel.
     pub samples: u64,
-    /// Pictures.
+    /// Number of pictures.
     pub seeds: usize,
-    /// Root of the mean of their estimates of the squared error.
+    /// Square root of the mean estimated squared error.
     pub predicted_rmse: f64,
-    /// Root of the mean of their squared errors.
+    /// Square root of the mean squared error.
     pub actual_rmse: f64,
-    /// The one over the other.
+    /// Predicted over actual RMSE.
     pub ratio: f64,
-    /// Its standard deviation, from leaving out each picture in turn; NaN where one outweighs all others.
+    /// Standard deviation of the ratio, by the jackknife; NaN if one picture outweighs all others.
     pub deviation: f64,
 }
 
 impl Calibration {
-    /// Whether the ratio is 1, within [`TOLERANCE`].
+    /// Whether the ratio is 1 to within [`TOLERANCE`].
     pub fn holds(&self) -> bool {
         (self.ratio - 1.0).abs() <= TOLERANCE
     }
@@ -55,10 +55,10 @@ impl Calibration {
     }
 }
 
-/// Estimate and squared error of each picture, by curve and samples.
+/// Estimated and true squared error of each picture, by curve and number of samples.
 type Pairs<'a> = BTreeMap<(&'a Curve, u64), Vec<[f64; 2]>>;
 
-/// All curves whose pictures tell an error, at every number of samples from 16 on.
+/// One entry for each curve with error estimates and each number of samples from 16 on.
 pub fn calibration(data: &Data) -> Vec<Calibration> {
     let mut pairs: Pairs<'_> = BTreeMap::new();
     for run in &data.runs {
@@ -82,7 +82,8 @@ mod tests {
         let of = |pairs: &[[f64; 2]]| Calibration::of(&curve, 16, pairs);
         let even = of(&[[1.21, 1.0]; 4]).unwrap();
         assert!((even.ratio - 1.1).abs() < 1e-12 && even.deviation < 1e-12 && !even.holds(), "{even:?}");
-        // The mean of n values of deviation d is uncertain by d over the root of n, its root by half of that.
+        // The relative error of the mean of n values with relative deviation d is d over the root of n, that of its
+        // root half.
         let pairs: Vec<[f64; 2]> = (0..24).map(|k| [if k % 2 == 0 { 0.9 } else { 1.1 }, 1.0]).collect();
         let uneven = of(&pairs).unwrap();
         let expected = 0.5 * 0.1 / f64::sqrt(23.0);

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// How far a picture grows.
+/// Limits of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Seconds of rendering.
@@ -22,19 +22,19 @@ pub struct Limits {
     pub samples: u64,
 }
 
-/// Who renders a curve.
+/// What renders a curve.
 pub enum Candidate {
-    /// A backend, whose picture grows.
+    /// A backend, which adds samples to the same picture.
     Renderer(Box<dyn Renderer>),
-    /// The baseline, which begins anew for every number of samples.
+    /// The baseline, which starts again for every number of samples.
     Baseline(Baseline),
 }
 
 impl Candidate {
-    /// Makes it ready. `None` for a baseline that is not there and was not asked for.
+    /// Starts a candidate. `None` for a baseline that is not available and was not asked for.
     ///
     /// # Errors
-    /// What is missing.
+    /// If it is not available.
     pub fn of(backend: &ReportBackend) -> Result<Option<Self>> {
         Ok(match backend {
             ReportBackend::Renderer(choice) => Some(Candidate::Renderer(backends::create(choice)?)),
@@ -46,7 +46,7 @@ impl Candidate {
         })
     }
 
-    /// Which of the samplers it has: the baseline has one of its own, of independent numbers.
+    /// Which of the samplers it supports. The baseline only has its own independent numbers.
     pub fn samplers(&self, asked_for: &[SamplerKind]) -> Vec<SamplerKind> {
         match self {
             Candidate::Renderer(_) => asked_for.to_vec(),
@@ -54,11 +54,11 @@ impl Candidate {
         }
     }
 
-    /// Renders 1, 2, 4 ... samples and measures each. The last step is the last that should end within the limits;
-    /// two samples are always taken. `None` if `go_on` said no.
+    /// Renders 1, 2, 4 ... samples and measures each picture. The last one is the last that should be finished within
+    /// the limits, but two samples are always rendered. `None` if `go_on` returns false.
     ///
     /// # Errors
-    /// If it fails.
+    /// If rendering fails.
     pub fn run(
         &mut self,
         curve: &Curve,
@@ -109,7 +109,7 @@ fn powers_of_two(
         }
         let Some(point) = measure(samples)? else { return Ok(None) };
         points.push(point);
-        // Twice the samples take twice as long.
+        // Twice the samples are assumed to take twice as long.
         if samples >= 2 && 2.0 * point.wall_seconds > limits.seconds {
             break;
         }
@@ -118,7 +118,7 @@ fn powers_of_two(
     Ok(Some(points))
 }
 
-/// A film that grows.
+/// A film to which samples are added.
 struct Growing<'a> {
     renderer: &'a mut dyn Renderer,
     job: &'a RenderJob,
@@ -126,7 +126,7 @@ struct Growing<'a> {
     trace: Duration,
     wall: Duration,
     rejected: u64,
-    /// The device's clock when the film began.
+    /// Time on the device's clock when the film was started.
     device_begin: Option<Duration>,
 }
 
@@ -144,7 +144,7 @@ impl<'a> Growing<'a> {
         })
     }
 
-    /// What is first touched takes longer: caches, threads and the system's memory are warmed outside the clock.
+    /// The first use of caches, threads and memory takes longer, so it happens outside the clock.
     fn warm_up(&mut self) -> Result<()> {
         self.renderer.accumulate(self.job, 0..1, &mut self.job.new_film(), &AtomicBool::new(false))?;
         self.device_begin = self.renderer.device_time();
@@ -195,7 +195,7 @@ fn by_baseline(
         Err(BaselineError::Cancelled) => return Ok(None),
         ran => ran?,
     };
-    // The encoding is that of whole numbers, of which a PFM has none.
+    // The encoding applies only to integers, and a PFM has none.
     let errors = reference.errors(&read_picture(&out, Encoding::Srgb)?.pixels);
     Ok(Some(Measured {
         samples,

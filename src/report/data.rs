@@ -1,8 +1,8 @@
-//! What a report has measured, as it is kept in `report.json`.
+//! The measurements of a report, as `report.json` holds them.
 
 use serde::{Deserialize, Serialize};
 
-/// Version of the JSON: it grows when a key changes its meaning or goes away.
+/// Version of the JSON. It is raised when a key changes its meaning or is removed.
 pub const SCHEMA: u32 = 1;
 
 /// Everything that was measured.
@@ -10,19 +10,19 @@ pub const SCHEMA: u32 = 1;
 pub struct Data {
     /// See [`SCHEMA`].
     pub schema: u32,
-    /// What the figures depend on: runs of other settings are not mixed.
+    /// Settings on which the figures depend; runs with different settings are not mixed.
     pub settings: Settings,
-    /// One for each scene that has runs.
+    /// One entry per scene that has runs.
     pub references: Vec<ReferenceUsed>,
-    /// One for each curve and seed.
+    /// One entry per curve and seed.
     pub runs: Vec<Run>,
-    /// One for each scene and backend.
+    /// One entry per scene and backend.
     pub rounding: Vec<Rounding>,
 }
 
 impl Data {
-    /// Sets what errors are measured against, and forgets what was measured against anything else: a scene of the
-    /// same name may have become another.
+    /// Sets the references, and discards everything that was measured against another one: a scene with the same name
+    /// may have changed.
     pub fn take_references(&mut self, references: Vec<ReferenceUsed>) {
         let is_other =
             |old: &ReferenceUsed| references.iter().any(|new| new.scene == old.scene && new != old);
@@ -35,43 +35,43 @@ impl Data {
     }
 }
 
-/// What all runs have in common.
+/// Settings that all runs have in common.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Program and version.
     pub software: String,
     /// Width and height of all pictures.
     pub size: (u32, u32),
-    /// Pictures of each curve, which differ in their noise alone.
+    /// Number of pictures of each curve, which differ only in their noise.
     pub seeds: u32,
     /// Seconds of tracing for all seeds of a curve.
     pub time_limit: f64,
     /// Most samples per pixel.
     pub max_samples: u64,
-    /// Whether samples are kept in two halves, which tell the error.
+    /// Whether samples are kept in two halves, which is needed to estimate the error.
     pub estimate_error: bool,
-    /// Samples per pixel of references that the report makes.
+    /// Samples per pixel of the references that the report renders.
     pub reference_samples: u64,
-    /// What makes them, or the file that is taken.
+    /// The backend that renders the references, or the file that is used.
     pub reference: String,
 }
 
-/// The picture that errors are measured against.
+/// The picture relative to which errors are measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceUsed {
     /// The scene.
     pub scene: String,
-    /// What rendered it.
+    /// The backend that rendered it.
     pub about: String,
     /// Samples per pixel.
     pub samples: u64,
-    /// Its own mean squared error, as its halves estimate it; it is subtracted from the others'.
+    /// Its own mean squared error, as its halves estimate it; it is subtracted from the errors of pictures.
     pub mse: f64,
     /// Its own relative mean squared error.
     pub rel_mse: f64,
 }
 
-/// What makes a line of the plot.
+/// Identifies a line of the plot.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Curve {
     /// The scene.
@@ -82,19 +82,19 @@ pub struct Curve {
     pub sampler: String,
 }
 
-/// One picture that grew.
+/// A picture, measured while samples were added.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// Its curve.
+    /// The curve that it belongs to.
     #[serde(flatten)]
     pub curve: Curve,
     /// Its seed.
     pub seed: u32,
-    /// The backend in full.
+    /// Full name of the backend.
     pub about: String,
-    /// Seconds of preparing.
+    /// Seconds of preparing the scene.
     pub prepare_seconds: f64,
-    /// At powers of two of samples.
+    /// Measurements at powers of two of samples.
     pub points: Vec<Measured>,
 }
 
@@ -103,26 +103,26 @@ pub struct Run {
 pub struct Measured {
     /// Samples per pixel.
     pub samples: u64,
-    /// Seconds of tracing; the baseline tells those of its processor.
+    /// Seconds of tracing; for the baseline, its processor time.
     pub trace_seconds: f64,
-    /// Seconds of tracing and of adding to the film.
+    /// Seconds of tracing and adding to the film.
     pub wall_seconds: f64,
-    /// Seconds that the device was at work, by its own clock; `None` where it has none.
+    /// Seconds that the device was busy, by its own clock; `None` if it has none.
     pub device_seconds: Option<f64>,
-    /// Mean squared error over pixels and channels, linear radiance, less the reference's own; it can be below 0
-    /// where the picture is better than the reference.
+    /// Mean squared error over pixels and channels, linear radiance, minus the reference's own. It is negative if the
+    /// picture is better than the reference.
     pub mse: f64,
-    /// Mean of the squared error over `reference^2 + 0.01`, likewise.
+    /// Mean of the squared error divided by `reference^2 + 0.01`, minus the reference's own.
     pub rel_mse: f64,
-    /// LDR-FLIP of the picture that is shown.
+    /// LDR-FLIP of the displayed picture.
     pub flip: f64,
     /// Mean squared error as the picture's halves estimate it.
     pub mse_estimate: Option<f64>,
-    /// Samples that were left out.
+    /// Number of rejected samples.
     pub rejected: u64,
 }
 
-/// The same samples in `f64` and on a backend.
+/// Difference between the same samples in `f64` and on a backend.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rounding {
     /// The scene.
@@ -131,13 +131,13 @@ pub struct Rounding {
     pub backend: String,
     /// Samples per pixel.
     pub samples: u64,
-    /// Mean difference from `f64`.
+    /// Mean difference from `f64`, linear radiance.
     pub bias: f64,
-    /// Root of the mean square difference of pixels at this many samples: most of it are paths that rounding sent
-    /// another, equally likely way, and falls with more samples.
+    /// Root mean square difference of pixels at this number of samples. Most of it comes from paths that rounding
+    /// sent another, equally likely way, and falls with more samples.
     pub rms: f64,
-    /// What remains with endless samples: root of the mean square; `None` where it drowns in the above.
+    /// Root mean square difference that would remain with infinitely many samples; `None` if it is too small to tell.
     pub floor: Option<f64>,
-    /// The floor is below this (two deviations).
+    /// Upper limit of the floor (two standard deviations).
     pub floor_limit: f64,
 }

@@ -1,10 +1,10 @@
-//! The plot.
+//! The plot of error against time.
 
 use super::data::Data;
 use super::summary::CurveSummary;
 use crate::chart::{Axis, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
 
-/// Error against seconds, a chart for each scene, with the times to `target` marked.
+/// One chart per scene, with the times to `target` marked.
 pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {
     let mut scenes: Vec<&str> = Vec::new();
     for curve in curves {
@@ -16,11 +16,12 @@ pub fn figure(data: &Data, curves: &[CurveSummary], target: f64) -> Figure {
     let rows = scenes.len().div_ceil(columns).max(1) as u32;
     let settings = &data.settings;
     let about = format!(
-        "lower and more to the left is better; each mark doubles the samples: 1, 2, 4 ...; bands span {} pictures; {}",
-        settings.seeds, settings.software
+        "lower left is better; each mark doubles the samples: 1, 2, 4 ...; {}{}",
+        if settings.seeds > 1 { format!("bands span {} pictures; ", settings.seeds) } else { String::new() },
+        settings.software
     );
     Figure {
-        title: "How fast a picture gets better".to_owned(),
+        title: "Error against time".to_owned(),
         about,
         size: [560 * columns as u32, 90 + 470 * rows],
         columns,
@@ -71,7 +72,7 @@ fn line(name: String, points: &[[f64; 2]]) -> Series {
     Series { name, points, look: Look::Guide }
 }
 
-/// The slope of independent samples, the target, and when each curve reaches it.
+/// Guides: the slope of independent samples, the target, and when each curve reaches it.
 fn guides(
     times: [f64; 2],
     errors: [f64; 2],
@@ -80,7 +81,7 @@ fn guides(
     target: f64,
 ) -> Vec<Series> {
     let mut guides = Vec::new();
-    // From the upper left corner down, as far as the chart goes.
+    // From the upper left corner down to the edge of the chart.
     let end = times[1].min(times[0] * (errors[1] / bottom).powi(2));
     let at = |time: f64| errors[1] * (times[0] / time).sqrt();
     guides.push(line(
@@ -98,7 +99,7 @@ fn guides(
     guides
 }
 
-/// Where rounding would stop the error from falling, if the chart reaches so low.
+/// Where rounding would stop the error from falling, if the chart reaches that low.
 fn floor(scene: &str, data: &Data, times: [f64; 2], bottom: f64) -> Option<Series> {
     let of_scene = data.rounding.iter().filter(|row| row.scene == scene);
     let floor = of_scene.filter_map(|row| row.floor).fold(0.0, f64::max);

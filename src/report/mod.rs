@@ -36,26 +36,26 @@ use std::sync::atomic::AtomicBool;
 use summary::SamplerRatio;
 use table::Findings;
 
-/// Samples per pixel of the films that tell rounding.
+/// Samples per pixel of the films that show the effect of rounding.
 const ROUNDING_SAMPLES: u64 = 256;
 
-/// Seconds that a reference and a scene's rounding are expected to take, for the bar before they are known.
+/// Expected seconds for a reference and the rounding of a scene, for the progress bar.
 const EXPECTED_SECONDS: f64 = 40.0;
 
-/// Measures, and writes the report into its directory. What an earlier, interrupted report of the same settings has
-/// measured there is not measured again.
+/// Measures everything and writes the report to its directory. Results of an earlier, interrupted report with the
+/// same settings are used again.
 ///
 /// # Errors
-/// [`Failure::Input`] before anything is rendered, [`Failure::Run`] later.
+/// [`Failure::Input`] if nothing was rendered, [`Failure::Run`] otherwise.
 pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
     let mut report = Report::open(options).map_err(Failure::Input)?;
     let outcome = report.measure();
     report.progress.clear();
-    // What has been measured is kept, whatever happened.
+    // Measured results are kept in any case.
     let written = if report.data.runs.is_empty() { Ok(()) } else { report.write() };
     outcome.and(written).map_err(Failure::Run)?;
     if report.interrupt.is_set() {
-        console::note("interrupted; the same command goes on from here");
+        console::note("interrupted; run the same command again to continue");
         return Ok(ExitCode::from(INTERRUPTED));
     }
     Ok(ExitCode::SUCCESS)
@@ -70,11 +70,12 @@ struct Report<'a> {
 }
 
 impl<'a> Report<'a> {
-    /// Finds out what would fail later, and reads what is there.
+    /// Checks for everything that could fail later, and reads existing results.
     fn open(options: &'a ReportOptions) -> Result<Self> {
         let out = &options.out;
-        std::fs::create_dir_all(out)
-            .with_context(|| format!("cannot make the directory {}; choose another --out", out.display()))?;
+        std::fs::create_dir_all(out).with_context(|| {
+            format!("cannot create the directory {}; choose another with --out", out.display())
+        })?;
         check_writable(&out.join("report.json"))?;
         let candidates = candidates(options)?;
         if let ReferenceChoice::File(path) = &options.reference {
@@ -102,7 +103,7 @@ impl<'a> Report<'a> {
         })
     }
 
-    /// Measures what is missing; less if interrupted.
+    /// Measures what is missing, unless interrupted.
     fn measure(&mut self) -> Result<()> {
         let mut references = Vec::new();
         for recipe in &self.options.scenes {
@@ -112,7 +113,7 @@ impl<'a> Report<'a> {
             }
         }
         self.data.take_references(references.iter().map(|reference| reference.used.clone()).collect());
-        // Seeds outside, curves inside: what else the machine does is shared by all curves.
+        // The outer loop is over seeds, so that load from other programs affects all curves alike.
         for seed in 0..self.options.seeds {
             for (recipe, reference) in self.options.scenes.iter().zip(&references) {
                 for candidate in 0..self.candidates.len() {
@@ -178,7 +179,7 @@ impl<'a> Report<'a> {
         Ok(())
     }
 
-    /// The same samples in `f64` and on every other backend.
+    /// Renders the same samples in `f64` and on every other backend.
     fn rounding(&mut self, recipe: &Recipe) -> Result<()> {
         let is_there = |data: &Data, backend: &str| {
             data.rounding.iter().any(|row| row.scene == recipe.name && row.backend == backend)
@@ -237,13 +238,13 @@ impl<'a> Report<'a> {
             chart::save(&out.join(name), &figure)?;
         }
         print(&format!(
-            "wrote report.md, report.csv, report.json, error-vs-time.png and .svg into {}\n",
+            "wrote report.md, report.csv, report.json, error-vs-time.png and .svg to {}\n",
             out.display()
         ))
     }
 }
 
-/// `report.json`: what was measured, and what follows from it.
+/// The content of `report.json`: the measurements and the results derived from them.
 #[derive(Serialize)]
 struct Written<'a> {
     #[serde(flatten)]
@@ -252,12 +253,12 @@ struct Written<'a> {
     sampler_ratios: Vec<SamplerRatio>,
 }
 
-/// Who renders, without those that are missing and were not asked for.
+/// The candidates, without those that are not available and were not asked for.
 fn candidates(options: &ReportOptions) -> Result<Vec<(String, Candidate)>> {
     let mut candidates = Vec::new();
     for (name, backend) in &options.backends {
         let candidate =
-            Candidate::of(backend).with_context(|| format!("the backend {name} cannot be had"))?;
+            Candidate::of(backend).with_context(|| format!("the backend {name} is not available"))?;
         candidates.extend(candidate.map(|candidate| (name.clone(), candidate)));
     }
     Ok(candidates)
@@ -280,18 +281,18 @@ fn settings(options: &ReportOptions) -> Settings {
     }
 }
 
-/// Reads what a report has measured, as `report.json` holds it.
+/// Parses the measurements in the text of a `report.json`.
 ///
 /// # Errors
-/// What is wrong, with its place.
+/// What is wrong, and where.
 pub fn parse(json: &[u8]) -> Result<Data, serde_json::Error> {
     serde_json::from_slice(json)
 }
 
-/// Most bytes of a report that is gone on with.
+/// Largest `report.json` that is read, bytes.
 const REPORT_LIMIT: u64 = 64 << 20;
 
-/// What is in `path`, if it was measured with the same settings.
+/// The measurements in `path`, if they were made with the same settings.
 fn resumed(path: &Path, settings: &Settings) -> Option<Data> {
     let data = parse(&files::read(path, "a report", REPORT_LIMIT).ok()?).ok()?;
     (data.schema == SCHEMA && data.settings == *settings).then_some(data)

@@ -14,12 +14,12 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// The seed of references. No picture of a report has it, so none shares random numbers with its reference.
+/// Seed of the references. No picture of a report uses it, so none shares random numbers with its reference.
 const SEED: u32 = 0x5EED_0000;
 
-/// A picture that errors are measured against.
+/// A picture relative to which errors are measured.
 pub struct Reference {
-    /// What the report says of it.
+    /// Its entry in the report.
     pub used: ReferenceUsed,
     means: Vec<[f64; 3]>,
     appearance: Appearance,
@@ -28,7 +28,7 @@ pub struct Reference {
     height: u32,
 }
 
-/// What a picture is off by.
+/// The errors of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     /// See [`super::data::Measured::mse`].
@@ -40,14 +40,14 @@ pub struct Errors {
 }
 
 impl Reference {
-    /// Takes a film as the reference of the scene `scene`.
+    /// Uses a film as the reference of the scene `scene`.
     ///
     /// # Errors
-    /// A film that does not tell its own error.
+    /// If the film has no estimate of its own error.
     pub fn of_film(scene: &str, about: &str, film: &Film, transfer: Transfer) -> Result<Self> {
         let Some(own) = film.error() else {
             bail!(
-                "the reference of {scene} has one half and does not tell its own error; render it with --estimate-error on"
+                "the reference of {scene} has only one half, so its own error is unknown; render it with --estimate-error on"
             );
         };
         let means = film_means(film);
@@ -68,7 +68,7 @@ impl Reference {
         })
     }
 
-    /// The errors of a picture of the same size, linear RGB, row by row from the top.
+    /// The errors of a picture of the same size; the means are linear RGB, row by row from the top.
     pub fn errors(&self, means: &[[f64; 3]]) -> Errors {
         let (mut squares, mut relative) = (0.0, 0.0);
         for (x, expected) in means.iter().flatten().zip(self.means.iter().flatten()) {
@@ -86,12 +86,12 @@ impl Reference {
     }
 }
 
-/// The means of a film's pixels, linear RGB, row by row from the top.
+/// The mean of each pixel of a film, linear RGB, row by row from the top.
 pub fn film_means(film: &Film) -> Vec<[f64; 3]> {
     (0..film.halves()[0].len()).map(|pixel| film.mean(pixel)).collect()
 }
 
-/// As a screen shows it.
+/// The picture as a display shows it.
 fn appearance(means: &[[f64; 3]], transfer: Transfer, width: u32, height: u32) -> Appearance {
     let shown: Vec<[f64; 3]> = means
         .iter()
@@ -104,17 +104,17 @@ fn appearance(means: &[[f64; 3]], transfer: Transfer, width: u32, height: u32) -
     Appearance::of(width as usize, &shown)
 }
 
-/// The recipe of a scene's reference.
+/// The recipe of the reference for a scene.
 pub fn recipe_of(recipe: &Recipe) -> Recipe {
     let settings =
         RenderSettings { seed: SEED, sampler: SamplerKind::Sobol, estimate_error: true, ..recipe.settings };
     Recipe { settings, ..recipe.clone() }
 }
 
-/// Reads a film that somebody made of the scene.
+/// Reads an existing film as the reference of a scene.
 ///
 /// # Errors
-/// A film of another picture.
+/// If it is the film of another picture.
 pub fn read(path: &Path, recipe: &Recipe) -> Result<Reference> {
     let (theirs, read) = saved::open_film(path)?;
     let mine = recipe_of(recipe).job()?;
@@ -125,7 +125,7 @@ pub fn read(path: &Path, recipe: &Recipe) -> Result<Reference> {
         && (read.film.width(), read.film.height()) == (mine.settings().width, mine.settings().height);
     if !is_same {
         bail!(
-            "{} shows another picture than {} at {}x{}; name that scene and its --size, or leave --reference out",
+            "{} is not a picture of {} at {}x{}; name its scene and its --size or leave out --reference",
             path.display(),
             recipe.name,
             recipe.settings.width,
@@ -136,14 +136,14 @@ pub fn read(path: &Path, recipe: &Recipe) -> Result<Reference> {
     Reference::of_film(&recipe.name, about, &read.film, recipe.rules.transfer)
 }
 
-/// What a pass of a reference takes: progress is shown and Ctrl-C is seen between passes.
+/// Duration of a pass of a reference; progress is shown and Ctrl-C is noticed between passes.
 const PASS: Duration = Duration::from_millis(500);
 
-/// Makes the reference, or goes on with the part of it that is kept in `path`. `None` if `go_on`, which is told the
-/// share that is done, said no; what is done is kept.
+/// Renders the reference, or continues the part of it in `path`. `go_on` receives the fraction that is done; if it
+/// returns false, the result is `None` and the film is kept.
 ///
 /// # Errors
-/// If the backend fails, which what is done survives, or if the film cannot be kept.
+/// If the backend fails, in which case the film is kept, or if the film cannot be written.
 pub fn make(
     path: &Path,
     recipe: &Recipe,
@@ -177,7 +177,7 @@ pub fn make(
         description.set(key::SCENE, &recipe.name);
         description.set(key::SAMPLES, film.sample_count());
         description.set(key::BACKEND, &about);
-        checkpoint::save(path, &film, &description).context("cannot keep the reference")?;
+        checkpoint::save(path, &film, &description).context("cannot save the reference")?;
     }
     outcome?;
     if film.sample_count() < samples {
@@ -186,7 +186,7 @@ pub fn make(
     Reference::of_film(&recipe.name, &about, &film, recipe.rules.transfer).map(Some)
 }
 
-/// The film in `path`, if it is one of this job by this backend.
+/// The film in `path`, if it is of this job and backend.
 fn kept(path: &Path, job: &RenderJob, about: &str) -> Option<Film> {
     let (theirs, read) = saved::open_film(path).ok()?;
     let is_same = theirs == *job && read.backend.as_deref() == Some(about);

@@ -3,11 +3,11 @@
 use super::data::Rounding;
 use crate::film::Film;
 
-/// Compares two films of the same samples, with two halves.
+/// Compares two films of the same samples; both have two halves.
 ///
-/// A difference is the systematic one of rounding and the chance one of paths that rounding sent another way. The
-/// second is another in each half, so the mean product of the halves' differences estimates the square of the
-/// first.
+/// A difference has two parts: the systematic effect of rounding, and noise from paths that rounding sent another
+/// way. The noise is independent in the two halves, so the mean product of the halves' differences estimates the
+/// square of the systematic part.
 pub fn rounding(scene: &str, backend: &str, film: &Film, exact: &Film) -> Rounding {
     let scale = [0, 1].map(|half| 1.0 / film.half_sample_count(half) as f64);
     let (mut sum, mut squares, mut products, mut product_squares) = (0.0, 0.0, 0.0, 0.0);
@@ -25,7 +25,7 @@ pub fn rounding(scene: &str, backend: &str, film: &Film, exact: &Film) -> Roundi
             product += a * b;
         }
         products += product;
-        // Channels of a pixel are much alike: only pixels count as independent.
+        // The channels of a pixel are correlated: only pixels count as independent.
         product_squares += product * product;
     }
     let values = (3 * pixels) as f64;
@@ -48,7 +48,7 @@ mod tests {
     use crate::film::{PixelSum, fixed_point};
     use crate::sampling::pcg4d;
 
-    /// A film of two samples a pixel: `base`, plus in each half what `of` says.
+    /// A film of two samples per pixel: `base` plus the value of `of` for each half.
     fn film(of: impl Fn(u32, u32) -> f64) -> Film {
         let mut film = Film::new(64, 64, 2);
         for half in 0..2 {
@@ -62,7 +62,7 @@ mod tests {
         film
     }
 
-    /// Rare and large, as of paths that took another way.
+    /// Rare large differences, as from paths that took another way.
     fn chance(pixel: u32, half: u32) -> f64 {
         let [a, b, ..] = pcg4d([pixel, half, 3, 9]);
         if !a.is_multiple_of(50) { 0.0 } else { f64::from(b) / 4_294_967_296.0 - 0.5 }

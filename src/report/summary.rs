@@ -1,4 +1,4 @@
-//! Runs of one curve taken together, and curves held against each other.
+//! Summarises the runs of a curve, and compares curves.
 
 use super::data::{Curve, Data, Measured, Run};
 use crate::statistics::fit::{Crossing, Point, PowerLaw, time_to};
@@ -6,48 +6,48 @@ use crate::statistics::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The slope is fitted to points of at least this many samples: smaller pictures are done before all threads are.
+/// The slope is fitted from this many samples on: smaller pictures finish before all threads are at work.
 const SLOPE_FROM_SAMPLES: u64 = 16;
 
-/// A curve's pictures at one number of samples.
+/// The pictures of a curve at one number of samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePoint {
     /// Samples per pixel.
     pub samples: u64,
-    /// Pictures.
+    /// Number of pictures.
     pub seeds: usize,
     /// Median seconds of tracing.
     pub trace_seconds: f64,
-    /// Median seconds with adding to the film.
+    /// Median seconds of tracing and adding to the film.
     pub wall_seconds: f64,
-    /// Median seconds by the device's own clock; `None` where it has none.
+    /// Median seconds on the device's own clock; `None` if it has none.
     pub device_seconds: Option<f64>,
-    /// Root of the mean squared error over all pictures; 0 where they are better than the reference.
+    /// Square root of the mean squared error over all pictures; 0 if they are better than the reference.
     pub rmse: f64,
-    /// Least and greatest RMSE of a picture.
+    /// Smallest and largest RMSE of a single picture.
     pub range: [f64; 2],
     /// Mean relative squared error.
     pub rel_mse: f64,
     /// Mean FLIP.
     pub flip: f64,
-    /// Root of the mean estimated squared error over that of the true one; `None` where either is missing.
+    /// Square root of the ratio of the mean estimated squared error to the true one; `None` if either is missing.
     pub estimate_ratio: Option<f64>,
 }
 
-/// A line of the plot.
+/// A curve of the plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveSummary {
-    /// Which.
+    /// Scene, backend and sampler.
     pub curve: Curve,
-    /// The backend in full.
+    /// Full name of the backend.
     pub about: String,
-    /// In the order of samples.
+    /// Ordered by the number of samples.
     pub points: Vec<CurvePoint>,
-    /// By which power of the seconds the RMSE falls, with its deviation.
+    /// Exponent of the seconds in the RMSE, and its standard error.
     pub slope: Option<[f64; 2]>,
-    /// `1 / (MSE seconds)` at the last point with an error; NaN where there is none.
+    /// `1 / (MSE seconds)` at the last point that has an error; NaN if there is none.
     pub efficiency: f64,
-    /// Seconds to each target.
+    /// Seconds until each target is reached.
     pub times: Vec<Option<Crossing>>,
 }
 
@@ -57,11 +57,11 @@ impl CurveSummary {
         for point in runs.iter().flat_map(|run| &run.points) {
             by_samples.entry(point.samples).or_default().push(point);
         }
-        // Where a noisy machine cut some runs short, the few that got farther are not all of the curve.
+        // If noise of the machine ended some runs early, the longer runs alone do not represent the curve.
         by_samples.retain(|_, points| 2 * points.len() > runs.len());
         let points: Vec<CurvePoint> =
             by_samples.into_iter().map(|(samples, points)| curve_point(samples, &points)).collect();
-        // What is better than its reference is off by an unknown amount.
+        // The error of a picture that is better than its reference is unknown.
         let known = || points.iter().filter(|p| p.rmse > 0.0);
         let errors: Vec<Point> = known().map(|p| Point { time: p.wall_seconds, error: p.rmse }).collect();
         let first = known().position(|p| p.samples >= SLOPE_FROM_SAMPLES).unwrap_or(0);
@@ -100,7 +100,7 @@ fn curve_point(samples: u64, points: &[&Measured]) -> CurvePoint {
     }
 }
 
-/// All curves that have a run, in the order of their first.
+/// All curves that have runs, in the order of their first run.
 pub fn summaries(data: &Data, targets: &[f64]) -> Vec<CurveSummary> {
     let mut curves: Vec<&Curve> = Vec::new();
     for run in &data.runs {
@@ -117,7 +117,7 @@ pub fn summaries(data: &Data, targets: &[f64]) -> Vec<CurveSummary> {
         .collect()
 }
 
-/// How two samplers compare on one backend.
+/// Compares the samplers on one backend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SamplerRatio {
     /// The scene.
@@ -126,13 +126,13 @@ pub struct SamplerRatio {
     pub backend: String,
     /// Samples per pixel.
     pub samples: u64,
-    /// Squared error of independent samples over that of Sobol points.
+    /// Squared error of independent samples relative to that of Sobol points.
     pub at_equal_samples: f64,
-    /// The same over their seconds: how much longer independent samples take.
+    /// The same at equal time: how many times as long independent samples take.
     pub at_equal_time: f64,
 }
 
-/// Holds `sobol` against `independent` at every number of samples that both have.
+/// Compares `sobol` with `independent` at every number of samples that both have.
 pub fn sampler_ratios(curves: &[CurveSummary]) -> Vec<SamplerRatio> {
     let mut ratios = Vec::new();
     for sobol in curves.iter().filter(|c| c.curve.sampler == "sobol") {
@@ -162,7 +162,7 @@ pub fn sampler_ratios(curves: &[CurveSummary]) -> Vec<SamplerRatio> {
 mod tests {
     use super::*;
 
-    /// A curve whose squared error is `mse / samples`, at `seconds` a sample.
+    /// The runs of a curve whose squared error is `mse / samples`, at `seconds` per sample.
     pub fn runs(backend: &str, sampler: &str, mse: f64, seconds: f64) -> Vec<Run> {
         let curve = Curve { scene: "s".to_owned(), backend: backend.to_owned(), sampler: sampler.to_owned() };
         (0..4)
@@ -174,7 +174,7 @@ mod tests {
                 points: (0..9)
                     .map(|power| {
                         let samples = 1_u64 << power;
-                        // Two seeds are better than the mean and two worse.
+                        // Two seeds are better than the mean, and two are worse.
                         let mse = mse / samples as f64 * if seed < 2 { 0.5 } else { 1.5 };
                         let seconds = seconds * samples as f64;
                         Measured {

@@ -6,10 +6,10 @@ use super::summary::{CurvePoint, CurveSummary, SamplerRatio};
 use crate::statistics::fit::Crossing;
 use std::fmt::Write;
 
-/// The backends that others are held against, where they are there.
+/// Backends that others are compared with, if they were measured.
 const BASES: [&str; 2] = ["c89", "scalar"];
 
-/// Every measurement, a line for each picture and number of samples.
+/// All measurements, one line for each picture and number of samples.
 pub fn csv(data: &Data) -> String {
     let mut text = String::from(
         "scene,backend,sampler,seed,samples,trace_seconds,wall_seconds,device_seconds,mse,rel_mse,flip,mse_estimate,rejected\n",
@@ -20,7 +20,7 @@ pub fn csv(data: &Data) -> String {
             let optional = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
             let (device, estimate) = (optional(point.device_seconds), optional(point.mse_estimate));
             let curve = &run.curve;
-            // Names of scenes may be those of files.
+            // A scene's name may be any file name.
             let scene = curve.scene.replace([',', '"', '\n'], "_");
             let _ = writeln!(
                 text,
@@ -32,30 +32,30 @@ pub fn csv(data: &Data) -> String {
     text
 }
 
-/// What the tables are made from.
+/// What the tables show.
 pub struct Findings<'a> {
-    /// What was measured.
+    /// The measurements.
     pub data: &'a Data,
-    /// Its curves.
+    /// The curves.
     pub curves: &'a [CurveSummary],
-    /// Errors that times are told for.
+    /// Target errors.
     pub targets: &'a [f64],
-    /// Estimates against true errors.
+    /// Estimated and true errors.
     pub calibration: &'a [Calibration],
-    /// Samplers against each other.
+    /// Comparisons of the samplers.
     pub sampler_ratios: &'a [SamplerRatio],
 }
 
-/// The report for readers. `command` is what made it.
+/// The report as Markdown. `command` is the command that made it.
 pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
     let Findings { data, curves, targets, calibration: calibrations, sampler_ratios } = *findings;
     let mut text = String::from("# Error against time\n\n");
     let settings = &data.settings;
     let _ = writeln!(
         text,
-        "How far pictures are from what they approach, and how long that takes. Made by\n\n    {command}\n\n\
-         with {}: {} pictures a curve, which differ in their random numbers alone, {} s of tracing for all of \
-         them, at most {} samples per pixel.\n\n![Error against time](error-vs-time.png)\n",
+        "How the error of a picture falls with time, as measured by\n\n    {command}\n\n\
+         with {}. Pictures per curve, with different random numbers: {}. Seconds of tracing for all of them: {}. \
+         Samples per pixel: at most {}.\n\n![Error against time](error-vs-time.png)\n",
         settings.software, settings.seeds, settings.time_limit, settings.max_samples
     );
     text.push_str(HOW_TO_READ);
@@ -65,7 +65,7 @@ pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
         if let Some(reference) = data.references.iter().find(|r| r.scene == scene) {
             let _ = writeln!(
                 text,
-                "The reference has {} samples per pixel by {}, and an RMSE of its own of {:.1e}, which has been \
+                "The reference has {} samples per pixel by {}. Its own RMSE of {:.1e} has been \
                  subtracted.\n",
                 reference.samples,
                 reference.about,
@@ -84,14 +84,14 @@ pub fn markdown(findings: &Findings<'_>, command: &str) -> String {
 }
 
 const HOW_TO_READ: &str = "\
-**Reading it.** *RMSE* is the root of the mean squared difference from the reference over pixels and channels, in
-linear radiance, where white is 1: at .05 a picture is grainy, at .01 nearly clean, at .001 no screen shows what is
-left. *relMSE* weighs errors in the dark more; *FLIP* is how different the shown pictures look to someone who
-switches between them, 0 to 1. The *slope* is by which power of the seconds the RMSE falls: -.5 means that half the
-error costs four times the time. *Efficiency* is 1/(RMSE^2 seconds) at the last point: twice as much is the same
-picture in half the time. Times with ~ lie beyond what was measured. *Trace* seconds are the tracer's own, *wall*
-seconds with adding to the film, *device* seconds by a GPU's clock. Seconds are medians over the pictures, errors
-means. An RMSE of 0 is that of pictures which are better than the reference.
+**How to read it.** *RMSE* is the root mean square difference from the reference over pixels and channels, in linear
+radiance, where white is 1. At .05 a picture is grainy, at .01 nearly clean, and at .001 no screen shows the difference.
+*relMSE* gives more weight to errors in dark areas. *FLIP*, from 0 to 1, is how different the displayed pictures look to
+someone who flips between them. The *slope* is the exponent of the seconds in the RMSE: -.5 means that halving the error
+takes four times as long. *Efficiency* is 1/(RMSE^2 seconds) at the last point: twice the efficiency gives the same
+picture in half the time. Times with ~ are extrapolated. *Trace* seconds are those of the tracer, *wall* seconds
+include adding to the film, and *device* seconds are measured by the GPU's clock. Seconds are medians over the pictures,
+errors are means. An RMSE of 0 means that the pictures are better than the reference.
 ";
 
 fn scenes(curves: &[CurveSummary]) -> Vec<&str> {
@@ -104,7 +104,7 @@ fn scenes(curves: &[CurveSummary]) -> Vec<&str> {
     scenes
 }
 
-/// One row a curve.
+/// The overview of a scene, with one row per curve.
 fn overview(text: &mut String, curves: &[&CurveSummary], targets: &[f64]) {
     let bases: Vec<&str> =
         BASES.into_iter().filter(|base| curves.iter().any(|c| c.curve.backend == *base)).collect();
@@ -137,12 +137,12 @@ fn overview(text: &mut String, curves: &[&CurveSummary], targets: &[f64]) {
     if let (false, [target, ..]) = (bases.is_empty(), targets) {
         let _ = writeln!(
             text,
-            "\n*times X*: how many times as long X takes to an RMSE of {target}, with its own best sampler."
+            "\n*times X*: how many times as long X takes to reach an RMSE of {target} with its best sampler."
         );
     }
 }
 
-/// How many times as long `base` takes to the first target.
+/// How many times as long `base` takes to reach the first target.
 fn ratio(curve: &CurveSummary, curves: &[&CurveSummary], base: &str) -> String {
     let first = |curve: &CurveSummary| curve.times.first().copied().flatten();
     let of_base = curves.iter().filter(|c| c.curve.backend == base).filter_map(|c| first(c));
@@ -162,11 +162,11 @@ fn crossing(crossing: Option<Crossing>) -> String {
     })
 }
 
-/// One row a number of samples.
+/// The points of a curve, with one row per number of samples.
 fn points(text: &mut String, curve: &CurveSummary) {
     let _ = writeln!(
         text,
-        "\n### {}: {}, {}\n\n{}\n\n| samples | trace s | wall s | device s | RMSE | least to greatest | relMSE | FLIP | estimate / actual |\n|{}",
+        "\n### {}: {}, {}\n\n{}\n\n| samples | trace s | wall s | device s | RMSE | min to max | relMSE | FLIP | estimate / actual |\n|{}",
         curve.curve.scene,
         curve.curve.backend,
         curve.curve.sampler,
@@ -191,8 +191,8 @@ fn samplers(text: &mut String, ratios: &[SamplerRatio]) {
         return;
     }
     text.push_str(
-        "\n## Sobol points against independent samples\n\nHow many times as large the squared error of \
-         independent samples is. Sobol points are best at powers of two.\n\n\
+        "\n## Sobol points against independent samples\n\nThe squared error of \
+         independent samples relative to that of Sobol points, which are best at powers of two.\n\n\
          | scene | backend | samples | at equal samples | at equal time |\n| --- | --- | ---: | ---: | ---: |\n",
     );
     for ratio in ratios.iter().filter(|ratio| ratio.samples >= 4) {
@@ -212,8 +212,8 @@ fn calibration(text: &mut String, rows: &[Calibration]) {
     let largest = rows.iter().map(|row| (row.ratio - 1.0).abs()).fold(0.0, f64::max);
     let _ = writeln!(
         text,
-        "\n## Is the estimate true?\n\nThe RMSE that a picture's two halves predict without a reference, and the \
-         actual one, over all pictures of a curve. {} of {} ratios are 1 ± {TOLERANCE}; the farthest is off by \
+        "\n## Is the error estimate accurate?\n\nThe RMSE that a picture's two halves predict without a reference, and the \
+         actual RMSE, over all pictures of a curve. {} of {} ratios are within 1 ± {TOLERANCE}; the largest deviation is \
          {largest:.3}.\n\n| scene | backend | sampler | samples | pictures | predicted | actual | predicted / actual |\n\
          | --- | --- | --- | ---: | ---: | ---: | ---: | ---: |",
         rows.len() - off,
@@ -239,10 +239,10 @@ fn rounding(text: &mut String, data: &Data, curves: &[CurveSummary]) {
         return;
     }
     text.push_str(
-        "\n## What rounding costs\n\nThe same samples in double precision and on each backend. *Difference* is that of \
-         the pictures: nearly all of it are paths that rounding sent another way, which are as good as those in their \
-         place, and it falls with more samples as noise does. The *floor* is what stays however many are taken; \
-         until the noise is as low, more samples help.\n\n\
+        "\n## The effect of rounding\n\nThe same samples in double precision and on each backend. The *difference* is that of \
+         the pictures. Nearly all of it comes from paths that rounding sent another way. They are as good as the original \
+         paths, and like noise, this part falls with more samples. The *floor* is the part that never falls; \
+         more samples help until the noise is as low as the floor.\n\n\
          | scene | backend | samples | mean difference | RMS difference | floor | samples until noise is as low |\n\
          | --- | --- | ---: | ---: | ---: | ---: | ---: |\n",
     );
@@ -263,7 +263,7 @@ fn rounding(text: &mut String, data: &Data, curves: &[CurveSummary]) {
     }
 }
 
-/// Samples at which a curve's error would be `error`.
+/// Number of samples at which the error of a curve would be `error`.
 fn samples_to(curve: &CurveSummary, error: f64) -> Option<f64> {
     use crate::statistics::fit::{Point, time_to};
     let known = curve.points.iter().filter(|p| p.rmse > 0.0);
@@ -271,7 +271,7 @@ fn samples_to(curve: &CurveSummary, error: f64) -> Option<f64> {
     time_to(&points, error).map(|crossing| crossing.time)
 }
 
-/// Three digits that count.
+/// A number with three significant digits.
 fn number(x: f64) -> String {
     match x.abs() {
         size if !size.is_finite() => "-".to_owned(),

@@ -14,7 +14,7 @@ pub fn same_job(first: &str, other: &str) -> Result<(), String> {
 
 fn job(text: &str) -> Result<RenderJob, String> {
     let recipe =
-        file::parse(text, "its recipe").map_err(|error| format!("its recipe cannot be read: {error}"))?;
+        file::parse(text, "its recipe").map_err(|error| format!("cannot read its recipe: {error}"))?;
     recipe.job().map_err(|error| error.to_string())
 }
 

@@ -44,14 +44,14 @@ pub enum OpenError {
         reason: Box<JobError>,
     },
     /// The film does not match its recipe.
-    #[error("{} holds a film of another shape than its recipe says; render it again", path.display())]
+    #[error("the film in {} does not have the size that its recipe says; render it again", path.display())]
     Shape {
         /// The file.
         path: PathBuf,
     },
     /// The film is of a different job than the one to be resumed.
     #[error(
-        "{} is a film of another picture: {difference}; leave out the flags that differ, or render without --resume",
+        "{} is the film of another picture: {difference}; change the flags that differ or render without --resume",
         path.display()
     )]
     OtherPicture {

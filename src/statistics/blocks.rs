@@ -1,95 +1,95 @@
 //! Whether two pictures differ by more than their noise.
 //!
-//! The picture is cut into blocks of about 8 x 8 pixels. A block's `z` is its mean difference over that
-//! difference's deviation; with nothing but noise it is a normal number. So over `m` blocks the sum of `z^2` lies
-//! within `m +- 4 sqrt(2 m)` and the largest within a limit that 99 of 100 equal pictures keep. The three
-//! channels, whose noise is much alike, are tested apart.
+//! The picture is cut into blocks of about 8 x 8 pixels. A block's `z` is its mean difference divided by the
+//! deviation of that mean; if there is nothing but noise, it is a normal number. Over `m` blocks the sum of `z^2`
+//! then lies within `m +- 4 sqrt(2 m)`, and the largest `z` within a limit that 99 of 100 pairs of equal pictures
+//! keep. The three channels are tested separately, because their noise is correlated.
 
 use super::normal::{from_student, largest_of};
 use std::ops::Range;
 
-/// Pixels along a block's side, about: blocks share a picture's side evenly.
+/// Side of a block in pixels, approximately: blocks divide the picture evenly.
 pub const SIDE: u32 = 8;
 
-/// How often equal pictures have a larger `z` than the limit.
+/// Probability that equal pictures exceed the limit of `z`.
 const CHANCE: f64 = 0.01;
 
-/// How many deviations the sum of `z^2` may be off.
+/// By how many deviations the sum of `z^2` may differ.
 pub const SUM_DEVIATIONS: f64 = 4.0;
 
-/// Two pictures' difference, row by row from the top, with what is known of its noise.
+/// The difference of two pictures, row by row from the top, and what is known about its noise.
 #[derive(Clone, Debug)]
 pub struct Differences<'a> {
-    /// Pixels across.
+    /// Width in pixels.
     pub width: u32,
-    /// Of each pixel's channels. Where one is not finite, its block leaves out that channel: values near a limit
-    /// are known or not by their noise, and those that are known would not stand for all.
+    /// Difference of each pixel. A channel that is not finite in one pixel is left out of the whole block: near a
+    /// limit, noise decides which values are known, so those that are known would be biased.
     pub values: &'a [[f64; 3]],
-    /// Noise that is every pixel's own.
+    /// Independent noise of each pixel.
     pub noise: Noise<'a>,
-    /// Largest possible error, to either side, of each pixel that a whole block may share, such as that of 8-bit
-    /// steps.
+    /// Largest error of each pixel in either direction that a whole block may share, such as that of 8-bit
+    /// quantisation.
     pub steps: Option<&'a [[f64; 3]]>,
-    /// Deviation that a block's mean may have besides.
+    /// Additional deviation that the mean of a block may have.
     pub tolerance: f64,
-    /// Deviation that a single pixel of a block may have besides: what rare paths bring of which both halves
-    /// happen to hold as many, so that their difference does not tell them.
+    /// Additional deviation that a single pixel of a block may have: the effect of rare paths that both halves happen
+    /// to have in equal numbers, so that the difference of the halves does not show them.
     pub rare: f64,
 }
 
-/// What is known of each pixel's noise.
+/// What is known about the noise of each pixel.
 #[derive(Clone, Copy, Debug)]
 pub enum Noise<'a> {
-    /// Estimates of each pixel's variance, of one degree of freedom each.
+    /// Estimates of each pixel's variance, with one degree of freedom each.
     Variances(&'a [[f64; 3]]),
-    /// Nothing: the spread of the differences within a block tells it, so that differences finer than a block
-    /// pass for noise.
+    /// Nothing. The noise is taken from the spread of the differences within a block, so differences finer than a
+    /// block count as noise.
     Spread,
 }
 
-/// A block and how far its channels are off.
+/// A block and the differences of its channels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// Columns.
+    /// Columns of the picture.
     pub x: Range<u32>,
-    /// Rows.
+    /// Rows of the picture.
     pub y: Range<u32>,
     /// Mean differences.
     pub means: [f64; 3],
-    /// Mean differences over their deviations, as normal numbers.
+    /// Mean differences divided by their deviations, as normal numbers.
     pub z: [f64; 3],
-    /// Share of the deviation's square that is noise, and not steps or tolerance; `None` where nothing is known.
+    /// Fraction of the variance that is noise, not quantisation or tolerance; `None` if the channel is not known.
     noise_share: [Option<f64>; 3],
 }
 
 impl Block {
-    /// The channel that is farthest off.
+    /// The largest `|z|` of the channels.
     pub fn largest(&self) -> f64 {
         self.z.iter().fold(0.0, |most, z| most.max(z.abs()))
     }
 }
 
-/// What the blocks say.
+/// The result of the test.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockTest {
     /// All blocks, row by row.
     pub blocks: Vec<Block>,
-    /// Blocks in which each channel is known.
+    /// Number of blocks in which each channel is known.
     pub counts: [usize; 3],
     /// Sum of `z^2` of each channel.
     pub sums: [f64; 3],
-    /// By how many deviations each sum is above that of noise.
+    /// By how many deviations each sum exceeds that of noise.
     pub excess: [f64; 3],
-    /// The same against what noise leaves besides steps and tolerance: the least that noise gives.
+    /// The same, relative to what noise alone would give without quantisation and tolerance: the least possible.
     shortfall: [f64; 3],
     /// The largest `|z|`.
     pub largest: f64,
-    /// What it may be.
+    /// The limit for the largest `|z|`.
     pub largest_limit: f64,
 }
 
 impl BlockTest {
-    /// Tests the differences of a picture of `differences.width` columns.
+    /// Tests the differences.
     pub fn of(differences: &Differences) -> Self {
         let width = differences.width.max(1);
         let height = (differences.values.len() / width as usize) as u32;
@@ -116,29 +116,28 @@ impl BlockTest {
         }
     }
 
-    /// Whether nothing is farther off than noise puts it.
+    /// Whether all differences are within the noise.
     pub fn is_within(&self) -> bool {
         self.largest_excess() <= SUM_DEVIATIONS && self.largest <= self.largest_limit
     }
 
-    /// Whether the blocks are nearer to each other than their noise allows: it is not the noise of pictures
-    /// that have nothing in common.
+    /// Whether the blocks are closer to each other than noise allows, so the pictures cannot be independent.
     pub fn is_too_near(&self) -> bool {
         self.shortfall.iter().any(|deviations| *deviations < -SUM_DEVIATIONS)
     }
 
-    /// By how many deviations the sum of `z^2` is above that of noise, in the channel where it is most.
+    /// By how many deviations the sum of `z^2` exceeds that of noise, in the worst channel.
     pub fn largest_excess(&self) -> f64 {
         self.excess.iter().copied().fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Root of the mean of `z^2` over blocks, of the channel where it is largest: 1 for noise alone.
+    /// Root mean square of `z` over the blocks, in the worst channel: 1 for noise alone.
     pub fn ratio(&self) -> f64 {
         let means = self.sums.iter().zip(self.counts).map(|(sum, count)| sum / count.max(1) as f64);
         means.fold(0.0, f64::max).sqrt()
     }
 
-    /// The `count` blocks that are farthest off, the farthest first.
+    /// The `count` blocks with the largest differences, the largest first.
     pub fn worst(&self, count: usize) -> Vec<&Block> {
         let mut blocks: Vec<&Block> = self.blocks.iter().collect();
         blocks.sort_by(|a, b| b.largest().total_cmp(&a.largest()));
@@ -147,7 +146,7 @@ impl BlockTest {
     }
 }
 
-/// Cuts a side into pieces of about [`SIDE`] pixels.
+/// Divides a side into pieces of about [`SIDE`] pixels.
 fn cuts(length: u32) -> Vec<Range<u32>> {
     let count = ((length + SIDE / 2) / SIDE).max(1);
     let at = |index: u32| (u64::from(length) * u64::from(index) / u64::from(count)) as u32;
@@ -170,8 +169,9 @@ fn block(differences: &Differences, x: Range<u32>, y: Range<u32>) -> Block {
             Noise::Variances(variances) => {
                 let sum: f64 = pixels().map(|pixel| variances[pixel][channel]).sum();
                 let squares: f64 = pixels().map(|pixel| variances[pixel][channel].powi(2)).sum();
-                // Where each true variance is v, E sum^2 = (sum of v)^2 + 2 (sum of v^2), and E squares = 3 (sum of v^2).
-                // So this estimates (sum of v)^2 / (sum of v^2) without bias: 1 where a single pixel has all the noise.
+                // If v is the true variance of a pixel, E sum^2 = (sum of v)^2 + 2 (sum of v^2) and E squares = 3
+                // (sum of v^2). So this estimates (sum of v)^2 / (sum of v^2) without bias; it is 1 if a single pixel
+                // has all the noise.
                 let freedom = if squares > 0.0 { 3.0 * sum * sum / squares - 2.0 } else { count };
                 (sum / (count * count), freedom)
             }
@@ -183,14 +183,15 @@ fn block(differences: &Differences, x: Range<u32>, y: Range<u32>) -> Block {
         let step = differences
             .steps
             .map_or(0.0, |steps| pixels().map(|pixel| steps[pixel][channel]).sum::<f64>() / count);
-        // In a smooth block all pixels may be at the same end of their step, so its whole length is one deviation.
+        // In a smooth block, all pixels may be at the same end of their step, so the whole step counts as one
+        // deviation.
         let known = step * step + differences.tolerance.powi(2);
-        // What the halves may both miss is a guess, and no better known than what they tell.
+        // What both halves may miss is a guess, so it has no more degrees of freedom than their estimate.
         let variance = told + (differences.rare / count).powi(2);
         let total = variance + known;
         means[channel] = mean;
         if total > 0.0 {
-            // What is not estimated but known counts as having endless freedom (Welch and Satterthwaite).
+            // Known variance counts as having infinitely many degrees of freedom (Welch and Satterthwaite).
             let freedom = freedom * (total / variance.max(1e-9 * total)).powi(2);
             z[channel] = from_student(mean / total.sqrt(), freedom);
             noise_share[channel] = Some(told / total);
@@ -210,14 +211,14 @@ mod tests {
     use crate::sampling::pcg4d;
     use proptest::prelude::*;
 
-    /// Normal numbers by Box and Muller, a pair for each counter.
+    /// Normal numbers by Box and Muller, two for each counter.
     fn normal(counter: u32, seed: u32) -> [f64; 2] {
         let [a, b, _, _] = pcg4d([counter, seed, 7, 11]).map(|x| (f64::from(x) + 0.5) / 4_294_967_296.0);
         let (radius, turn) = ((-2.0 * a.ln()).sqrt(), std::f64::consts::TAU * b);
         [radius * turn.cos(), radius * turn.sin()]
     }
 
-    /// A difference of deviation 1 a pixel, and what two halves would say of its variance.
+    /// Differences with deviation 1 per pixel, and the variances that two halves would estimate.
     fn noise(width: u32, height: u32, seed: u32) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
         (0..width * height)
             .map(|pixel| {
@@ -242,13 +243,13 @@ mod tests {
             failed_by_halves += usize::from(!halves.is_within());
             failed_by_spread += usize::from(!test(96, &values, Noise::Spread).is_within());
         }
-        // 2 of 200 are expected; 9 or more have a chance of 2e-4.
+        // 2 of 200 are expected; the probability of 9 or more is 2e-4.
         assert!(failed_by_halves < 9 && failed_by_spread < 9, "{failed_by_halves}, {failed_by_spread}");
     }
 
     #[test]
     fn noise_of_one_pixel_passes_as_often_as_it_should() {
-        // A single pixel of each block has all the noise.
+        // One pixel of each block has all the noise.
         let failed = (0..200)
             .filter(|seed| {
                 let (mut values, mut variances) = noise(96, 64, *seed);
@@ -259,7 +260,7 @@ mod tests {
                 !test(96, &values, Noise::Variances(&variances)).is_within()
             })
             .count();
-        assert!(failed < 9, "{failed} of 200, where 2 are expected");
+        assert!(failed < 9, "{failed} of 200 instead of about 2");
     }
 
     #[test]
@@ -308,8 +309,8 @@ mod tests {
 
     #[test]
     fn what_is_known_counts_as_endless_freedom() {
-        // One pixel has all the noise, which is of one degree of freedom, and half the variance is known: by Welch and
-        // Satterthwaite 4 degrees. Student's two-sided quantile there is 2.7764 at 5 %, that of a normal number 1.960.
+        // One pixel has all the noise, with one degree of freedom, and half the variance is known: 4 degrees by Welch
+        // and Satterthwaite. Student's two-sided quantile at 5 % is then 2.7764; that of a normal number is 1.960.
         let share = 8.0 * 8.0;
         let mut variances = vec![[0.0; 3]; 64];
         variances[20] = [share * share; 3];

@@ -1,29 +1,29 @@
-//! Error against time, on scales of powers: slopes, times to a target, predictions.
+//! Error against time on logarithmic scales: slopes, time to a target, predictions.
 
 /// An error at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Seconds, or samples, above 0.
+    /// Seconds or samples, above 0.
     pub time: f64,
     /// RMSE, above 0.
     pub error: f64,
 }
 
-/// The least-squares line through points whose logarithms are taken.
+/// The least-squares line through the logarithms of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PowerLaw {
-    /// By which power of the time the error changes: -1/2 for independent samples.
+    /// Exponent of the time in the error: -1/2 for independent samples.
     pub slope: f64,
-    /// Deviation of the slope, from the points' distances to the line; 0 with two points.
+    /// Standard error of the slope, from the points' distances to the line; 0 with two points.
     pub slope_deviation: f64,
-    /// Deviation of the logarithm of a point's error about the line; 0 with two points.
+    /// Standard deviation of the error's logarithm around the line; 0 with two points.
     pub scatter: f64,
     mean_log_time: f64,
     mean_log_error: f64,
 }
 
 impl PowerLaw {
-    /// Fits the points; `None` where fewer than two times are there.
+    /// Fits the points; `None` if they have fewer than two different times.
     pub fn through(points: &[Point]) -> Option<Self> {
         let logs = || points.iter().map(|p| (p.time.ln(), p.error.ln()));
         let count = points.len() as f64;
@@ -47,7 +47,7 @@ impl PowerLaw {
         })
     }
 
-    /// The error at a time.
+    /// The error that the line has at `time`.
     pub fn error_at(&self, time: f64) -> f64 {
         (self.mean_log_error + self.slope * (time.ln() - self.mean_log_time)).exp()
     }
@@ -56,15 +56,15 @@ impl PowerLaw {
 /// When a target is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// As the points' times.
+    /// In the unit of the points' times.
     pub time: f64,
-    /// Whether it lies beyond the points.
+    /// Whether it lies after the last point.
     pub is_extrapolated: bool,
 }
 
-/// When points, in the order of time, fall to the target for good: between two of them by a straight line through
-/// their logarithms, else beyond the last with the slope of the last [`TAIL`] points. `None` where they do not
-/// fall, or where the first is below the target: when it was reached is then not known.
+/// When points, in the order of time, fall below the target for good: between two points by interpolation of their
+/// logarithms, otherwise after the last point with the slope of the last [`TAIL`] points. `None` if the error does
+/// not fall, or if the first point is already below the target, since the crossing is then unknown.
 pub fn time_to(points: &[Point], target: f64) -> Option<Crossing> {
     let last_above = points.iter().rposition(|point| point.error > target)?;
     let above = points[last_above];
@@ -74,38 +74,38 @@ pub fn time_to(points: &[Point], target: f64) -> Option<Crossing> {
         return Some(Crossing { time, is_extrapolated: false });
     }
     let law = PowerLaw::through(&points[points.len().saturating_sub(TAIL)..])?;
-    // The error falls from where it is, not from where the line is.
+    // The extrapolation starts at the last point, not at the fitted line.
     let time = above.time * (target / above.error).powf(1.0 / law.slope);
     (law.slope < 0.0).then_some(Crossing { time, is_extrapolated: true })
 }
 
-/// Points that tell how a curve goes on.
+/// Number of points that determine how a curve continues.
 pub const TAIL: usize = 4;
 
-/// When a target will be reached, from the estimates so far.
+/// When a target will be reached, judging by the estimates so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prediction {
-    /// The likeliest time.
+    /// The most likely time.
     pub time: f64,
-    /// Least and greatest time within two deviations.
+    /// Earliest and latest time, within two deviations.
     pub range: [f64; 2],
 }
 
-/// Slopes between which a path tracer's error is taken to fall: that of independent samples, and the best that
-/// was measured with Sobol points on smooth scenes.
+/// Range of slopes at which the error of a path tracer falls: that of independent samples, and the steepest that was
+/// measured with Sobol points on smooth scenes.
 const SLOPES: [f64; 2] = [-0.5, -0.75];
 
-/// How uncertain the slope is before a point is seen.
+/// Uncertainty of the slope before there are any points.
 const PRIOR_SLOPE_DEVIATION: f64 = 0.08;
 
-/// The least that the logarithm of an estimate is uncertain by: that of two halves over some thousand pixels.
+/// Least uncertainty of the logarithm of an estimate: that of two halves over some thousand pixels.
 const LEAST_SCATTER: f64 = 0.02;
 
-/// Predicts when the error, `now` at the time `now.time`, falls to the target. `history` are earlier estimates, the
-/// oldest first, of which the last [`TAIL`] count.
+/// Predicts when the error, `now` at the time `now.time`, falls to the target. `history` holds earlier estimates, the
+/// oldest first, of which the last [`TAIL`] are used.
 ///
-/// The slope is that of the history and `now`, weighed against the slope of independent samples by their
-/// deviations. `None` where the target has been reached.
+/// The slope is that of the history and `now`, averaged with the slope of independent samples, weighted by their
+/// uncertainties. `None` if the target has been reached.
 pub fn predict(history: &[Point], now: Point, target: f64) -> Option<Prediction> {
     if now.error <= target || target <= 0.0 || now.time <= 0.0 {
         return None;
@@ -128,7 +128,7 @@ pub fn predict(history: &[Point], now: Point, target: f64) -> Option<Prediction>
     slope = slope.clamp(SLOPES[1], SLOPES[0] + PRIOR_SLOPE_DEVIATION);
     let fall = (now.error / target).ln();
     let log_factor = fall / -slope;
-    // d(fall / slope): the estimate's own uncertainty, and the slope's.
+    // d(fall / slope): the uncertainties of the estimate and of the slope.
     let deviation = ((scatter / slope).powi(2) + (log_factor * slope_deviation / slope).powi(2)).sqrt();
     let at = |log: f64| now.time * log.max(0.0).exp();
     Some(Prediction {
@@ -168,8 +168,8 @@ mod tests {
 
     #[test]
     fn the_slopes_deviation_is_that_of_a_regression() {
-        // Logarithms 0, 1, 2 of the time and 0, 1, 0 of the error. About their mean of 1/3 the squares are 2/3, with one
-        // degree of freedom; the times' squares are 2.
+        // The logarithms are 0, 1, 2 for the time and 0, 1, 0 for the error. The squares around their mean of 1/3 sum
+        // to 2/3, with one degree of freedom; those of the times sum to 2.
         let points = [(0.0_f64, 0.0_f64), (1.0, 1.0), (2.0, 0.0)];
         let law = PowerLaw::through(&points.map(|(t, e)| Point { time: t.exp(), error: e.exp() })).unwrap();
         assert!(law.slope.abs() < 1e-12, "{law:?}");
@@ -200,7 +200,7 @@ mod tests {
         let faster = predict(&steeper[..5], steeper[5], steeper[5].error / 2.0).unwrap();
         assert!(faster.time / now.time < 3.2, "{faster:?}");
         assert_eq!(predict(history, now, now.error), None);
-        // Nothing but one estimate: the slope of independent samples, and a wide range.
+        // With a single estimate: the slope of independent samples, and a wide range.
         let alone = predict(&[], now, now.error / 2.0).unwrap();
         assert!((alone.time / now.time - 4.0).abs() < 1e-6);
         assert!(alone.range[1] - alone.range[0] > found.range[1] - found.range[0]);
@@ -210,8 +210,8 @@ mod tests {
     fn a_prediction_reaches_two_deviations_to_either_side() {
         let now = Point { time: 3.0, error: 0.01 };
         let found = predict(&[], now, 0.005).unwrap();
-        // Half the error is 4 times the time; its logarithm is off by .02 / .5 for the estimate, and by .08 / .5 of
-        // itself for the slope.
+        // Half the error takes 4 times the time. The logarithm of the time is uncertain by .02 / .5 from the
+        // estimate, and by .08 / .5 of itself from the slope.
         let log_factor = 4.0_f64.ln();
         let deviation = (0.04_f64.powi(2) + (0.16 * log_factor).powi(2)).sqrt();
         let expected = [-2.0, 0.0, 2.0].map(|deviations| 12.0 * (deviations * deviation).exp());

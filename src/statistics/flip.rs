@@ -1,36 +1,36 @@
-//! LDR-FLIP: how different two pictures look to someone who switches between them, 0 (alike) to 1.
+//! LDR-FLIP: how different two pictures look to someone who flips between them, from 0 (equal) to 1.
 //!
 //! Source: Andersson, Nilsson, Akenine-Moller, Oskarsson, Astrom, Fairchild, "FLIP: A Difference Evaluator for
-//! Alternating Images", HPG 2020. Names of constants are the paper's.
+//! Alternating Images", HPG 2020. Constants have the paper's names.
 
-/// Pixels in a degree of the eye's field: a 3840 pixel wide screen of .7 m, seen from .7 m.
+/// Pixels per degree of the visual field: a screen 3840 pixels and .7 m wide, seen from .7 m.
 pub const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// Spatial filters of the eye: weights `a` and widths `b` of two Gaussians for brightness, red-green, blue-yellow.
+/// The eye's contrast filters: weights `a` and widths `b` of two Gaussians for brightness, red-green and blue-yellow.
 const CONTRAST: [[(f64, f64); 2]; 3] =
     [[(1.0, 0.0047), (0.0, 1e-5)], [(1.0, 0.0053), (0.0, 1e-5)], [(34.1, 0.04), (13.5, 0.025)]];
 
-/// Exponent of colour differences.
+/// Exponent of the colour difference.
 const Q_C: f64 = 0.7;
 
-/// The share of the range of colour differences that is mapped to the share [`P_T`] of the result's.
+/// Fraction of the largest colour difference that is mapped to [`P_T`].
 const P_C: f64 = 0.4;
 
 const P_T: f64 = 0.95;
 
 type Plane = Vec<f64>;
 
-/// What the eye makes of a picture.
+/// A picture as the eye perceives it.
 #[derive(Clone, Debug)]
 pub struct Appearance {
-    /// Filtered colours: CIELAB with the chroma scaled by the lightness (Hunt).
+    /// Filtered colours: CIELAB with the chroma scaled by the lightness (Hunt effect).
     colours: Vec<[f64; 3]>,
     /// Strength of edges and of points.
     features: Vec<[f64; 2]>,
 }
 
 impl Appearance {
-    /// Of a picture of `width` columns as a screen is given it: sRGB, `0..=1`, row by row.
+    /// Filters a picture of `width` columns in display values: sRGB, `0..=1`, row by row.
     pub fn of(width: usize, shown: &[[f64; 3]]) -> Self {
         let opponent: Vec<[f64; 3]> = shown
             .iter()
@@ -49,12 +49,12 @@ impl Appearance {
         Appearance { colours, features: features(&lightness, width) }
     }
 
-    /// The mean difference to a picture of the same size.
+    /// The mean difference from a picture of the same size.
     ///
     /// # Panics
     /// If the sizes differ.
     pub fn difference(&self, other: &Appearance) -> f64 {
-        assert_eq!(self.colours.len(), other.colours.len(), "pictures of one size");
+        assert_eq!(self.colours.len(), other.colours.len(), "the pictures must have the same size");
         let greatest = greatest_colour_difference();
         let sum: f64 = (0..self.colours.len())
             .map(|i| {
@@ -69,7 +69,7 @@ impl Appearance {
     }
 }
 
-/// The farthest apart that colours of a screen are taken to be: green and blue.
+/// The largest difference between colours of a display: between green and blue.
 fn greatest_colour_difference() -> f64 {
     let of = |linear| hunt(lab_from_xyz(xyz_from_linear(linear)));
     hyab(of([0.0, 1.0, 0.0]), of([0.0, 0.0, 1.0])).powf(Q_C)
@@ -92,7 +92,7 @@ fn hunt([l, a, b]: [f64; 3]) -> [f64; 3] {
     [l, 0.01 * l * a, 0.01 * l * b]
 }
 
-/// Filters with a sum of two Gaussians of sum 1.
+/// Filters with the sum of two Gaussians, normalised to 1.
 fn contrast_filtered(plane: &Plane, width: usize, gaussians: [(f64, f64); 2]) -> Plane {
     use std::f64::consts::PI;
     let widest = CONTRAST.iter().flatten().fold(0.0_f64, |most, (_, b)| most.max(*b));
@@ -114,14 +114,14 @@ fn contrast_filtered(plane: &Plane, width: usize, gaussians: [(f64, f64); 2]) ->
     filtered
 }
 
-/// Strength of edges and points: the lengths of first and second derivatives of a Gaussian.
+/// Strength of edges and points: the magnitudes of first and second derivatives of a Gaussian.
 fn features(lightness: &Plane, width: usize) -> Vec<[f64; 2]> {
     let sigma = 0.5 * 0.082 * PIXELS_PER_DEGREE;
     let radius = (3.0 * sigma).ceil() as i32;
     let kernel = |of: fn(f64) -> f64| -> Vec<f64> {
         let raw: Vec<f64> =
             (-radius..=radius).map(|x| f64::from(x) / sigma).map(|x| of(x) * (-0.5 * x * x).exp()).collect();
-        // Weights above 0 sum to 1, those below to -1.
+        // Positive weights sum to 1, negative ones to -1.
         let sum = |sign: f64| raw.iter().map(|x| (sign * x).max(0.0)).sum::<f64>();
         let (above, below) = (sum(1.0), sum(-1.0));
         raw.iter()
@@ -145,7 +145,7 @@ fn features(lightness: &Plane, width: usize) -> Vec<[f64; 2]> {
     length(&edge).into_iter().zip(length(&point)).map(|(edge, point)| [edge, point]).collect()
 }
 
-/// Filters rows with one kernel and columns with another; beyond its borders a picture goes on as it ends there.
+/// Filters rows with one kernel and columns with another. Beyond its borders, a picture repeats its outermost pixels.
 fn convolved(plane: &Plane, width: usize, across: &[f64], down: &[f64]) -> Plane {
     let height = plane.len() / width.max(1);
     let pass =
@@ -191,13 +191,13 @@ fn linear_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
     (inverse * glam::DVec3::from(xyz)).to_array()
 }
 
-/// XYZ over that of white.
+/// XYZ relative to white.
 fn relative(xyz: [f64; 3]) -> [f64; 3] {
     let white = xyz_from_linear([1.0; 3]);
     [0, 1, 2].map(|i| xyz[i] / white[i])
 }
 
-/// The linear space of brightness, red-green and blue-yellow: YCxCz.
+/// The linear space YCxCz: brightness, red-green and blue-yellow.
 fn opponent_from_xyz(xyz: [f64; 3]) -> [f64; 3] {
     let [x, y, z] = relative(xyz);
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
@@ -230,7 +230,7 @@ mod tests {
 
     #[test]
     fn black_and_white_are_as_the_paper_has_them() {
-        // Lightness differs by 100 and nothing else does: the paper's formula by hand.
+        // Only the lightness differs, by 100: the paper's formula, evaluated by hand.
         let difference = constant([0.0; 3]).difference(&constant([1.0; 3]));
         let greatest = greatest_colour_difference();
         assert!((greatest - 41.2765).abs() < 0.01, "{greatest}");
@@ -242,8 +242,9 @@ mod tests {
 
     #[test]
     fn a_dot_is_spread_as_the_papers_gaussians_have_it() {
-        // `sum a sqrt(pi / b) exp(-pi^2 x^2 / b)` with the constants of the paper's table 1, at `x` of 0, 2, 4 and 9
-        // of 67 pixels a degree, over its value at 0; and that value over the sum of all weights.
+        // `sum a sqrt(pi / b) exp(-pi^2 x^2 / b)` with the constants of the paper's table 1, at distances `x` of 0,
+        // 2, 4 and 9 pixels at 67 pixels per degree, relative to the value at 0; and that value relative to the sum
+        // of all weights.
         let expected = [
             ([1.0, 0.153_944_087_638_8, 0.000_561_632_273_9, 0.0], 0.148_902_643_575_7),
             ([1.0, 0.190_265_327_944_8, 0.001_310_504_800_1, 0.0], 0.132_045_740_867_8),

@@ -1,11 +1,11 @@
-//! What the noise of pictures lets one say: tests of equality, fits, distances. Pure functions of numbers.
+//! Statistics of noisy pictures: tests of equality, fits, distances. Pure functions of numbers.
 
 pub mod blocks;
 pub mod fit;
 pub mod flip;
 pub mod normal;
 
-/// The value in the middle, or the mean of the two there; `None` of nothing. NaN counts as the largest.
+/// The median, which is the mean of the two middle values of an even number; `None` without values. NaN sorts last.
 pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = values.into_iter().collect();
     sorted.sort_by(f64::total_cmp);

@@ -1,14 +1,14 @@
-//! The normal distribution, and Student's brought to it.
+//! The normal distribution, and the conversion of Student's distribution to it.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// The chance that a normal number is farther than `z >= 0` from 0, on either side.
+/// The probability that a normal number is farther from 0 than `z >= 0`, on either side.
 pub fn two_sided_tail(z: f64) -> f64 {
     libm::erfc(z / std::f64::consts::SQRT_2)
 }
 
-/// The `z` of which [`two_sided_tail`] is `chance`, which must lie within 0 and 1; 0 for larger ones, and for 0
-/// a number that nothing reaches.
+/// The `z` for which [`two_sided_tail`] is `chance`, between 0 and 1. For 1 and above it is 0, for 0 a number that is
+/// never exceeded.
 pub fn two_sided_quantile(chance: f64) -> f64 {
     let (mut low, mut high) = (0.0, 40.0);
     for _ in 0..80 {
@@ -18,8 +18,8 @@ pub fn two_sided_quantile(chance: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// What the largest of `count` independent normal numbers stays below, in absolute value, but for `chance` of
-/// the cases.
+/// The limit that the largest absolute value of `count` independent normal numbers exceeds with the probability
+/// `chance`.
 ///
 /// Source: Sidak, "Rectangular Confidence Regions for the Means of Multivariate Normal Distributions", 1967.
 pub fn largest_of(count: usize, chance: f64) -> f64 {
@@ -27,11 +27,11 @@ pub fn largest_of(count: usize, chance: f64) -> f64 {
     two_sided_quantile(each)
 }
 
-/// From so many degrees of freedom on, Student's distribution is the normal one to a millionth.
+/// With this many degrees of freedom or more, Student's distribution equals the normal one to within a millionth.
 const ENDLESS_FREEDOM: f64 = 1e7;
 
-/// The normal number that is as unlikely as `t` of Student's distribution with `freedom > 0` degrees of freedom. NaN stays
-/// NaN.
+/// The normal number that is as unlikely as the value `t` of Student's distribution with `freedom > 0` degrees of
+/// freedom. NaN stays NaN.
 pub fn from_student(t: f64, freedom: f64) -> f64 {
     if t.is_nan() || freedom >= ENDLESS_FREEDOM {
         return t;
@@ -59,13 +59,13 @@ mod tests {
     #[test]
     fn the_largest_of_many_is_larger() {
         assert!((largest_of(1, 0.01) - 2.575_829).abs() < 1e-5);
-        // 240 blocks: a tail of 4.2e-5.
+        // 240 blocks have a tail of 4.2e-5.
         assert!((largest_of(240, 0.01) - 4.096).abs() < 1e-3, "{}", largest_of(240, 0.01));
     }
 
     #[test]
     fn students_quantiles_become_normal_ones() {
-        // Two-sided quantiles of Student's distribution at chances of 5 % and .1 %.
+        // Two-sided quantiles of Student's distribution for probabilities of 5 % and .1 %.
         for (freedom, five_percent, per_mille) in
             [(5.0, 2.5706, 6.8688), (20.0, 2.0860, 3.8495), (63.0, 1.9983, 3.4515)]
         {

@@ -1,4 +1,4 @@
-//! A backend under test: traces a picture, and outlives whatever goes wrong in it.
+//! A backend under test: renders pictures and survives whatever goes wrong in one.
 
 use crate::backends::{self, BackendChoice, BackendError};
 use crate::film::Film;
@@ -9,46 +9,46 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// What one picture may take.
+/// Time limit for one picture.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
 
-/// How often it is looked whether the user wants an end.
+/// How often the time limit and the user's interrupt are checked.
 const GLANCE: Duration = Duration::from_millis(50);
 
-/// A backend and what the tables call it.
+/// A backend and its name in the tables.
 pub struct Backend {
-    /// As the tables call it.
+    /// Its name in the tables.
     pub name: String,
     choice: BackendChoice,
-    /// Missing before its first picture, and after one that broke it.
+    /// `None` before the first picture, and after a picture that broke it.
     renderer: Option<Box<dyn Renderer>>,
 }
 
-/// A picture and what it took.
+/// A rendered picture, its time and its warnings.
 #[derive(Clone)]
 pub struct Traced {
-    /// The film, with all samples that were asked for.
+    /// The film, with all samples of the recipe.
     pub film: Film,
-    /// Wall time of preparing and tracing, seconds.
+    /// Wall time to prepare and trace, seconds.
     pub seconds: f64,
-    /// What the backend said that it cannot hold of the scene.
+    /// What the backend warned about: parts of the scene that it cannot represent.
     pub warnings: Vec<String>,
 }
 
 impl Backend {
-    /// One that is started when it is first used.
+    /// A backend that starts when it is first used.
     pub fn new(name: impl Into<String>, choice: BackendChoice) -> Self {
         Backend { name: name.into(), choice, renderer: None }
     }
 
-    /// Starts it, unless it runs.
+    /// Starts the backend unless it is already running.
     ///
     /// # Errors
-    /// If it cannot be had.
+    /// If the backend is not available.
     pub fn start(&mut self) -> Result<(), BackendError> {
         if self.renderer.is_none() {
             let mut renderer = backends::create(&self.choice)?;
-            // That an adapter is software is known to whoever named it; what is said later is about scenes.
+            // Whoever named a software adapter knows that it is one; later messages are about scenes.
             drop(renderer.take_messages());
             self.renderer = Some(renderer);
         }
@@ -58,11 +58,11 @@ impl Backend {
     /// Traces all samples of a picture.
     ///
     /// # Errors
-    /// What kept it from being had, in words: refused, failed, broke off, or took too long.
+    /// A sentence that says why there is no picture: it was refused, failed, panicked or took too long.
     pub fn trace(&mut self, recipe: &Recipe, interrupt: &AtomicBool) -> Result<Traced, String> {
         let job = recipe.job().map_err(|error| format!("refused: {error}"))?;
         self.start().map_err(|error| error.to_string())?;
-        // Out of its place, so that one that breaks off is not used again.
+        // Taken out, so that a renderer that panics is not used again.
         let Some(mut renderer) = self.renderer.take() else { return Err("it did not start".to_owned()) };
         let begin = Instant::now();
         let outcome = catch_unwind(AssertUnwindSafe(|| {
@@ -80,13 +80,13 @@ impl Backend {
                 return Err(format!("took more than {} s", TIME_LIMIT.as_secs()));
             }
             Ok(Err(error)) => return Err(error.to_string()),
-            Err(_) => return Err("broke off: a panic in the tracer".to_owned()),
+            Err(_) => return Err("the tracer panicked".to_owned()),
         };
         let warnings = renderer.take_messages();
         self.renderer = Some(renderer);
         let (held, wanted) = (film.sample_count(), recipe.samples_per_pixel);
         if held != wanted {
-            return Err(format!("the film holds {held} samples a pixel where {wanted} were asked for"));
+            return Err(format!("the film holds {held} samples per pixel instead of {wanted}"));
         }
         Ok(Traced { film, seconds, warnings })
     }
@@ -103,7 +103,7 @@ fn accumulate(
     Ok(film)
 }
 
-/// Runs `work` with a flag that is set when the time is over or the user wants an end.
+/// Runs `work` with a flag that is set when the time limit has passed or the user interrupts.
 fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -> T {
     let cancel = AtomicBool::new(false);
     let begin = Instant::now();
@@ -117,7 +117,7 @@ fn within_time<T>(interrupt: &AtomicBool, work: impl FnOnce(&AtomicBool) -> T) -
                 }
             }
         });
-        // Dropped with the work's end, be it a panic.
+        // Dropped when the work ends, even by a panic.
         let _done = done;
         work(cancel)
     })

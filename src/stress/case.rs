@@ -1,4 +1,4 @@
-//! A case of the suite: a scene, what is stiff about it, and what it must give.
+//! A case of the suite: a scene, what is stiff about it, and the expected result.
 
 use super::far::with_far_spheres;
 use crate::recipe::{Recipe, plain_name};
@@ -7,39 +7,39 @@ use std::fmt;
 /// What the cases of a family have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Family {
-    /// The first part of its cases' ids.
+    /// First part of the ids of its cases.
     pub id: &'static str,
-    /// What it tries, as a heading.
+    /// What the family tests, as a heading.
     pub title: &'static str,
-    /// What it teaches, in a sentence or two.
+    /// What can be learnt from it, in a sentence or two.
     pub lesson: &'static str,
 }
 
-/// What a case must give, with the derivation in a sentence.
+/// The result that a case must have, and its derivation in a sentence.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expected {
-    /// Every sample has this radiance, linear RGB: a closed form without noise.
+    /// Every sample has this radiance: a closed form without noise.
     Every {
-        /// The radiance.
+        /// Linear RGB.
         value: [f64; 3],
-        /// Why.
+        /// The derivation.
         why: &'static str,
     },
-    /// The mean of the picture over pixels and channels: a closed form with noise.
+    /// The mean over pixels and channels is known: a closed form with noise.
     Mean {
-        /// The mean.
+        /// Linear radiance.
         value: f64,
-        /// Why.
+        /// The derivation.
         why: &'static str,
     },
-    /// Sample for sample the picture of another scene, by the same backend.
+    /// Sample by sample the same as another scene on the same backend.
     Same {
         /// The other scene.
         other: Box<Recipe>,
-        /// Why.
+        /// Why both must be the same.
         why: &'static str,
     },
-    /// Sample for sample the picture of the `f64` reference.
+    /// Sample by sample the same as the `f64` reference.
     Reference {
         /// Why `f64` can be trusted here.
         why: &'static str,
@@ -47,7 +47,7 @@ pub enum Expected {
 }
 
 impl Expected {
-    /// The derivation.
+    /// The derivation, in a sentence.
     pub fn why(&self) -> &'static str {
         match self {
             Expected::Every { why, .. }
@@ -75,37 +75,37 @@ impl fmt::Display for Expected {
 /// How the window shows a case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Watch {
-    /// What the menu calls it.
+    /// Its name in the menu.
     pub title: &'static str,
-    /// What to watch, in a sentence or two.
+    /// What to look for, in a sentence or two.
     pub look_for: &'static str,
 }
 
-/// Size of the window's picture of a case, pixels.
+/// Size of the picture of a case in the window, pixels.
 const SHOWN_SIZE: [u32; 2] = [600, 400];
 
-/// A case.
+/// A scene with its expected result.
 #[derive(Clone)]
 pub struct Case {
-    /// Family and what tells it from its siblings: `copies/110`.
+    /// The family's id and a name within the family: `copies/110`.
     pub id: String,
-    /// Its family.
+    /// The family that it belongs to.
     pub family: &'static Family,
     /// What is stiff about it, in a sentence.
     pub stiff: String,
-    /// The picture, with its samples per pixel.
+    /// The picture, with its number of samples per pixel.
     pub recipe: Recipe,
-    /// The length of what is near the eye, scene units; distant spheres stand a thousand of them away.
+    /// Typical length of what is near the eye, in scene units; the distant spheres are a thousand times as far away.
     pub unit: f64,
-    /// What it must give.
+    /// The expected result.
     pub expected: Expected,
-    /// What the mean may be off by besides noise, linear radiance.
+    /// By how much the mean may differ apart from noise, linear radiance.
     pub tolerance: f64,
-    /// A scene of the same kind without what is stiff, to hold the time against.
+    /// A similar scene without the difficulty, to compare times with.
     pub tame: Option<Recipe>,
-    /// How the window shows it; `None` for what is no picture to look at.
+    /// How the window shows it; `None` if there is nothing to look at.
     pub watch: Option<Watch>,
-    /// Whether it is among the few that the tests run.
+    /// Whether `cargo test` runs it.
     pub is_quick: bool,
 }
 
@@ -123,10 +123,10 @@ impl PartialEq for Case {
 
 impl Eq for Case {}
 
-/// Spheres from which on every backend takes a hierarchy, so that distant ones change nothing.
+/// From this number of spheres on every backend builds a hierarchy anyway, so distant spheres would change nothing.
 const HIERARCHY_SPHERES: usize = 24;
 
-/// Whether distant spheres stand around the scene, which switch the hierarchy on.
+/// Whether the scene gets distant spheres, which switch the hierarchy on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// The scene as it is.
@@ -136,7 +136,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// As the table calls it.
+    /// Its name in the table.
     pub fn name(self) -> &'static str {
         match self {
             Form::Plain => "plain",
@@ -146,7 +146,7 @@ impl Form {
 }
 
 impl Case {
-    /// A case that expects what `f64` gives; the caller changes what differs.
+    /// A case that expects the result of `f64`; the builder methods below change that.
     pub fn new(
         family: &'static Family,
         name: impl fmt::Display,
@@ -168,55 +168,55 @@ impl Case {
         }
     }
 
-    /// With another expectation.
+    /// Sets the expected result.
     #[must_use]
     pub fn expect(self, expected: Expected, tolerance: f64) -> Self {
         Case { expected, tolerance, ..self }
     }
 
-    /// Every sample is grey of this radiance.
+    /// Expects every sample to be grey with this radiance.
     #[must_use]
     pub fn every(self, value: f64, why: &'static str) -> Self {
         self.expect(Expected::Every { value: [value; 3], why }, 1e-6)
     }
 
-    /// The time is held against `tame`.
+    /// Compares its time with that of `tame`.
     #[must_use]
     pub fn beside(self, tame: Recipe) -> Self {
         Case { tame: Some(tame), ..self }
     }
 
-    /// Shown in the window.
+    /// Shows it in the window.
     #[must_use]
     pub fn watched(self, title: &'static str, look_for: &'static str) -> Self {
         Case { watch: Some(Watch { title, look_for }), ..self }
     }
 
-    /// Run by the tests, too.
+    /// Includes it in `cargo test`.
     #[must_use]
     pub fn quick(self) -> Self {
         Case { is_quick: true, ..self }
     }
 
-    /// With the length of what is near the eye.
+    /// Sets the typical length of what is near the eye.
     #[must_use]
     pub fn of_unit(self, unit: f64) -> Self {
         Case { unit, ..self }
     }
 
-    /// The picture in a size to look at, with a name that can be a file's.
+    /// The picture at the window's size, with a name that can be a file name.
     pub fn shown(&self) -> Recipe {
         let mut recipe = Recipe { name: plain_name(&self.id), samples_per_pixel: 256, ..self.recipe.clone() };
         [recipe.settings.width, recipe.settings.height] = SHOWN_SIZE;
         recipe
     }
 
-    /// What menus call it: its id where it is not shown.
+    /// Its title in menus, or its id if it is not shown.
     pub fn title(&self) -> &str {
         self.watch.map_or(&self.id, |watch| watch.title)
     }
 
-    /// The forms that it is rendered in.
+    /// The forms in which it is rendered.
     pub fn forms(&self) -> &'static [Form] {
         if self.recipe.scene.spheres.len() < HIERARCHY_SPHERES {
             &[Form::Plain, Form::WithFar]

@@ -1,11 +1,11 @@
 //! A third arithmetic: the nearest hit of a ray in numbers of 106 bits, twice those of `f64`.
 //!
 //! A number is the sum of two `f64`s that do not overlap. Sums and products of such pairs are exact to `2^-104`,
-//! which leaves 50 bits even after the squares of an ordinary `f64` scene have cancelled; and unlike intervals or
-//! fractions, they are fast enough to check thousands of rays.
+//! which leaves 50 bits even after the squares of an ordinary `f64` scene have cancelled. Unlike intervals or
+//! fractions, pairs are fast enough to check thousands of rays.
 //!
-//! Source: Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971; the fused product makes
-//! its splitting unnecessary.
+//! Source: Dekker, "A Floating-Point Technique for Extending the Available Precision", 1971. Fused multiplication
+//! makes Dekker's splitting unnecessary.
 
 use crate::scene::{Scene, Sphere};
 use glam::DVec3;
@@ -24,13 +24,13 @@ impl Double {
         self.high + self.low
     }
 
-    /// Two numbers that may overlap by little: `|high| >= |low|`.
+    /// The sum of two numbers that may overlap slightly, where `|high| >= |low|`.
     fn normalised(high: f64, low: f64) -> Self {
         let sum = high + low;
         Double { high: sum, low: low - (sum - high) }
     }
 
-    /// The square root of a number that is not negative.
+    /// The square root; the number must not be negative.
     pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Double::from(0.0);
@@ -95,15 +95,15 @@ impl Mul for Double {
     }
 }
 
-/// A sum and what rounding left out of it.
+/// The rounded sum and its rounding error.
 fn exact_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// What a ray meets first: the sphere's index and the distance in units of the direction's length. Surfaces at a
-/// distance of exactly 0 are those that the ray leaves; of several at one distance, the scene's first.
+/// The first sphere that a ray hits: its index, and the distance in units of the direction's length. Surfaces at a
+/// distance of exactly 0 are left, not hit. Of several at the same distance, the first of the scene counts.
 pub fn first_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usize, f64)> {
     let mut nearest: Option<(usize, Double)> = None;
     for (index, sphere) in scene.spheres.iter().enumerate() {
@@ -115,7 +115,7 @@ pub fn first_hit(scene: &Scene, origin: DVec3, direction: DVec3) -> Option<(usiz
     nearest.map(|(index, distance)| (index, distance.to_f64()))
 }
 
-/// The nearer root that is more than 0.
+/// The smaller positive root.
 fn distance(sphere: &Sphere, origin: DVec3, direction: DVec3) -> Option<Double> {
     let exact = |v: DVec3| v.to_array().map(Double::from);
     let (center, origin, direction) = (exact(sphere.center), exact(origin), exact(direction));
@@ -129,7 +129,7 @@ fn distance(sphere: &Sphere, origin: DVec3, direction: DVec3) -> Option<Double> 
     if discriminant.high < 0.0 {
         return None;
     }
-    // Of the two roots the larger one has no cancellation; the other follows from their product, c / a.
+    // The root of larger magnitude has no cancellation; the other follows from their product, c / a.
     let sum = if h.high >= 0.0 { h + discriminant.sqrt() } else { h - discriminant.sqrt() };
     let mut roots = [sum.over(a), if sum.high == 0.0 { Double::from(0.0) } else { c.over(sum) }];
     if (roots[0] - roots[1]).is_positive() {
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn hits_are_exact_where_f64_has_no_digits_left() {
-        // A gap of 1e-9 before a ball at 1e9: its square is lost in f64.
+        // A gap of 1e-9 in front of a ball at 1e9: f64 cannot resolve its square.
         let far = scene(&[(DVec3::new(1e9, 0.0, 0.0), 1e9 - 1e-3)]);
         let (_, distance) = first_hit(&far, DVec3::ZERO, DVec3::X).unwrap();
         let expected = 1e9 - (1e9 - 1e-3);

@@ -5,16 +5,16 @@ use crate::scene::{Material, Scene};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// How many.
+/// Number of distant spheres.
 const COUNT: usize = 40;
 
-/// How far from the eye, in units of the scene.
+/// Their distance from the eye, in units of the scene.
 const DISTANCE: f64 = 1000.0;
 
-/// Their radius, in units of the scene: all of them together cover a billionth of the sky.
+/// Their radius, in units of the scene: together they cover a billionth of the sky.
 const RADIUS: f64 = 0.01;
 
-/// The scene with them. They reflect all light, so that a closed room stays dark and a white world white.
+/// The scene with the distant spheres. They reflect all light, so a closed room stays dark and a white world white.
 pub fn with_far_spheres(recipe: &Recipe, unit: f64) -> Recipe {
     let mut scene = Scene::clone(&recipe.scene);
     let name = unused_name(&scene);
@@ -35,7 +35,7 @@ fn unused_name(scene: &Scene) -> String {
     name
 }
 
-/// Evenly over the sphere, by the golden angle.
+/// Evenly distributed directions, by the golden angle.
 fn direction(index: usize) -> DVec3 {
     let height = 1.0 - (2 * index + 1) as f64 / COUNT as f64;
     let turn = index as f64 * 2.399_963_229_728_653;

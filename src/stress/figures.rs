@@ -1,21 +1,21 @@
-//! What films of a case say: its mean, its distance from what is expected, and what rounding changes.
+//! Figures from the films of a case: its mean, its distance from the expected result, and the effect of rounding.
 
 use crate::film::Film;
 use serde::Serialize;
 
-/// Two films of the same samples.
+/// The difference of two films of the same samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Paired {
     /// Mean difference over pixels and channels, linear radiance.
     pub bias: f64,
     /// Its standard error, from the spread over the pixels.
     pub bias_deviation: f64,
-    /// Root of the mean square difference of pixels.
+    /// Root mean square of the pixels' differences, linear radiance.
     pub rms: f64,
 }
 
 impl Paired {
-    /// `film` less `exact`, pixel by pixel. They must have one size.
+    /// `film` minus `exact`, pixel by pixel. Both must have the same size.
     pub fn of(film: &Film, exact: &Film) -> Self {
         let count = pixel_count(film);
         let (mut sum, mut sum_of_squares, mut squares) = (0.0, 0.0, 0.0);
@@ -32,26 +32,26 @@ impl Paired {
         let variance = (sum_of_squares / count - bias * bias).max(0.0);
         Paired {
             bias,
-            // One pixel has no spread: its difference then stands for it.
+            // A single pixel has no spread: its difference is used instead.
             bias_deviation: if count > 1.0 { (variance / (count - 1.0)).sqrt() } else { bias.abs() },
             rms: (squares / count).sqrt(),
         }
     }
 }
 
-/// A film's mean and its noise.
+/// The mean of a film and its noise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Level {
     /// Mean over pixels, linear RGB.
     pub mean: [f64; 3],
-    /// Standard error of the mean over pixels and channels, from the film's halves; 0 with one half.
+    /// Standard error of the mean over pixels and channels, from the film's halves; 0 if it has only one.
     pub deviation: f64,
-    /// Root of the mean square of the pixels' noise; 0 with one half.
+    /// Root mean square of the pixels' noise, from the film's halves; 0 if it has only one.
     pub noise: f64,
 }
 
 impl Level {
-    /// Of a film.
+    /// Measures a film.
     pub fn of(film: &Film) -> Self {
         let count = pixel_count(film);
         let mut sum = [0.0; 3];
@@ -71,13 +71,13 @@ impl Level {
         }
     }
 
-    /// Mean over the channels, too.
+    /// The mean over pixels and channels.
     pub fn grey(&self) -> f64 {
         self.mean.iter().sum::<f64>() / 3.0
     }
 }
 
-/// Half the difference of the halves' means, whose square estimates the variance of the pixel.
+/// Half the difference of the two halves' means; its square estimates the variance of the pixel.
 fn half_difference(film: &Film, pixel: usize) -> [f64; 3] {
     let [a, b] = film.halves() else { return [0.0; 3] };
     let mean = |half: usize, sums: &[crate::film::PixelSum]| {
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
     use crate::film::{PixelSum, fixed_point};
 
-    /// A film of one sample in each half.
+    /// A film with one sample in each half.
     fn film(of: impl Fn(usize, usize) -> f64) -> Film {
         let mut film = Film::new(10, 10, 2);
         for half in 0..2 {

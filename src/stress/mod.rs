@@ -1,8 +1,8 @@
-//! `weekender stress`: stiff and extreme scenes, each with what it must give, on every backend.
+//! `weekender stress`: renders stiff and extreme scenes on every backend and checks the results.
 //!
-//! A case names its expectation and derives it in a sentence: a closed form (a white world is 1, a closed room 0, a
-//! convex ball of albedo .5 under a sky of 1 is .5), another scene that must give the same samples, or the `f64`
-//! reference where that has digits to spare. The window shows the cases that are worth looking at.
+//! Each case states its expected result and derives it in a sentence: a closed form (a white world is 1, a closed room
+//! 0, a convex ball of albedo .5 under a sky of 1 is .5), another scene that must give the same samples, or the `f64`
+//! reference where `f64` has digits to spare. The window shows the cases that are worth looking at.
 
 mod backend;
 mod case;
@@ -39,10 +39,10 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Runs the suite, and a search if one is asked for, prints the table and writes files.
+/// Runs the suite and then, if requested, a search; prints the table and writes the files.
 ///
 /// # Errors
-/// [`Failure::Input`] before anything is run; [`Failure::Run`] later.
+/// [`Failure::Input`] if nothing was run; [`Failure::Run`] otherwise.
 pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     if let Some(JsonTarget::File(path)) = &options.json {
         check_writable(path).map_err(Failure::input)?;
@@ -53,7 +53,8 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
     let chosen: Vec<&Case> = cases().iter().filter(|case| case.id.contains(&options.filter)).collect();
     if chosen.is_empty() {
         let ids: Vec<&str> = families::families().map(|family| family.id).collect();
-        let error = anyhow!("no case has {:?} in its id; families are {}", options.filter, ids.join(", "));
+        let error =
+            anyhow!("no case id contains {:?}; use one of the families {}", options.filter, ids.join(", "));
         return Err(Failure::Input(error));
     }
     let backends = backends(options).map_err(Failure::Input)?;
@@ -72,11 +73,11 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
 
 fn make(directory: &Path) -> Result<()> {
     std::fs::create_dir_all(directory).with_context(|| {
-        format!("cannot make the directory {}; choose another with --out", directory.display())
+        format!("cannot create the directory {}; choose another with --out", directory.display())
     })
 }
 
-/// The backends that the options name, and the GPU that there is.
+/// The CPU levels of the options, and a GPU if there is one.
 fn backends(options: &StressOptions) -> Result<Vec<Backend>> {
     let cpu = |isa| BackendChoice::Cpu(CpuOptions { isa: Some(isa), ..CpuOptions::default() });
     let mut backends: Vec<Backend> =
@@ -85,7 +86,7 @@ fn backends(options: &StressOptions) -> Result<Vec<Backend>> {
     if let Some(gpu) = BackendChoice::gpu_if_present(adapter) {
         backends.push(Backend::new(adapter.unwrap_or("gpu"), gpu));
     }
-    // What cannot be had is said before anything is run.
+    // A backend that is not available is reported before anything runs.
     backends.iter_mut().try_for_each(Backend::start)?;
     Ok(backends)
 }
@@ -114,7 +115,7 @@ fn suite(
         cases: Vec::new(),
     };
     let json = options.json.as_ref();
-    // That nobody reads the table is no reason to leave pictures and figures out.
+    // If the table cannot be printed, the pictures and figures are still written.
     let mut printed = terminal::print_beside(json, &table::head());
     for (index, case) in chosen.iter().enumerate() {
         display.announce(index as u64, || case.id.clone());

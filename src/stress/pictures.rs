@@ -1,4 +1,4 @@
-//! Pictures of the cases, ours and the book's, and a page that shows them side by side.
+//! Pictures of the cases, by Weekender and by the book's arithmetic, and a page that shows them side by side.
 
 use super::backend::Backend;
 use super::case::Case;
@@ -22,16 +22,16 @@ const SIZE: [u32; 2] = [120, 80];
 /// Samples per pixel of a picture on the page.
 const SAMPLES: u64 = 32;
 
-/// Scenes of more spheres are not shown by the book's arithmetic, which has no hierarchy.
+/// Larger scenes are not rendered with the book's arithmetic, which has no hierarchy.
 const BOOK_SPHERES: usize = 5000;
 
-/// What a picture shows.
+/// The two pictures of a case, as in the file names.
 const KINDS: [&str; 2] = ["ours", "book"];
 
-/// Renders what a case shows and writes it into `directory`.
+/// Renders the pictures of a case and writes them to `directory`.
 ///
 /// # Errors
-/// If a file cannot be written. What cannot be rendered is left out.
+/// If a file cannot be written. A picture that cannot be rendered is left out.
 pub fn write_pictures(
     directory: &Path,
     case: &Case,
@@ -62,14 +62,13 @@ fn file_name(id: &str, kind: &str) -> String {
     format!("{} {kind}.png", plain_name(id)).replace(' ', "-")
 }
 
-/// Writes the table and the page.
+/// Writes the table and the page to `directory`.
 ///
 /// # Errors
-/// If one cannot be written.
+/// If a file cannot be written.
 pub fn write_pages(directory: &Path, report: &Report) -> Result<()> {
-    write_text(&directory.join("table.md"), &table::markdown(report))
-        .context("the table cannot be written")?;
-    write_text(&directory.join("index.html"), &page(directory, report)).context("the page cannot be written")
+    write_text(&directory.join("table.md"), &table::markdown(report)).context("cannot write the table")?;
+    write_text(&directory.join("index.html"), &page(directory, report)).context("cannot write the page")
 }
 
 const PAGE_HEAD: &str = "<!doctype html>\n<meta charset=\"utf-8\">\n<title>weekender stress</title>\n<style>\n\
@@ -101,7 +100,7 @@ fn page(directory: &Path, report: &Report) -> String {
 
 fn about(case: &CaseReport) -> String {
     let mut text = format!("<b>{}</b><br>{}<br>", escaped(&case.id), escaped(&case.stiff));
-    let _ = write!(text, "expected: {}, since {}<br>", escaped(&case.expected), escaped(case.why));
+    let _ = write!(text, "expected: {}, because {}<br>", escaped(&case.expected), escaped(case.why));
     for measured in &case.measured {
         let verdict = &measured.verdict;
         let class = if verdict.is_right() { "right" } else { "wrong" };

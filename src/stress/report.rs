@@ -1,128 +1,128 @@
-//! What a run of the suite found, as data.
+//! The results of a run, as data.
 
 use super::figures::Paired;
 use super::verdict::Verdict;
 use serde::Serialize;
 
-/// Version of the JSON: it grows when a key changes its meaning or goes away.
+/// Version of the JSON. It is raised when a key changes its meaning or is removed.
 pub const SCHEMA: u32 = 1;
 
-/// A run.
+/// The results of a run.
 #[derive(Debug, Serialize)]
 pub struct Report {
     /// See [`SCHEMA`].
     pub schema: u32,
-    /// The program's.
+    /// Version of the program.
     pub version: &'static str,
-    /// Who was tested.
+    /// Names of the backends that were tested.
     pub backends: Vec<String>,
     /// Wall time of the run, seconds.
     pub seconds: f64,
-    /// Whether the user ended it.
+    /// Whether the user interrupted the run.
     pub interrupted: bool,
     /// The cases, in the table's order.
     pub cases: Vec<CaseReport>,
 }
 
-/// A case.
+/// The results of a case.
 #[derive(Debug, Serialize)]
 pub struct CaseReport {
-    /// Its id.
+    /// The case's id.
     pub id: String,
-    /// Its family's title.
+    /// The family's title.
     pub family: &'static str,
     /// What is stiff about it.
     pub stiff: String,
-    /// What it must give, in short.
+    /// The expected result, as in the table.
     pub expected: String,
-    /// The derivation.
+    /// Its derivation.
     pub why: &'static str,
-    /// What the mean may be off by, linear radiance.
+    /// By how much the mean may differ, linear radiance.
     pub tolerance: f64,
-    /// Spheres of the scene.
+    /// Number of spheres in the scene.
     pub spheres: usize,
-    /// Each backend, in each form.
+    /// One entry per backend and form.
     pub measured: Vec<Measured>,
-    /// Rays from the eye, checked one by one; `None` with a lens, or with too many spheres to check.
+    /// Rays from the eye, checked one by one; `None` if there is a lens or too many spheres.
     pub first_hits: Option<FirstHits>,
-    /// The book's own arithmetic.
+    /// The results of the book's own arithmetic.
     pub book: Vec<BookMeasured>,
 }
 
-/// Rays from the eye that meet in `f32` what they meet in numbers of 106 bits.
+/// How many rays from the eye hit the same surface in `f32` as in 106-bit arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct FirstHits {
-    /// Rays that were checked.
+    /// Rays checked.
     pub rays: usize,
-    /// Those that agree in whether there is a hit and in its distance.
+    /// Rays for which both agree on whether there is a hit, and on its distance.
     pub agree: usize,
 }
 
 impl FirstHits {
-    /// Whether so few disagree that they may have grazed a rim.
+    /// Whether few enough disagree that they may just have grazed an edge.
     pub fn is_right(self) -> bool {
         20 * (self.rays - self.agree) <= self.rays
     }
 }
 
-/// A case on a backend.
+/// The result of a case on one backend, in one form.
 #[derive(Debug, Serialize)]
 pub struct Measured {
-    /// The backend.
+    /// Name of the backend.
     pub backend: String,
-    /// "plain" or "+40": with 40 distant spheres, which switch the hierarchy on.
+    /// "plain", or "+40" with 40 distant spheres, which switch the hierarchy on.
     pub form: &'static str,
-    /// Mean over pixels and channels; `None` without a picture.
+    /// Mean over pixels and channels, linear radiance; `None` if there is no picture.
     pub mean: Option<f64>,
-    /// What it is off by.
+    /// Distance of the mean from the expected one, linear radiance.
     pub offset: Option<f64>,
-    /// Standard error of the mean by itself.
+    /// Standard error of the mean.
     pub deviation: Option<f64>,
-    /// Against `f64` in the same form; `None` for `f64` itself.
+    /// Difference from `f64` in the same form; `None` for `f64` itself.
     pub rounding: Option<Paired>,
-    /// Seconds of preparing and tracing.
+    /// Time to prepare and trace, seconds.
     pub seconds: Option<f64>,
-    /// The same of the tame twin.
+    /// The same for the tame twin.
     pub tame_seconds: Option<f64>,
-    /// What came of it.
+    /// The verdict.
     #[serde(flatten)]
     pub verdict: Verdict,
 }
 
-/// The book's arithmetic on a case.
+/// The result of the book's arithmetic on a case.
 #[derive(Debug, Serialize)]
 pub struct BookMeasured {
     /// "f32" or "f64".
     pub precision: &'static str,
-    /// Mean over pixels and channels; `None` without a picture.
+    /// Mean over pixels and channels, linear radiance; `None` if there is no picture.
     pub mean: Option<f64>,
-    /// What it is off by.
+    /// Distance of the mean from the expected one, linear radiance.
     pub offset: Option<f64>,
-    /// What would be said of it.
+    /// The verdict that a backend would get for it.
     #[serde(flatten)]
     pub verdict: Verdict,
 }
 
 impl CaseReport {
-    /// Whether all backends have it right.
+    /// Whether the result is right on every backend.
     pub fn is_right(&self) -> bool {
         self.first_hits.is_none_or(FirstHits::is_right)
             && self.measured.iter().all(|measured| measured.verdict.is_right())
     }
 
-    /// The measurement that is farthest off, of those with a picture.
+    /// The measurement that is farthest off, among those with a picture.
     pub fn worst(&self) -> Option<&Measured> {
         let size = |measured: &&Measured| measured.offset.map_or(-1.0, f64::abs);
         self.measured.iter().max_by(|a, b| size(a).total_cmp(&size(b)))
     }
 
-    /// The largest rounding, by its bias.
+    /// The rounding with the largest bias.
     pub fn rounding(&self) -> Option<Paired> {
         let all = self.measured.iter().filter_map(|measured| measured.rounding);
         all.max_by(|a, b| a.bias.abs().total_cmp(&b.bias.abs()))
     }
 
-    /// The largest ratio of the time to the tame twin's, and what it is on the first backend.
+    /// The largest ratio of the time to that of the tame twin.
     pub fn time_ratio(&self) -> Option<f64> {
         let ratios = self.measured.iter().filter_map(|m| Some(m.seconds? / m.tame_seconds?.max(1e-6)));
         ratios.max_by(f64::total_cmp)

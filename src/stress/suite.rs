@@ -1,4 +1,4 @@
-//! Runs cases on backends and judges what they give.
+//! Runs cases on the backends and judges the results.
 
 use super::backend::{Backend, Traced};
 use super::case::{Case, Expected, Form};
@@ -16,27 +16,27 @@ use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::AtomicBool;
 
-/// The recipe under the book's own arithmetic.
+/// The recipe with the book's own arithmetic.
 pub fn by_the_book(recipe: &Recipe) -> Recipe {
     Recipe { rules: Rules { surface: Surface::Book, ..recipe.rules }, ..recipe.clone() }
 }
 
-/// Turns of a case and its tame twin, of which the fastest count.
+/// How often a case and its tame twin are timed; the fastest of each counts.
 const TURNS: usize = 5;
 
-/// What they may take together, seconds.
+/// Time limit for these repetitions, seconds.
 const TURNS_TIME: f64 = 0.6;
 
-/// Scenes of more spheres are not checked ray by ray: each ray is tested against all of them.
+/// Larger scenes are not checked ray by ray, because each ray is tested against all spheres.
 const CHECKED_SPHERES: usize = 5000;
 
-/// Pixels whose first ray is checked, each way.
+/// Number of pixels per axis whose first ray is checked.
 const CHECKED_PIXELS: u32 = 8;
 
-/// What the distance of a hit may be off by, as a share of it and of the distance to what is looked at.
+/// Allowed error of the distance of a hit, relative to that distance and to the distance of focus.
 const DISTANCE_TOLERANCE: f64 = 1e-5;
 
-/// Checks rays from the eye in numbers of 106 bits.
+/// Checks rays from the eye with 106-bit arithmetic.
 fn first_hits(recipe: &Recipe) -> Option<FirstHits> {
     let job = recipe.job().ok()?;
     let has_lens = recipe.camera.defocus_angle_degrees > 0.0;
@@ -48,7 +48,7 @@ fn first_hits(recipe: &Recipe) -> Option<FirstHits> {
     let eye = outside(&recipe.scene, recipe.camera.look_from);
     let margin = DISTANCE_TOLERANCE * recipe.camera.effective_focus_distance();
     let mut found = FirstHits { rays: 0, agree: 0 };
-    // A tracer that breaks off has been noted by its pictures.
+    // If the tracer panics, its pictures have already shown that.
     let recorder = catch_unwind(|| PathRecorder::new(&job, isa, None)).ok()?;
     for step in 0..CHECKED_PIXELS * CHECKED_PIXELS {
         let share = |step: u32, pixels: u32| (step * pixels / CHECKED_PIXELS).min(pixels - 1);
@@ -68,7 +68,7 @@ fn first_hits(recipe: &Recipe) -> Option<FirstHits> {
     Some(found)
 }
 
-/// The eye where it is, or, if no `f64` tells it from a surface, outside of that by the least that one does.
+/// The eye; if `f64` cannot tell it from a surface, it is moved outside by the smallest distance that `f64` can tell.
 fn outside(scene: &Scene, eye: DVec3) -> DVec3 {
     let mut outside = eye;
     for sphere in &scene.spheres {
@@ -82,29 +82,29 @@ fn outside(scene: &Scene, eye: DVec3) -> DVec3 {
     outside
 }
 
-/// Backends that are tested, and the reference that they are tested against.
+/// The backends under test and the reference to compare them with.
 pub struct Suite {
     backends: Vec<Backend>,
     reference: Backend,
-    /// Films of scenes that several cases share, by the backend's index (`None`: the reference) and name.
+    /// Films of scenes that several cases share, by backend index (`None`: the reference) and name.
     shared: HashMap<(Option<usize>, String), Result<Film, String>>,
 }
 
 impl Suite {
-    /// The reference is tested with the others. The first of them shows the book's arithmetic in `f32`.
+    /// The reference is tested like the others. The first backend also renders the book's arithmetic in `f32`.
     pub fn new(backends: Vec<Backend>, reference: Backend) -> Self {
         Suite { backends, reference, shared: HashMap::new() }
     }
 
-    /// Names of all that are tested.
+    /// Names of the backends under test, the reference last.
     pub fn names(&self) -> Vec<String> {
         self.backends.iter().chain([&self.reference]).map(|backend| backend.name.clone()).collect()
     }
 
-    /// Runs a case in all forms on all backends, and by the book.
+    /// Runs a case in all its forms on all backends, and with the book's arithmetic.
     pub fn run(&mut self, case: &Case, interrupt: &AtomicBool) -> CaseReport {
         let mut measured = Vec::new();
-        let mut oracle: Result<Film, String> = Err("there is no picture in f64".to_owned());
+        let mut oracle: Result<Film, String> = Err("the f64 reference has no picture".to_owned());
         for form in case.forms() {
             let recipe = case.recipe_in(*form);
             let exact = self.reference.trace(&recipe, interrupt);
@@ -133,7 +133,7 @@ impl Suite {
         }
     }
 
-    /// `backend`: `None` is the reference.
+    /// Measures a film of `backend`; `None` stands for the reference.
     fn measure(
         &mut self,
         case: &Case,
@@ -189,7 +189,7 @@ impl Suite {
         measured
     }
 
-    /// The least seconds that a picture and its tame twin take in turns: what else the machine does only adds.
+    /// Shortest times of a picture and its tame twin, taken in turns: other load on the machine can only add time.
     fn times(
         &mut self,
         backend: Option<usize>,
@@ -201,7 +201,7 @@ impl Suite {
             Some(index) => &mut self.backends[index],
             None => &mut self.reference,
         };
-        // The first picture may have waited for a kernel.
+        // The first picture may have had to wait for a kernel.
         let (mut least, mut least_tame, mut spent) = (first, None::<f64>, 0.0);
         for _ in 0..TURNS {
             let Ok(of_tame) = tracer.trace(tame, interrupt) else { break };
@@ -217,7 +217,7 @@ impl Suite {
         (least, least_tame)
     }
 
-    /// What the film of a backend is held against.
+    /// What the film of a backend is compared with.
     fn against(
         &mut self,
         case: &Case,
@@ -239,7 +239,7 @@ impl Suite {
         })
     }
 
-    /// The picture of a scene that several cases share, traced once.
+    /// The picture of a scene that several cases share, rendered once.
     fn shared(
         &mut self,
         backend: Option<usize>,
@@ -276,7 +276,7 @@ impl Suite {
             let (mean, offset, verdict) = match traced {
                 Ok(traced) => {
                     let level = Level::of(&traced.film);
-                    // What it is off by is its own fault, not that of its picture elsewhere: ours are right there.
+                    // Compared with our own picture of the other scene, which is right, not with the book's.
                     match self.against(case, None, &traced.film, oracle, interrupt) {
                         Ok(against) => {
                             let rejected = traced.film.rejected();
@@ -316,7 +316,7 @@ mod tests {
         assert!(report.measured[0].rounding.is_some() && report.measured[1].rounding.is_none());
         assert_eq!(report.book.iter().map(|book| book.precision).collect::<Vec<_>>(), ["f32", "f64"]);
 
-        // Balls of half a millimetre: to the book's threshold there is nothing beside them.
+        // Balls of half a millimetre are smaller than the book's threshold.
         let small = suite.run(find("scaled/1e-3"), &AtomicBool::new(false));
         assert!(small.is_right(), "{small:#?}");
         assert!(small.book.iter().all(|book| !book.verdict.is_right()), "{:#?}", small.book);

@@ -1,18 +1,20 @@
-//! The table, for the terminal and as Markdown.
+//! The table of results, for the terminal and as Markdown.
 
+use super::families::build::counted;
+use super::figures::Paired;
 use super::report::{CaseReport, Report};
 use super::verdict::Verdict;
 use std::fmt::Write;
 
-/// Columns of the terminal's table.
+/// Column widths of the terminal's table.
 const WIDTHS: [usize; 8] = [30, 12, 12, 9, 18, 7, 7, 18];
 
-/// The head of the terminal's table.
+/// The header of the terminal's table.
 pub fn head() -> String {
-    line(["case", "expected", "measured", "off by", "rounding (RMS)", "time", "verdict", "book f32, f64"])
+    line(["case", "expected", "measured", "off by", "rounding (RMS)", "time", "verdict", "book's f32, f64"])
 }
 
-/// A case as a line, and below it what is wrong on which backend.
+/// A case as one line, followed by a line for each backend that is not right.
 pub fn row(case: &CaseReport) -> String {
     let [expected, measured, off, rounding, time, verdict, book] = cells(case);
     let mut text = line([&case.id, &expected, &measured, &off, &rounding, &time, &verdict, &book]);
@@ -25,7 +27,7 @@ pub fn row(case: &CaseReport) -> String {
         let (agree, rays) = (hits.agree, hits.rays);
         let _ = writeln!(
             text,
-            "    {agree} of {rays} rays from the eye meet what they do in numbers of 106 bits"
+            "    only {agree} of {rays} rays from the eye hit the same surface as in 106-bit arithmetic"
         );
     }
     text
@@ -47,16 +49,21 @@ fn cells(case: &CaseReport) -> [String; 7] {
         case.expected.clone(),
         or_dash(worst.and_then(|worst| worst.mean).map(|mean| format!("{mean:.6}"))),
         or_dash(worst.and_then(|worst| worst.offset).map(brief)),
-        or_dash(case.rounding().map(|paired| format!("{} ({:.0e})", brief(paired.bias), paired.rms))),
+        or_dash(case.rounding().map(rounding)),
         or_dash(case.time_ratio().map(|ratio| format!("{ratio:.1}x"))),
         verdict.to_owned(),
         book,
     ]
 }
 
-/// A small number with its sign, or a plain 0.
+/// A small number with its sign; zero as a plain 0.
 fn brief(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:+.1e}") }
+}
+
+fn rounding(paired: Paired) -> String {
+    let rms = if paired.rms == 0.0 { "0".to_owned() } else { format!("{:.0e}", paired.rms) };
+    format!("{} ({rms})", brief(paired.bias))
 }
 
 fn line<S: AsRef<str>>(cells: [S; 8]) -> String {
@@ -69,7 +76,7 @@ fn line<S: AsRef<str>>(cells: [S; 8]) -> String {
     text
 }
 
-/// What the run comes to.
+/// One line that sums up the run.
 pub fn summary(report: &Report) -> String {
     let count = report.cases.len();
     let wrong: Vec<&CaseReport> = report.cases.iter().filter(|case| !case.is_right()).collect();
@@ -80,20 +87,21 @@ pub fn summary(report: &Report) -> String {
         report.cases.iter().filter(has_failed).count()
     };
     let mut text = format!(
-        "\n{} of {count} cases right on {} in {:.0} s; by the book's own arithmetic, {} in f32 and {} in f64\n",
+        "\n{} of {} right on {} in {:.0} s; with the book's arithmetic, {} in f32 and {} in f64\n",
         count - wrong.len(),
+        counted(count, "case"),
         report.backends.join(", "),
         report.seconds,
         count - failures("f32"),
         count - failures("f64"),
     );
     if report.interrupted {
-        text.push_str("interrupted: the other cases were not run\n");
+        text.push_str("interrupted: the remaining cases were not run\n");
     }
     text
 }
 
-/// The table for a document, family by family.
+/// The table as Markdown, one section per family.
 pub fn markdown(report: &Report) -> String {
     let mut text = String::new();
     let mut family = "";
@@ -117,7 +125,7 @@ pub fn markdown(report: &Report) -> String {
 const MARKDOWN_HEAD: &str = "| case | what is stiff about it | expected | off by | rounding (RMS) | time | verdict | \
                              book's f32, f64 |\n|---|---|---|---|---|---|---|---|\n";
 
-/// "right", or who is not.
+/// "right", or the backends that are not and their verdicts.
 fn verdicts(case: &CaseReport) -> String {
     let wrong: Vec<String> = case
         .measured
@@ -130,7 +138,6 @@ fn verdicts(case: &CaseReport) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::figures::Paired;
     use super::super::report::{BookMeasured, FirstHits, Measured};
     use super::*;
 
@@ -148,7 +155,7 @@ mod tests {
         };
         CaseReport {
             id: "copies/2".into(),
-            family: "Many spheres at one place",
+            family: "Many spheres at the same place",
             stiff: "two".into(),
             expected: "0.5".into(),
             why: "",
@@ -171,6 +178,7 @@ mod tests {
         );
         assert_eq!(lines.next(), Some("    sse4.2, plain: off"));
         assert_eq!(row(&case(Verdict::Right)).lines().count(), 1);
+        assert_eq!(rounding(Paired::default()), "0 (0)");
     }
 
     #[test]
@@ -184,9 +192,9 @@ mod tests {
             cases: vec![case(Verdict::Right), case(Verdict::None("gone".into()))],
         };
         let text = markdown(&report);
-        assert_eq!(text.matches("### Many spheres at one place").count(), 1);
+        assert_eq!(text.matches("### Many spheres at the same place").count(), 1);
         assert!(text.contains("| right |") && text.contains("| sse4.2 plain: **none** |"), "{text}");
-        assert!(text.contains("Two surfaces at one place tie"), "{text}");
+        assert!(text.contains("Two surfaces at the same place tie"), "{text}");
         assert!(summary(&report).contains("1 of 2 cases right on avx2"), "{}", summary(&report));
     }
 }

@@ -1,49 +1,49 @@
-//! Whether what was measured is what was expected.
+//! Compares what was measured with what was expected.
 
 use super::figures::{Level, Paired};
 use serde::Serialize;
 
-/// Standard errors that noise may move a mean by: one in sixteen thousand is farther off.
+/// Standard errors by which noise may move a mean; one mean in sixteen thousand moves further.
 const DEVIATIONS: f64 = 4.0;
 
-/// Pictures of the same samples differ by less than this share of their noise. Those that share no path differ by
-/// 1.4 of it.
+/// Pictures of the same samples differ by less than this fraction of their noise. Pictures of unrelated samples differ
+/// by 1.4 times their noise.
 const PAIRED_SHARE: f64 = 0.5;
 
-/// Pictures whose paths have parted differ by less than this times their noise: by 1.4 if all have, and noise is only
-/// known to a tenth.
+/// Pictures whose paths have parted differ by less than this times their noise: by 1.4 times if all paths have, and
+/// the noise itself is only known to within a tenth.
 const PARTED_SHARE: f64 = 1.6;
 
-/// What rounding may move pixels by where there is no noise.
+/// Difference of the pixels that rounding may cause where there is no noise.
 const PAIRED_FLOOR: f64 = 1e-4;
 
-/// The same where paths may part: some of the few hundred thousand of a picture.
+/// The same where paths may part, as a few of the several hundred thousand paths of a picture do.
 const PARTED_FLOOR: f64 = 3e-4;
 
-/// Times the tame twin's time that count as slow, once it is more than [`SLOW_SECONDS`].
+/// A picture is slow if it takes this many times as long as the tame twin and [`SLOW_SECONDS`] longer.
 const SLOW_RATIO: f64 = 8.0;
 
-/// Seconds more than the tame twin took that matter.
+/// Extra seconds from which a slow picture matters.
 const SLOW_SECONDS: f64 = 1.0;
 
-/// What came of a case on a backend.
+/// The verdict on a case on one backend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "verdict", content = "reason", rename_all = "lowercase")]
 pub enum Verdict {
     /// As expected.
     Right,
-    /// Another picture than expected, but the backend said so, with the limit and what to do.
+    /// Not as expected, but the backend warned about it and said what to do.
     Warned(String),
-    /// Another picture than expected.
+    /// Not as expected.
     Wrong(String),
     /// As expected, but far slower than the tame twin.
     Slow(String),
-    /// There is no picture: refused, broken off, or too slow.
+    /// There is no picture: it was refused, the tracer failed, or it took too long.
     None(String),
 }
 
 impl Verdict {
-    /// As the table has it.
+    /// Its name in the table.
     pub fn name(&self) -> &'static str {
         match self {
             Verdict::Right => "right",
@@ -54,7 +54,7 @@ impl Verdict {
         }
     }
 
-    /// What is wrong; empty if nothing is.
+    /// What is wrong; empty for [`Verdict::Right`].
     pub fn reason(&self) -> &str {
         match self {
             Verdict::Right => "",
@@ -65,35 +65,37 @@ impl Verdict {
         }
     }
 
-    /// Whether it is as expected, or was said not to be.
+    /// Whether the result is as expected or the backend warned about it.
     pub fn is_right(&self) -> bool {
         matches!(self, Verdict::Right | Verdict::Warned(_))
     }
 
-    /// Takes into account what the backend said of the scene.
+    /// Turns a wrong result into a warned one if the backend gave a warning.
     #[must_use]
     pub fn given(self, warnings: &[String]) -> Self {
         match (self, warnings) {
-            (Verdict::Wrong(reason), [first, ..]) => Verdict::Warned(format!("{reason}; it said: {first}")),
+            (Verdict::Wrong(reason), [first, ..]) => {
+                Verdict::Warned(format!("{reason}; the backend warned: {first}"))
+            }
             (verdict, _) => verdict,
         }
     }
 }
 
-/// What the picture is held against.
+/// What a picture is compared with.
 #[derive(Clone, Copy, Debug)]
 pub enum Against {
-    /// A radiance that every sample has.
+    /// The radiance of every sample, linear RGB.
     Every([f64; 3]),
-    /// A mean.
+    /// The mean over pixels and channels, linear radiance.
     Mean(f64),
-    /// The same samples of another picture, and how far off they are.
+    /// A picture of the same samples; the value is the difference from it.
     Picture(Paired),
-    /// Another picture of the same light, whatever its paths.
+    /// A picture of the same light from other paths; the value is the difference from it.
     Estimate(Paired),
 }
 
-/// How far the mean is off, linear radiance: of the worst channel where each is known.
+/// Distance of the mean from the expected one, linear radiance; if each channel is known, that of the worst channel.
 pub fn offset(level: &Level, against: Against) -> f64 {
     match against {
         Against::Every(value) => (0..3)
@@ -105,7 +107,7 @@ pub fn offset(level: &Level, against: Against) -> f64 {
     }
 }
 
-/// Judges a picture.
+/// Judges a picture by its radiance.
 pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> Verdict {
     let off = offset(level, against);
     let allowed = match against {
@@ -116,10 +118,10 @@ pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> 
         }
     };
     if rejected > 0 {
-        return Verdict::Wrong(format!("{rejected} samples were no numbers"));
+        return Verdict::Wrong(format!("rejected samples (NaN, infinite or negative): {rejected}"));
     }
     if off.is_nan() || off.abs() > allowed {
-        return Verdict::Wrong(format!("off by {off:+.1e}, where {allowed:.1e} are allowed"));
+        return Verdict::Wrong(format!("off by {off:+.1e}; at most {allowed:.1e} is allowed"));
     }
     let pairs = match against {
         Against::Every(_) | Against::Mean(_) => None,
@@ -130,7 +132,7 @@ pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> 
         let allowed = (share * level.noise).max(floor);
         if paired.rms > allowed {
             return Verdict::Wrong(format!(
-                "pixels are off by {:.1e} RMS, where {allowed:.1e} are allowed",
+                "pixels are off by {:.1e} RMS; at most {allowed:.1e} is allowed",
                 paired.rms
             ));
         }
@@ -138,11 +140,11 @@ pub fn judge(level: &Level, against: Against, tolerance: f64, rejected: u64) -> 
     Verdict::Right
 }
 
-/// Judges the time of a picture that is right.
+/// Judges the time of a picture if its radiance is right.
 pub fn judge_time(verdict: Verdict, seconds: f64, tame: Option<f64>) -> Verdict {
     match (verdict, tame) {
         (Verdict::Right, Some(tame)) if seconds > SLOW_RATIO * tame && seconds > tame + SLOW_SECONDS => {
-            Verdict::Slow(format!("{seconds:.1} s, where the tame twin takes {tame:.2} s"))
+            Verdict::Slow(format!("{seconds:.1} s; the tame twin takes {tame:.2} s"))
         }
         (verdict, _) => verdict,
     }
@@ -160,13 +162,16 @@ mod tests {
     fn a_closed_form_without_noise_has_no_excuse() {
         let every = Against::Every([0.5; 3]);
         assert!(judge(&level(0.5, 0.0, 0.0), every, 1e-6, 0).is_right());
-        // Whatever the halves say: there is no noise to be had.
+        // The spread between the halves is no excuse: this expectation has no noise.
         let verdict = judge(&level(0.499, 0.1, 0.1), every, 1e-6, 0);
-        assert_eq!(verdict.reason(), "off by -1.0e-3, where 1.0e-6 are allowed");
+        assert_eq!(verdict.reason(), "off by -1.0e-3; at most 1.0e-6 is allowed");
         let one_channel = Level { mean: [0.5, 0.5, 0.6], ..Level::default() };
         assert_eq!(judge(&one_channel, every, 1e-6, 0).name(), "WRONG");
         assert!(!judge(&level(f64::NAN, 0.0, 0.0), every, 1e-6, 0).is_right());
-        assert_eq!(judge(&level(0.5, 0.0, 0.0), every, 1e-6, 3).reason(), "3 samples were no numbers");
+        assert_eq!(
+            judge(&level(0.5, 0.0, 0.0), every, 1e-6, 3).reason(),
+            "rejected samples (NaN, infinite or negative): 3"
+        );
     }
 
     #[test]
@@ -182,10 +187,10 @@ mod tests {
         let noisy = level(0.5, 1e-3, 0.05);
         assert!(judge(&noisy, paired(1e-6, 1e-3), 2e-6, 0).is_right());
         assert!(!judge(&noisy, paired(1e-5, 1e-3), 2e-6, 0).is_right());
-        // Another picture of the same mean.
+        // A different picture with the same mean.
         let verdict = judge(&noisy, paired(0.0, 0.06), 2e-6, 0);
         assert!(verdict.reason().starts_with("pixels are off by 6.0e-2"), "{verdict:?}");
-        // As far apart as chance takes two estimates, and farther.
+        // As far apart as two independent estimates are, and further.
         let estimate = |rms| Against::Estimate(Paired { bias: 0.0, bias_deviation: 1e-3, rms });
         assert!(judge(&noisy, estimate(0.07), 2e-6, 0).is_right());
         assert!(!judge(&noisy, estimate(0.1), 2e-6, 0).is_right());
@@ -197,7 +202,7 @@ mod tests {
         let warned = Verdict::Wrong("off".into()).given(&warnings);
         assert_eq!(
             (warned.name(), warned.reason(), warned.is_right()),
-            ("warned", "off; it said: too thin", true)
+            ("warned", "off; the backend warned: too thin", true)
         );
         assert!(!Verdict::Wrong("off".into()).given(&[]).is_right());
         assert_eq!(Verdict::Right.given(&warnings), Verdict::Right);
@@ -210,7 +215,7 @@ mod tests {
         assert!(judge_time(Verdict::Right, 7.0, Some(1.0)).is_right());
         assert!(judge_time(Verdict::Right, 70.0, None).is_right());
         let slow = judge_time(Verdict::Right, 20.0, Some(0.5));
-        assert_eq!((slow.name(), slow.reason()), ("SLOW", "20.0 s, where the tame twin takes 0.50 s"));
+        assert_eq!((slow.name(), slow.reason()), ("SLOW", "20.0 s; the tame twin takes 0.50 s"));
         let wrong = Verdict::Wrong("x".into());
         assert_eq!(judge_time(wrong.clone(), 20.0, Some(0.5)), wrong);
     }

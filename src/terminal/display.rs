@@ -1,4 +1,4 @@
-//! Progress on standard error: a bar on a terminal, now and then a line elsewhere, or nothing.
+//! Progress on standard error: a bar on a terminal, otherwise a line from time to time, or nothing.
 
 use crate::cli::ProgressChoice;
 use crate::console;
@@ -8,22 +8,22 @@ use std::time::{Duration, Instant};
 
 /// How progress is shown.
 pub enum Display {
-    /// As a bar.
+    /// A progress bar.
     Bar(ProgressBar),
-    /// As lines.
+    /// Single lines.
     Lines {
-        /// When the next may come.
+        /// When the next line may be printed.
         next: Instant,
-        /// Time between two.
+        /// Least time between two lines.
         interval: Duration,
     },
-    /// Not at all.
+    /// Nothing.
     Off,
 }
 
 impl Display {
-    /// As `choice` and the terminal have it. The bar has `steps` and looks as indicatif's `template` says, with
-    /// `prefix` for what that calls so; lines come `interval` apart.
+    /// Depends on `choice` and on whether there is a terminal. The bar has `steps` and looks as indicatif's
+    /// `template` says, where `prefix` fills the placeholder of that name. Lines are at least `interval` apart.
     pub fn new(choice: ProgressChoice, steps: u64, template: &str, prefix: &str, interval: Duration) -> Self {
         match (choice, stderr().is_terminal()) {
             (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
@@ -39,12 +39,12 @@ impl Display {
         }
     }
 
-    /// Whether it is a bar, which tells the share by its length.
+    /// Whether it is a bar, whose length shows the progress.
     pub fn is_bar(&self) -> bool {
         matches!(self, Display::Bar(_))
     }
 
-    /// Shows `words` at step `position`; as a line only if one is due.
+    /// Shows `words` at step `position`. A line is printed only if one is due.
     pub fn update(&mut self, position: u64, words: impl FnOnce() -> String) {
         match self {
             Display::Lines { next, .. } if Instant::now() < *next => {}
@@ -52,7 +52,7 @@ impl Display {
         }
     }
 
-    /// Shows `words` at step `position`, whether a line is due or not.
+    /// Shows `words` at step `position` even if no line is due.
     pub fn announce(&mut self, position: u64, words: impl FnOnce() -> String) {
         match self {
             Display::Bar(bar) => {
@@ -67,7 +67,7 @@ impl Display {
         }
     }
 
-    /// Says something that must be read, whatever the display.
+    /// Prints a message that must be read, even if progress is off.
     pub fn say(&self, message: &str) {
         match self {
             Display::Bar(bar) => bar.suspend(|| console::note(message)),
@@ -75,7 +75,7 @@ impl Display {
         }
     }
 
-    /// Lets `print` write to the terminal, above the bar.
+    /// Hides the bar while `print` writes to the terminal.
     pub fn above<T>(&self, print: impl FnOnce() -> T) -> T {
         match self {
             Display::Bar(bar) => bar.suspend(print),
@@ -83,7 +83,7 @@ impl Display {
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn clear(&self) {
         if let Display::Bar(bar) = self {
             bar.finish_and_clear();

@@ -1,4 +1,4 @@
-//! What the programs without a window say: text for a person, JSON for other programs, progress.
+//! Output of the programs without a window: text for people, JSON for other programs, and progress.
 
 mod display;
 
@@ -12,18 +12,18 @@ use anyhow::{Context, Result, anyhow};
 use serde::Serialize;
 use std::io;
 
-/// Prints a result for a person, to standard output.
+/// Prints a result as text to standard output.
 ///
 /// # Errors
-/// A standard output that cannot be written, be it that its reader has gone away.
+/// If standard output cannot be written, for instance because its reader has gone away.
 pub fn print(text: &str) -> Result<()> {
     told(console::print(text))
 }
 
-/// Prints for a person: to standard output, or to standard error where JSON goes to the other.
+/// Prints text to standard output, or to standard error if JSON goes to standard output.
 ///
 /// # Errors
-/// As [`print`]; what goes to standard error cannot fail.
+/// As for [`print`]. Standard error never fails.
 pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
     if is_taken(json) {
         console::note_painted(text);
@@ -32,10 +32,10 @@ pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
     print(text)
 }
 
-/// As [`print_beside`], for a text with colours: see [`console::print_painted`].
+/// As [`print_beside`], for text with colours: see [`console::print_painted`].
 ///
 /// # Errors
-/// As [`print`].
+/// As for [`print`].
 pub fn print_painted_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
     if is_taken(json) {
         console::note_painted(text);
@@ -44,17 +44,17 @@ pub fn print_painted_beside(json: Option<&JsonTarget>, text: &str) -> Result<()>
     told(console::print_painted(text))
 }
 
-/// Whether standard output is for JSON alone.
+/// Whether standard output is reserved for JSON.
 pub fn is_taken(json: Option<&JsonTarget>) -> bool {
     json == Some(&JsonTarget::StandardOutput)
 }
 
-/// Writes `value` as JSON, with a line's end behind it.
+/// Writes `value` as JSON, followed by a newline.
 ///
 /// # Errors
-/// A file or a standard output that cannot be written, or a value that JSON cannot hold.
+/// If the file or standard output cannot be written, or JSON cannot represent the value.
 pub fn write_json(value: &impl Serialize, target: &JsonTarget) -> Result<()> {
-    let text = serde_json::to_string_pretty(value).context("the figures cannot be put as JSON")? + "\n";
+    let text = serde_json::to_string_pretty(value).context("cannot write the figures as JSON")? + "\n";
     match target {
         JsonTarget::File(path) => Ok(write_text(path, &text)?),
         JsonTarget::StandardOutput => told(console::write_out(&console::printable_json(&text))),

@@ -1,6 +1,6 @@
-//! Who may use whom.
+//! Which room may use which.
 
-/// A room and the rooms that it may use. Lower layers first.
+/// Each room with the rooms that it may use. Lower layers come first.
 pub const ROOMS: &[(&str, &[&str])] = &[
     ("memory", &[]),
     ("files", &["memory"]),
@@ -212,7 +212,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("signal_hook", &["interrupt"]),
 ];
 
-/// The files of the window and those of them that they may use; a folder counts as one. Lower layers first.
+/// Each file of the window with the files that it may use; a folder counts as one. Lower layers come first.
 pub const WINDOW: &[(&str, &[&str])] = &[
     ("model", &[]),
     ("command", &["model"]),
@@ -281,5 +281,5 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("mod", &["model", "command", "theme", "window"]),
 ];
 
-/// Files that know the whole window.
+/// Files that may use the whole window.
 pub const TOP: &[&str] = &["window", "perform", "receive", "frame", "mod"];

@@ -1,5 +1,6 @@
-//! Who knows whom: each room may use only the rooms listed for it, and within the window each file only those listed
-//! for it. Lower layers stand first, and what nobody uses is not allowed. The layers are in ARCHITECTURE.md.
+//! Dependencies between rooms: each room may use only the rooms listed for it, and within the window each file only
+//! those
+//! listed for it. Lower layers come first, and an unused permission is an error. ARCHITECTURE.md describes the layers.
 
 #![allow(clippy::expect_used, reason = "a test that cannot read the sources has failed")]
 
@@ -10,7 +11,8 @@ use lists::{CRATES, ROOMS, TOP, WINDOW};
 use sources::{Source, file_of, sources};
 use std::collections::BTreeSet;
 
-/// Holds who uses whom against who may, and says what is not allowed, what nobody needs, and what runs upwards.
+/// Compares actual uses with the permissions. Reports uses that are not allowed, unused permissions, and uses of
+/// higher layers.
 fn faults(allowed: &[(&str, &[&str])], uses: &BTreeSet<(String, String, String)>) -> BTreeSet<String> {
     let mut faults = BTreeSet::new();
     let may = |user: &str| allowed.iter().find(|(name, _)| *name == user).map(|(_, used)| *used);
@@ -90,7 +92,7 @@ fn files_import_each_other_in_no_circle() {
     let mut reached: Vec<BTreeSet<usize>> = Vec::new();
     for source in &sources {
         let used = source.used.iter().filter_map(|path| place(file_of(&sources, path)?));
-        // A folder's own file and those in it may name each other; not so in the window.
+        // A folder's main file and the other files in it may use each other, except in the window.
         let is_inside = |other: &Source| {
             if source.room() == "app" {
                 return false;

@@ -1,4 +1,4 @@
-//! The sources, and which paths they name.
+//! The source files and the paths that they use.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,15 +19,15 @@ fn rust_files(at: &Path, into: &mut Vec<PathBuf>) {
 
 /// A source file.
 pub struct Source {
-    /// Its path below `src`, without the ending.
+    /// Path below `src`, without the extension.
     pub name: String,
-    /// The module that it is: the names on the way to it.
+    /// The names of its module path.
     pub module: Vec<String>,
-    /// Its code without comments and without its tests, which may use anything.
+    /// The code without comments and tests; tests may use anything.
     pub code: String,
-    /// The paths that the code names, from the crate's root, but for what is handed on by `pub use`.
+    /// The paths that the code uses, from the crate's root, except those of `pub use`.
     pub used: Vec<Vec<String>>,
-    /// Paths that are handed on.
+    /// Paths that are exported with `pub use`.
     pub handed_on: Vec<Vec<String>>,
 }
 
@@ -70,18 +70,18 @@ impl Source {
         Source { name, module, code, used, handed_on }
     }
 
-    /// The room that it belongs to: the first part of its path.
+    /// The room that the file belongs to: the first part of its path.
     pub fn room(&self) -> &str {
         self.name.split('/').next().unwrap_or_default()
     }
 
-    /// The file or folder of the window that it belongs to.
+    /// The file or folder of the window that the file belongs to.
     pub fn window_part(&self) -> &str {
         self.name.split('/').nth(1).unwrap_or_default()
     }
 }
 
-/// Reads a path with its groups, as in `a::{b, c::d}`. Returns what stands after it.
+/// Parses a path with groups, as in `a::{b, c::d}`. Returns the text after it.
 fn paths<'a>(mut text: &'a str, before: &mut Vec<String>, found: &mut Vec<Vec<String>>) -> &'a str {
     let depth = before.len();
     loop {
@@ -97,7 +97,7 @@ fn paths<'a>(mut text: &'a str, before: &mut Vec<String>, found: &mut Vec<Vec<St
         }
         let end = text.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(text.len());
         if end == 0 {
-            // A star, or what is no path.
+            // A star, or something that is not a path.
             found.push(before.clone());
             text = text.strip_prefix('*').unwrap_or_else(|| text.get(1..).unwrap_or_default());
             break;
@@ -119,7 +119,7 @@ fn paths<'a>(mut text: &'a str, before: &mut Vec<String>, found: &mut Vec<Vec<St
     text
 }
 
-/// A path from the crate's root, as `module` names it.
+/// The path from the crate's root, as `module` writes it.
 fn absolute(module: &[String], path: &[String], is_child: &dyn Fn(&str) -> bool) -> Option<Vec<String>> {
     let mut at = module.to_vec();
     let mut rest = path;
@@ -151,7 +151,7 @@ pub fn sources() -> Vec<Source> {
     files.iter().map(|file| Source::read(file)).collect()
 }
 
-/// The file that a path leads to: through folders that hand on what their files have.
+/// The file that a path leads to, through folders that export names of their files.
 pub fn file_of<'a>(sources: &'a [Source], path: &[String]) -> Option<&'a Source> {
     let module = sources.iter().filter(|source| path.starts_with(&source.module));
     let module = module.max_by_key(|source| source.module.len())?;

@@ -1,10 +1,11 @@
-//! Every parser against inputs that are made to break it. An input may be refused, but there must be no panic, no
-//! endless loop, and no memory beyond what its length explains.
+//! Fuzz tests of all parsers. An input may be refused, but there must be no panic, no endless loop, and no memory use
+//! that
+//! the length of the input does not explain.
 //!
-//! A short run is part of the tests. A long one, by hand:
+//! A short run is part of the tests. For a long run:
 //! `WEEKENDER_FUZZ_SECONDS=600 cargo test --release --test fuzz -- --nocapture`, with `WEEKENDER_FUZZ_SEED=N` for other
-//! inputs and `WEEKENDER_FUZZ_ONLY=NAME` for one parser. What breaks a parser is kept in `tests/fuzz/finds/NAME/`,
-//! from where every run begins.
+//! inputs and `WEEKENDER_FUZZ_ONLY=NAME` for a single parser. Inputs that break a parser are saved in
+//! `tests/fuzz/finds/NAME/`, and every run starts with them.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod mutate;
@@ -23,13 +24,13 @@ use std::time::{Duration, Instant};
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
 
-/// Inputs of each parser in a short run.
+/// Number of inputs for each parser in a short run.
 const SHORT_RUN: u64 = 2000;
 
-/// An input that takes longer is an endless loop.
+/// An input that takes longer counts as an endless loop.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Inputs that were refused or taken in a way that is new are kept, up to so many.
+/// Largest number of inputs that are kept because they were refused or accepted in a new way.
 const KEPT_LIMIT: usize = 4000;
 
 fn number(name: &str) -> Option<u64> {
@@ -40,7 +41,7 @@ fn finds(parser: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/finds").join(parser)
 }
 
-/// What a parser is at, for the thread that waits for an end.
+/// The input that is being parsed, for the thread that watches for endless loops.
 type Current = Arc<Mutex<Option<(Instant, &'static str, Vec<u8>)>>>;
 
 fn watch(current: Current) {
@@ -59,7 +60,7 @@ fn watch(current: Current) {
     });
 }
 
-/// Writes an input where the next run begins.
+/// Saves an input with which later runs start.
 fn keep(parser: &str, kind: &str, input: &[u8]) -> PathBuf {
     let directory = finds(parser);
     std::fs::create_dir_all(&directory).unwrap();
@@ -69,7 +70,7 @@ fn keep(parser: &str, kind: &str, input: &[u8]) -> PathBuf {
     path
 }
 
-/// Tries an input; `Err` says what it broke.
+/// Parses an input; `Err` says what went wrong.
 fn attempt(parser: &Parser, input: &[u8], current: &Current) -> Result<Outcome, String> {
     *current.lock().unwrap() = Some((Instant::now(), parser.name, input.to_vec()));
     let before = MEMORY.current_usage();
@@ -87,10 +88,10 @@ fn attempt(parser: &Parser, input: &[u8], current: &Current) -> Result<Outcome, 
     Ok(outcome)
 }
 
-/// The outcome without its numbers, by which a new kind is told.
+/// The outcome without its numbers, so that equal kinds of outcomes are equal.
 fn kind(outcome: &Outcome) -> String {
     let told: String = outcome.told.chars().filter(|c| !c.is_ascii_digit()).take(160).collect();
-    // What is quoted from the input is endless.
+    // Quoted input has endless variations.
     told.split('"').step_by(2).collect()
 }
 

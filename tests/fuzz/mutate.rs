@@ -1,6 +1,6 @@
-//! Inputs made from kept ones, by numbers that depend on nothing but their seed.
+//! Mutates inputs, with pseudo-random numbers that depend only on a seed.
 
-/// SplitMix64.
+/// The SplitMix64 generator.
 pub struct Draws(u64);
 
 impl Draws {
@@ -16,7 +16,7 @@ impl Draws {
         x ^ (x >> 31)
     }
 
-    /// Below `limit`, which is above 0.
+    /// A number below `limit`, which must be above 0.
     pub fn below(&mut self, limit: usize) -> usize {
         (self.next() % limit as u64) as usize
     }
@@ -26,7 +26,7 @@ impl Draws {
     }
 }
 
-/// Numbers at which programs go wrong.
+/// Numbers that often cause errors.
 const NUMBERS: &[u64] = &[
     0,
     1,
@@ -81,10 +81,10 @@ const TEXT_NUMBERS: &[&str] = &[
     "20000",
 ];
 
-/// Longest input that is made.
+/// Longest mutated input, bytes.
 const LENGTH_LIMIT: usize = 1 << 16;
 
-/// Changes one of `kept` in one to eight places. `words` are of its language.
+/// Mutates one of `kept` in one to eight places. `words` are words of the parser's language.
 pub fn mutate(draws: &mut Draws, kept: &[Vec<u8>], words: &[&str]) -> Vec<u8> {
     let mut input = draws.pick(kept).clone();
     let count = 1 + (draws.next().leading_zeros() as usize).min(7);
@@ -105,7 +105,7 @@ fn change(draws: &mut Draws, input: &mut Vec<u8>, kept: &[Vec<u8>], words: &[&st
         0 => input[place] ^= 1 << draws.below(8),
         1 => input[place] = draws.next() as u8,
         2 => {
-            // A binary number, at its place or not.
+            // Overwrites bytes with a binary number, aligned or not.
             let size = [1, 2, 4, 8][draws.below(4)];
             let number = draws.pick(NUMBERS).wrapping_add(draws.below(3) as u64).wrapping_sub(1);
             let mut bytes = number.to_le_bytes()[..size].to_vec();
@@ -135,7 +135,7 @@ fn change(draws: &mut Draws, input: &mut Vec<u8>, kept: &[Vec<u8>], words: &[&st
         }
         6 => input.truncate(place),
         7 | 8 => {
-            // A number in a text becomes another.
+            // Replaces a number in a text.
             let is_digit = |byte: &u8| byte.is_ascii_digit();
             if let Some(start) = (place..input.len()).find(|at| is_digit(&input[*at])) {
                 let end = (start..input.len()).find(|at| !is_digit(&input[*at])).unwrap_or(input.len());

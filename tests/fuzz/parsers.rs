@@ -1,4 +1,4 @@
-//! The parsers, each with what it must keep to beside not breaking: what it takes, it can write and take again.
+//! The parsers under test. What a parser accepts, it must be able to write and read again.
 
 use crate::seeds;
 use std::ffi::OsString;
@@ -10,12 +10,12 @@ use weekender::recipe::file;
 use weekender::report;
 use weekender::stages::Transfer;
 
-/// What a parser made of an input.
+/// The result of parsing an input.
 pub struct Outcome {
     pub is_taken: bool,
-    /// Why not.
+    /// The reason, if it was refused.
     pub told: String,
-    /// Bytes that it may take beyond those that the input's length explains.
+    /// Memory that may be used beyond what the length of the input explains, bytes.
     pub allowance: usize,
 }
 
@@ -33,12 +33,12 @@ impl Outcome {
 pub struct Parser {
     pub name: &'static str,
     pub seeds: Vec<Vec<u8>>,
-    /// Words of its language.
+    /// Words of the parser's language.
     pub words: &'static [&'static str],
     pub parse: fn(&[u8]) -> Outcome,
-    /// Bytes of memory that a byte of input may ask for.
+    /// Bytes of memory allowed per byte of input.
     pub bytes_per_byte: usize,
-    /// Makes checksums right, so that what lies behind them is reached.
+    /// Corrects checksums, so that the code after them is reached.
     pub seal: Option<fn(&mut [u8])>,
 }
 
@@ -221,7 +221,7 @@ fn picture(input: &[u8]) -> Outcome {
             assert!(picture.steps.is_none_or(|steps| steps.len() == count));
             Outcome::taken("", (16 << 20) + 100 * count)
         }
-        // A chunk is read whole before it is looked at.
+        // A chunk is read completely before it is checked.
         Err(error) => Outcome { allowance: 16 << 20, ..Outcome::refused(error) },
     }
 }
@@ -250,7 +250,7 @@ fn report_json(input: &[u8]) -> Outcome {
     }
 }
 
-/// One argument a line.
+/// Parses one argument per line.
 fn flags(input: &[u8]) -> Outcome {
     let text = String::from_utf8_lossy(input);
     if names_large_field(&text) {
@@ -263,7 +263,7 @@ fn flags(input: &[u8]) -> Outcome {
     }
 }
 
-/// Makes the checksum of a film's head right, if there is one.
+/// Corrects the checksum of a film's header, if there is one.
 fn seal(input: &mut [u8]) {
     let _ = try_seal(input);
 }

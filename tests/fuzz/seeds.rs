@@ -1,4 +1,4 @@
-//! What inputs are made from: files that the program and its libraries write.
+//! Seed inputs: files that the program and its libraries write.
 
 use exr::prelude::{
     Compression, Encoding as ExrEncoding, Image, ImageAttributes, Layer, LayerAttributes, SpecificChannels,
@@ -54,7 +54,7 @@ fn description() -> Description {
     description
 }
 
-/// What the program writes for this ending.
+/// The file that the program writes with this extension.
 fn written(ending: &str, film: &Film) -> Vec<u8> {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join(format!("a.{ending}"));
@@ -64,7 +64,7 @@ fn written(ending: &str, film: &Film) -> Vec<u8> {
 
 pub fn films() -> Vec<Vec<u8>> {
     let mut films = vec![written("exr", &film(5, 4, 2)), written("exr", &film(1, 1, 1))];
-    // The shortest text, so that more changes meet the rest.
+    // A short text leaves more mutations for the rest of the file.
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a.exr");
     checkpoint::save(&path, &film(3, 2, 1), &Description::new("x")).unwrap();

@@ -1,4 +1,4 @@
-//! What the GPU's tests share.
+//! Helpers that the GPU tests share.
 #![allow(dead_code, reason = "each test uses some of it")]
 
 use std::io::Write;
@@ -10,8 +10,8 @@ use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{Rules, Stage};
 
-/// A renderer on any adapter, software too, or on that which `WEEKENDER_TEST_ADAPTER` names. Without one the test
-/// says so and passes, unless `WEEKENDER_REQUIRE_GPU=1`.
+/// A renderer on any adapter, including software, or on the one that `WEEKENDER_TEST_ADAPTER` names. Without an
+/// adapter, a message is printed and the test passes, unless `WEEKENDER_REQUIRE_GPU=1`.
 pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
     let adapter = std::env::var("WEEKENDER_TEST_ADAPTER").ok();
     match GpuRenderer::new(GpuOptions { adapter, allow_software: true, ..options }) {
@@ -24,15 +24,14 @@ pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
     }
 }
 
-/// Says that something was not tested. The harness keeps what a test prints to itself while it passes, so this goes
-/// past it.
+/// Prints that something was not tested. The test harness hides the output of passing tests, so this bypasses it.
 pub fn say_loudly(text: &str) {
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
     let line = format!("\nNOT TESTED: {test}: {text}\n");
     std::io::stderr().write_all(line.as_bytes()).unwrap();
 }
 
-/// The control.
+/// The CPU renderer to compare with.
 pub fn cpu() -> CpuRenderer {
     CpuRenderer::new(CpuOptions::default()).unwrap()
 }
@@ -49,7 +48,7 @@ pub fn job_of(
     RenderJob::new(scene.clone(), camera, settings, Rules::default()).unwrap()
 }
 
-/// Every stage and every built-in scene.
+/// All stages and all built-in scenes.
 pub fn jobs(width: u32, height: u32) -> Vec<(String, RenderJob)> {
     let job = |mut recipe: Recipe| {
         (recipe.settings.width, recipe.settings.height) = (width, height);

@@ -1,4 +1,4 @@
-//! Each small function of the shaders against its twin: integers to the bit, floats in units of the last place.
+//! Compares each small function of the shaders with its twin: integers to the bit, floats in units in the last place.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod boxes;
@@ -27,7 +27,7 @@ use weekender::sampling::{
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{DielectricLaws, Rules};
 
-/// The CPU's arithmetic, one lane, fused.
+/// The CPU's arithmetic with one lane, fused.
 type L = Scalar<true>;
 const L: L = Scalar::<true>;
 type F = Single<true>;
@@ -68,7 +68,7 @@ fn run(
     inputs.into_iter().zip(output.chunks_exact(PROBE_STRIDE).map(|w| w.try_into().unwrap())).collect()
 }
 
-/// Numbers in `[0, 1)` that depend on `i` and `stream`.
+/// Pseudo-random numbers in `[0, 1)` that depend on `i` and `stream`.
 fn uniform(i: u32, stream: u32) -> [f32; 4] {
     pcg4d([i, stream, 7, 11]).map(unit_float)
 }
@@ -78,7 +78,7 @@ fn unit_vector(i: u32, stream: u32) -> [f32; 3] {
     weekender::sampling::unit_sphere(a, b)
 }
 
-/// Bits of floats, then zeros.
+/// The bits of floats, followed by zeros.
 fn words(floats: &[f32]) -> Words {
     let mut words = [0; PROBE_STRIDE];
     for (to, from) in words.iter_mut().zip(floats) {
@@ -103,7 +103,7 @@ fn list(v: V3<F>) -> [f32; 3] {
     [v.x.0, v.y.0, v.z.0]
 }
 
-/// The largest difference, in units of the last place of numbers as large as `scale`.
+/// The largest difference, in units in the last place of numbers as large as `scale`.
 #[derive(Default)]
 struct Ulps(f64);
 
@@ -186,7 +186,7 @@ fn sine_and_cosine() {
 
 const BOOK_T_MIN: f32 = weekender::stages::BOOK_T_MIN as f32;
 
-/// A ray that meets the sphere, not at its rim, where the distance is as uncertain as a root of 0.
+/// A ray that hits the sphere, but not near its edge, where the distance is as uncertain as a root of 0.
 fn ray_words(i: u32) -> Words {
     let [radius, distance, inside, code] = uniform(i, 20);
     let radius = 0.1 + 2.0 * radius;
@@ -219,7 +219,7 @@ fn rays(words: &Words) -> Rays<L> {
     }
 }
 
-/// Compares distances; those that are no hit need only be none on both sides.
+/// Compares distances; if one side has no hit, the other must have none either.
 fn compare_keys(ulps: &mut Ulps, got: u32, expected: i32, what: &Words) {
     // The CPU's keys are those of negated distances.
     let expected = (-f32::from_bits(expected as u32)).to_bits();
@@ -258,7 +258,7 @@ fn intersections() {
         words[11] = (1.0 / radius).to_bits();
         words[12] = (2.0 * uniform(i, 24)[0]).to_bits();
         words[13] = radius.to_bits();
-        // On the sphere, as a hit is.
+        // A point on the sphere, as for a hit.
         let origin = [0, 1, 2].map(|k| float(&words, 8 + k) + radius * unit_vector(i, 25)[k]);
         let d = vector(&words, 3);
         let t = float(&words, 12);
@@ -276,7 +276,7 @@ fn intersections() {
         specks.compare(&list(vector(&output, 6)), &list(speck.position), 4.0);
         specks.compare(&list(vector(&output, 9)), &list(speck.outward), 4.0);
     }
-    // Half the chord is a root of a difference.
+    // Half the chord is the root of a difference.
     specks.within("speck_surface_point", 4096.0);
     ulps.within("surface_point", 8.0);
 }
@@ -288,7 +288,7 @@ fn anchored_spheres() {
     for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::Anchored, |i| {
         let [x, height, z, code] = uniform(i, 30);
         let [a, b, ..] = uniform(i, 31);
-        // Downwards, not grazing, on a ground of a large radius.
+        // Downwards, not grazing, on a large ground.
         let d = DVec3::new(f64::from(a) - 0.5, -0.3 - f64::from(b), f64::from(b) - 0.5).normalize();
         let origin = [4.0 * x, 0.1 + height, 4.0 * z];
         let curvature = 10.0_f32.powi(-((i % 6) as i32) - 2);
@@ -355,7 +355,7 @@ fn scattering() {
                 scatter::<L, true>(L, &surface, laws, d, n, &incidence_of(L, cosine), front, unit, coin);
             let flags = u32::from(sent.refracts) | u32::from(sent.is_metal) << 1;
             if output[3] != flags {
-                // A coin within rounding of the reflectance.
+                // The random number is within rounding of the reflectance.
                 parted += 1;
                 continue;
             }
@@ -365,7 +365,7 @@ fn scattering() {
             ulps.compare(&list(vector(&output, 5)), &list(refracted(L, d, n, sent.ratio, sine2)), 2.0);
         }
         assert!(parted <= 2, "{parted} parted");
-        // Near the critical angle the inner cosine is a root of almost 0.
+        // Near the critical angle, the inner cosine is the root of almost 0.
         ulps.within(&format!("scatter, {laws:?}"), 512.0);
     }
 }
@@ -394,7 +394,7 @@ fn camera_rays() {
     ulps.within("camera rays", 4.0);
 }
 
-/// The lane's own constants are used, so that a change of precision does not go unseen.
+/// The lane's own constants are used, so that a change of precision is noticed.
 #[test]
 fn oracle_is_single_precision() {
     assert_eq!(L.constant(0.1).0, 0.1_f32);

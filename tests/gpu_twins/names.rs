@@ -1,15 +1,15 @@
-//! Which functions each shader file and its twin have: the same, in the same order.
+//! Compares the functions of each shader file with those of its twin: same names, same order.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// A shader file, and the files of `src/render_cpu` that it is the twin of, in order.
+/// A shader file and the files of `src/render_cpu` that are its twin, in order.
 struct Pair {
     shader: &'static str,
     twins: &'static [&'static str],
-    /// Functions of the shader alone, and why.
+    /// Functions that only the shader has, and why.
     shader_alone: &'static [(&'static str, &'static str)],
-    /// Functions of the twin alone, and why.
+    /// Functions that only the twin has, and why.
     twin_alone: &'static [(&'static str, &'static str)],
 }
 
@@ -63,7 +63,7 @@ const PAIRS: &[Pair] = &[
     },
 ];
 
-/// Names of functions, but for those of tests.
+/// Names of all functions except tests.
 fn functions(text: &str) -> Vec<String> {
     let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
     let declared = code.lines().filter_map(|line| {
@@ -79,7 +79,7 @@ fn read(path: &str) -> String {
     std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
 }
 
-/// What is wrong with a pair of lists.
+/// The differences between two lists of names.
 fn faults(pair: &Pair, shader: &[String], twin: &[String]) -> Vec<String> {
     let mut faults = Vec::new();
     let sides = [(shader, twin, pair.shader_alone), (twin, shader, pair.twin_alone)];
@@ -117,8 +117,8 @@ fn twins_have_the_same_functions_in_the_same_order() {
     }
 }
 
-/// All that the shaders compute with has a function of its name on the CPU's side, where the rest of arithmetic is that of
-/// [`weekender::render_cpu::lanes::Lanes`].
+/// Every function of the shaders' arithmetic has a twin of the same name on the CPU, where the rest of the arithmetic
+/// is in [`weekender::render_cpu::lanes::Lanes`].
 #[test]
 fn arithmetic_has_twins() {
     let shader = functions(&read("shaders/lanes.wgsl"));
@@ -126,7 +126,7 @@ fn arithmetic_has_twins() {
         .iter()
         .flat_map(|file| functions(&read(&format!("src/render_cpu/lanes/{file}.rs"))))
         .collect();
-    // `dot` is taken by WGSL itself; a packet's directions are normalised where they are sent on.
+    // WGSL has a `dot` of its own, and packets normalise their directions when the rays are sent.
     let other_names = [("dot3", "dot"), ("normalized", "sqrt")];
     for name in shader {
         let twin =
@@ -135,7 +135,7 @@ fn arithmetic_has_twins() {
     }
 }
 
-/// The check finds what it is there for.
+/// The check itself finds differences.
 #[test]
 fn a_function_of_one_side_is_found() {
     let pair = Pair { shader: "a", twins: &["b"], shader_alone: &[("x", "")], twin_alone: &[] };

@@ -72,7 +72,7 @@ fn every_menu_lists_its_commands() {
     }
 }
 
-/// What a command has to have changed, given the window as it was.
+/// What a command must have changed, compared with the window before.
 fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Harness<'_, Window>) -> bool {
     let copied =
         harness.output().platform_output.commands.iter().any(
@@ -110,7 +110,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::PreviousStage => document.stage() == before.stage().and_then(|stage| stage.previous()),
         Command::NextStage => document.stage() == before.stage().and_then(|stage| stage.next()),
         Command::Stage(stage) => document.stage() == Some(stage),
-        // The next two are the window system's, the others the viewport's, which has tests of its own.
+        // The next two belong to the window system; the others belong to the viewport and are tested there.
         Command::Quit | Command::Book | Command::FullScreen => true,
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
     }
@@ -121,7 +121,7 @@ fn every_command_does_what_it_says() {
     for command in Command::all() {
         let mut harness = open(SMALL);
         until(&mut harness, "a picture", has_samples(1));
-        // Something to take back, and something to make again.
+        // Something to undo and something to redo.
         if matches!(command, Command::Undo | Command::Redo | Command::Home | Command::ResetAll) {
             harness.run_steps(90);
             harness.state_mut().document_mut().camera.vfov_degrees = 33.0;

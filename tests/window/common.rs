@@ -1,4 +1,4 @@
-//! A window without a display, and how to use it.
+//! A window without a display, and helpers to use it.
 
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -44,7 +44,7 @@ pub fn opened(window: Window) -> Harness<'static, Window> {
     harness
 }
 
-/// Draws frames until it is so.
+/// Draws frames until the condition holds.
 pub fn until(harness: &mut Harness<'_, Window>, what: &str, is_so: impl Fn(&Window) -> bool) {
     let begin = Instant::now();
     while !is_so(harness.state()) {
@@ -57,7 +57,7 @@ pub fn until(harness: &mut Harness<'_, Window>, what: &str, is_so: impl Fn(&Wind
     }
 }
 
-/// Draws frames until a label has this in it.
+/// Draws frames until there is a label that contains this text.
 pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
     let begin = Instant::now();
     while harness.query_all_by_label_contains(text).next().is_none() {
@@ -67,7 +67,7 @@ pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
     }
 }
 
-/// Whether the picture on the screen is the document's, at its full size, with so many samples per pixel.
+/// Whether the screen shows the document's picture at full size with at least this many samples per pixel.
 pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
     move |window| {
         let is_enough = |(samples, divisor)| samples >= at_least && divisor == 1;
@@ -75,7 +75,7 @@ pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
     }
 }
 
-/// Presses the primary button there, or lets it go.
+/// Presses or releases the primary button at this point.
 pub fn hold(harness: &mut Harness<'_, Window>, pos: Pos2, pressed: bool) {
     let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
     harness.event(egui::Event::PointerMoved(pos));
@@ -102,7 +102,7 @@ pub fn send(harness: &mut Harness<'_, Window>, command: Command) {
     harness.run_steps(2);
 }
 
-/// The control of this name, not the text that says the name.
+/// The control with this name, not a text that contains the name.
 pub fn control<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> {
     let mut named = harness.get_all_by_label(name);
     named
@@ -114,7 +114,7 @@ pub fn middle(harness: &Harness<'_, Window>) -> Pos2 {
     harness.get_by_label("Picture").rect().center()
 }
 
-/// Drags with the primary button, in small steps.
+/// Drags with the primary button in small steps.
 pub fn drag_from(harness: &mut Harness<'_, Window>, from: Pos2, by: egui::Vec2) {
     hold(harness, from, true);
     for step in 1..=10 {

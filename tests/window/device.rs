@@ -1,4 +1,4 @@
-//! Who traces, and pauses.
+//! Choosing the device, and pausing.
 
 use crate::common::{drag, has_samples, open, send, until, until_seen};
 use eframe::egui::{Key, Modifiers, PointerButton};

@@ -35,7 +35,7 @@ fn a_stage_is_wiped_against_its_pair_or_the_book() {
     let mut harness = open(SMALL);
     send(&mut harness, Command::Wipe);
     until(&mut harness, "the pair", |window| window.has_other_picture());
-    // Not the end of the comparison: another one.
+    // The comparison does not end; it changes to another one.
     send(&mut harness, Command::BookArithmetic);
     assert!(harness.state().is_comparing());
     until(&mut harness, "the book's picture", |window| window.has_other_picture());

@@ -6,7 +6,7 @@ use weekender::output::OutputFormat;
 
 const PICTURE: &str = "--stage defocus --size 48x27 --device cpu --samples 40";
 
-/// The film that the window saves at the end of the picture.
+/// The film that the window saves when the picture is finished.
 fn film_of(flags: &str, message: Option<&str>) -> Film {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("film.exr");
@@ -25,7 +25,7 @@ fn a_panic_of_the_tracer_is_reported_and_another_backend_finishes_the_picture() 
     for tiles in [0, 9] {
         let film = film_of(&format!("--simulate-panic {tiles}"), Some("panicked"));
         assert_eq!((film.samples(), film.rejected()), (whole.samples(), 0), "{tiles} tiles before the panic");
-        // The backend that takes over may round otherwise, which sends a path in some thousands another way.
+        // The backend that takes over may round differently, which sends a few paths in thousands another way.
         let mean = |film: &Film| (0..48 * 27).map(|pixel| film.mean(pixel)[0]).sum::<f64>() / (48.0 * 27.0);
         let (found, expected) = (mean(&film), mean(&whole));
         assert!((found - expected).abs() < 2e-4 * expected, "{tiles}: {found}, not {expected}");

@@ -1,4 +1,4 @@
-//! What is saved, opened, dropped and copied.
+//! Saving, opening, dropping and copying.
 
 use crate::common::{SMALL, has_samples, open, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
@@ -11,7 +11,7 @@ use weekender::progressive::{Plan, Progressive, Work};
 use weekender::recipe::file;
 use weekender::stages::Stage;
 
-/// The bytes of the picture that a file's recipe gives with as many samples as it says.
+/// The pixels that the recipe in a file gives with the number of samples that the file states.
 fn rendered_again(path: &Path) -> Vec<u8> {
     let description = read_description(path).unwrap();
     let recipe = file::parse(description.recipe(), "again").unwrap();
@@ -49,7 +49,7 @@ fn what_is_saved_is_the_film_and_can_be_opened_again() {
         until(&mut harness, "forty samples", |window| {
             has_samples(40)(window) && window.status().samples_per_pixel >= 40
         });
-        // A film goes on with the samples that it has; of a picture they are traced again.
+        // A film continues with its samples; those of a picture are traced again.
         let held = if format == OutputFormat::Exr { 40 } else { 0 };
         let status = harness.state().status();
         let traced: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();

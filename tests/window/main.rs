@@ -1,4 +1,4 @@
-//! The window, driven through its real state as by a person: every command, key and control.
+//! Tests the window through its real state, as a person would use it: every command, key and control.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
 mod commands;

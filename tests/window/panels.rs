@@ -171,11 +171,11 @@ fn every_control_changes_something() {
     let mut harness = opened();
     for (name, role) in controls {
         assert!(!name.is_empty(), "a {role:?} without a name");
-        // What says which of several is chosen changes nothing when it is the chosen one.
+        // Choosing the option that is already chosen changes nothing.
         if name == Command::Device(Device::Cpu).name() {
             continue;
         }
-        // What only writes to the clipboard or the disk is tried elsewhere.
+        // Commands that only write to the clipboard or to disk are tested elsewhere.
         if name == "Copy as command" {
             continue;
         }

@@ -10,12 +10,12 @@ fn target(harness: &Harness<'_, Window>) -> f64 {
     harness.state().document().stop.noise.unwrap()
 }
 
-/// Where the target's line is.
+/// The position of the target's line.
 fn line(harness: &Harness<'_, Window>) -> Pos2 {
     harness.get_by_label("Target error, as a line").rect().center()
 }
 
-/// From one place to another in small steps, the button held down.
+/// Moves the pointer in small steps with the button held down.
 fn drag(harness: &mut Harness<'_, Window>, from: Pos2, to: Pos2) {
     let button = |pos, pressed| egui::Event::PointerButton {
         pos,
@@ -42,7 +42,7 @@ fn the_target_is_dragged() {
     until(&mut harness, "an estimate", |window| window.status().samples_per_pixel >= 16);
     send(&mut harness, Command::Pause);
     assert_eq!(target(&harness), 0.002);
-    // Taken hold of some points beside it: it moves as far as the pointer, and does not jump.
+    // Grabbed some points away from the line, it moves as far as the pointer and does not jump.
     let beside = line(&harness) + vec2(40.0, 5.0);
     drag(&mut harness, beside, beside);
     assert_eq!(target(&harness), 0.002);
@@ -52,7 +52,7 @@ fn the_target_is_dragged() {
     assert!(moved > 0.0022 && moved < 0.2, "up is a larger error: {moved}");
     assert!(harness.state().is_paused());
 
-    // Beside the line nothing is taken hold of.
+    // Away from the line, nothing is grabbed.
     let away = line(&harness) + vec2(40.0, 14.0);
     drag(&mut harness, away, away - vec2(0.0, 30.0));
     assert_eq!(target(&harness), moved);

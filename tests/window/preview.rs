@@ -1,4 +1,4 @@
-//! While something moves, coarse previews are shown; what is saved and told is never theirs.
+//! While something moves, coarse previews are shown; they are never saved or reported.
 
 use crate::common::{has_samples, hold, open, send, until};
 use eframe::egui::{self, Key, Modifiers};
@@ -10,10 +10,10 @@ use weekender::output::{OutputFormat, read_description};
 use weekender::progressive::Stop;
 use weekender::recipe::file;
 
-/// So large that previews are coarser.
+/// Large enough for previews to be coarser.
 const LARGE: &str = "--size 1600x900 --device cpu --samples 4";
 
-/// Draws frames, each with a change of the picture, until a preview is on the screen.
+/// Draws frames, each with a change of the picture, until a preview is on screen.
 fn move_until_preview(harness: &mut Harness<'_, Window>, change: impl Fn(&mut Window)) {
     let begin = Instant::now();
     while harness.state().shown().is_none_or(|(_, divisor)| divisor == 1) {
@@ -58,18 +58,18 @@ fn what_is_saved_while_the_camera_moves_has_the_full_size() {
 
 #[test]
 fn the_pixel_under_the_pointer_is_never_that_of_a_preview() {
-    // The sky gets bluer from the bottom to the top, so that a pixel of a coarser picture has another colour. This one is
-    // within that picture, too.
+    // The sky gets bluer from bottom to top, so a pixel of a coarser picture has a different colour. This pixel is
+    // also inside that picture.
     let mut harness = open(&format!("--stage sky {LARGE}"));
     let at = harness.state().picture_rect().lerp_inside(egui::vec2(0.05, 0.08));
     harness.event(egui::Event::PointerMoved(at));
     until(&mut harness, "the end", has_samples(4));
     until(&mut harness, "the pixel", |window| window.inspected().is_some());
     let (pixel, expected) = harness.state().inspected().unwrap();
-    // Other numbers of samples than that are news, and asked for.
+    // Another number of samples is a new picture, and is requested.
     harness.state_mut().document_mut().stop = Stop::at_samples(2);
     hold(&mut harness, at, true);
-    // Another seed is another film of the same colours.
+    // Another seed gives another film with the same colours.
     let change = |window: &mut Window| window.document_mut().settings.seed += 1;
     let mut previews = 0;
     for _ in 0..60 {

@@ -1,10 +1,10 @@
-//! What is kept from one run to the next.
+//! Settings that are kept from one run to the next.
 
 use crate::common::{SMALL, open, send};
 use weekender::app::{Command, Device, Theme, Window};
 use weekender::cli::{self, Request};
 
-/// What eframe keeps in a file.
+/// What eframe stores in a file.
 #[derive(Default)]
 struct Storage(std::collections::HashMap<String, String>);
 
@@ -51,10 +51,10 @@ fn settings_are_remembered() {
     assert_eq!(*again.remembered_mut(), kept);
     assert_eq!((kept.theme, kept.has_plot, kept.has_info), (Theme::Light, true, false));
     assert_eq!((kept.device, kept.bookmarks.len(), kept.threads), (Device::Reference, 1, Some(1)));
-    // What the command line says goes before what is remembered.
+    // The command line overrides remembered settings.
     let mut told = Window::new(options("weekender --stage metal --device cpu"), Some(&storage)).unwrap();
     assert_eq!(told.remembered_mut().device, Device::Cpu);
-    // What cannot be read is as if there were nothing.
+    // Settings that cannot be read are ignored.
     storage.0.values_mut().for_each(|value| *value = "(theme: Purple)".to_owned());
     let mut fresh = Window::new(options("weekender --stage metal"), Some(&storage)).unwrap();
     assert_eq!(fresh.remembered_mut().theme, Theme::System);

@@ -1,4 +1,4 @@
-//! Films that go on in the window.
+//! Films that the window resumes.
 
 use crate::common::{has_samples, open, opened, save, until};
 use weekender::cli;
@@ -48,7 +48,7 @@ fn a_resumed_film_goes_on_as_the_flags_say() {
         let [resumed, whole] = [resumed, whole].map(|path| checkpoint::load(&path).unwrap().film);
         assert!(resumed == whole, "{flags}");
     }
-    // Without a condition of its own it goes on as the picture usually would.
+    // Without a stop condition of its own, it continues as the picture usually would.
     let harness = open(&resume);
     assert_eq!(harness.state().document().stop, Stop { noise: Some(Stop::NOISE), ..Stop::default() });
 }
@@ -66,7 +66,7 @@ fn the_film_of_another_picture_is_refused() {
         let refused = parse(flags).unwrap_err().to_string();
         assert!(refused.contains(told) && refused.contains("film.exr"), "{flags}: {refused}");
     }
-    // One that takes its place after that is refused, too, and the picture starts from the beginning.
+    // A film that replaces it later is refused, too, and the picture starts from the beginning.
     let cli::Request::Window(options) = parse("--samples 50").unwrap() else { panic!("no window") };
     save_film(&path, "--seed 9");
     let mut harness = opened(weekender::app::Window::new(*options, None).unwrap());

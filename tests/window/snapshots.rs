@@ -1,11 +1,11 @@
-//! Pictures of the whole window.
+//! Snapshots of the whole window.
 
 use crate::common::{has_samples, send, until, window};
 use eframe::egui;
 use egui_kittest::Harness;
 use weekender::app::{Command, Theme, Window};
 
-/// A picture of the whole window. Figures that change from run to run are covered.
+/// A picture of the whole window. Numbers that change from run to run are covered.
 fn snapshot(name: &str, theme: Theme, size: [f32; 2], scale: f32) {
     let mut harness = Harness::builder()
         .with_size(size)
@@ -26,7 +26,7 @@ fn snapshot(name: &str, theme: Theme, size: [f32; 2], scale: f32) {
     let status =
         egui::Rect::from_min_max(egui::pos2(0.0, size[1] - status_height), egui::pos2(size[0], size[1]));
     harness.mask(status);
-    // Fonts and edges differ a little from adapter to adapter.
+    // Fonts and edges differ slightly between adapters.
     let options = egui_kittest::SnapshotOptions::new().threshold(2.0).max_failed_pixels(400_usize);
     harness.snapshot_options(name, &options);
 }

@@ -1,4 +1,4 @@
-//! The hand on the picture, and what the picture shows.
+//! The mouse on the picture, and what the picture shows.
 
 use crate::common::{SMALL, control, drag, has_samples, middle, open, send, until};
 use eframe::egui::{self, Key, Modifiers, PointerButton};
@@ -12,7 +12,7 @@ fn drags_move_the_camera_and_undo_brings_it_back() {
     let mut harness = open("--stage view-distant");
     until(&mut harness, "a picture", has_samples(1));
     let before = harness.state().document().camera;
-    // The state has to stand still for a moment to be one that undo comes back to.
+    // Undo returns only to states that have lasted for a moment.
     harness.run_steps(90);
 
     drag(&mut harness, PointerButton::Primary, Modifiers::NONE);
@@ -38,7 +38,7 @@ fn drags_move_the_camera_and_undo_brings_it_back() {
     assert_eq!(harness.state().document().camera, camera, "the picture moves, not the camera");
 }
 
-/// Where a point of the scene is seen, `0..=1` from the upper left.
+/// Where a point of the scene is seen, from 0 to 1 from the upper left.
 fn seen(harness: &Harness<'_, Window>, point: glam::DVec3) -> [f64; 2] {
     let document = harness.state().document();
     document.camera.place_of(point, document.aspect()).unwrap()
@@ -49,7 +49,7 @@ fn the_scene_follows_a_drag_and_the_eye_follows_a_right_drag() {
     let mut harness = open("--stage view-distant --size 64x36");
     until(&mut harness, "a picture", has_samples(1));
     let before = harness.state().document().camera;
-    // Nearer than the point that is turned about: it goes where the hand goes, to the right and down.
+    // Points nearer than the centre of the orbit move with the mouse, to the right and down.
     let near = before.look_at.lerp(before.look_from, 0.3);
     assert!(seen(&harness, near).map(|share| (share - 0.5).abs() < 1e-9) == [true; 2]);
     drag(&mut harness, PointerButton::Primary, Modifiers::NONE);
@@ -57,7 +57,7 @@ fn the_scene_follows_a_drag_and_the_eye_follows_a_right_drag() {
     assert!(x > 0.505 && y > 0.505, "orbit: {x}, {y}");
     send(&mut harness, Command::Home);
     assert_eq!(harness.state().document().camera, before);
-    // The eye turns to the right and down, so that what it looked at is at the left and up.
+    // The eye turns to the right and down, so the point that it looked at moves to the left and up.
     drag(&mut harness, PointerButton::Secondary, Modifiers::NONE);
     let [x, y] = seen(&harness, before.look_at);
     assert!(x < 0.495 && y < 0.495, "look: {x}, {y}");
@@ -127,7 +127,7 @@ fn ctrl_and_the_wheel_zoom_at_the_pointer() {
         assert!(zoomed.width() > 1.05 * rect.width(), "{rect:?} {zoomed:?}");
         let [old, new] = [rect, zoomed].map(|rect| (at - rect.min) / rect.size());
         let off = (new - old) * zoomed.size();
-        // Each of the frames puts the corner on a whole pixel.
+        // Each frame rounds the corner to a whole pixel.
         assert!(off.length() < 8.0, "off by {off} points, {rect:?} {zoomed:?}");
     }
 }
@@ -188,14 +188,14 @@ fn the_wheel_and_keys_move_and_clicks_aim() {
     };
     harness.run_steps(30);
     assert!(is_open(&harness, 0) && !is_open(&harness, 1));
-    // What is known of the pixel above may still change, and with it the place of all that is below.
+    // The figures of the pixel above the list may still change, which would move the controls below.
     harness.get_by_label("Path of the sample after").click_accesskit();
     harness.run_steps(30);
     assert!(is_open(&harness, 1) && !is_open(&harness, 0));
     control(&harness, "Path of sample 3").click_accesskit();
     harness.run_steps(30);
     assert!(is_open(&harness, 3) && !is_open(&harness, 1));
-    // The pixel's figures above may just now get a row more; then the control is another and hears nothing.
+    // The figures above may get another row at this moment; then the control moves and does not react.
     for _ in 0..10 {
         control(&harness, "Paths listed").set_value_accesskit(64.0);
         harness.run_steps(5);
@@ -206,7 +206,7 @@ fn the_wheel_and_keys_move_and_clicks_aim() {
     assert_eq!(harness.state().listed_paths(), 64, "no more than that");
     harness.state_mut().document_mut().settings.seed += 1;
     until(&mut harness, "the paths of another seed", |window| window.listed_paths() == 64);
-    // The list may still change, and with it the button's place.
+    // The list may still change, which would move the button.
     harness.get_by_label("Clear paths").click_accesskit();
     harness.run_steps(2);
     assert!(harness.query_by_label_contains("Paths of pixel").is_none());
@@ -245,7 +245,7 @@ fn views_are_shown_and_follow_the_camera() {
         send(&mut harness, Command::Show(show));
         assert_eq!((harness.state().show(), harness.state().layer_samples()), (show, 0));
     }
-    // A stage that sends no rays has no such views: it says so and shows its picture.
+    // A stage that sends no rays does not have these views: it says so and shows its picture.
     send(&mut harness, Command::Show(Show::Albedo));
     send(&mut harness, Command::Stage(&Stage::ALL[0]));
     harness.run_steps(2);

@@ -1,4 +1,4 @@
-//! Two pictures at the sides of a divider.
+//! Two pictures on the two sides of a divider.
 
 use crate::common::{drag_from, has_samples, send, until, window};
 use eframe::egui::{Pos2, Vec2, vec2};
@@ -15,7 +15,7 @@ fn colour_at(harness: &mut Harness<'_, Window>, at: Pos2) -> [u8; 3] {
     [red, green, blue]
 }
 
-/// Shows a stage, small and with another camera than its own.
+/// Shows a small picture of a stage with a camera that is not its own.
 fn show(harness: &mut Harness<'_, Window>, stage: &'static Stage) {
     send(harness, Command::Stage(stage));
     let document = harness.state_mut().document_mut();
@@ -41,7 +41,7 @@ fn the_own_picture_is_left_of_the_divider_and_the_other_right_of_it() {
     until(&mut harness, "a picture", has_samples(16));
     harness.run_steps(10);
     let rect = harness.state().picture_rect();
-    // Below the titles; the second is on the ball, which this camera sees larger.
+    // Below the titles; the second point is on the ball, which is larger with this camera.
     let places = [0.1, 0.35, 0.9].map(|share| rect.lerp_inside(vec2(share, 0.35)));
     let mine = places.map(|at| colour_at(&mut harness, at));
     let other = Stage::find("lambertian-linear").unwrap();
@@ -55,7 +55,7 @@ fn the_own_picture_is_left_of_the_divider_and_the_other_right_of_it() {
     until(&mut harness, "a picture", has_samples(16));
     send(&mut harness, Command::Wipe);
     until(&mut harness, "two pictures", |window| window.has_other_picture());
-    // The second picture has its samples soon.
+    // The second picture will soon have its samples.
     let begin = Instant::now();
     let mut found = places.map(|at| colour_at(&mut harness, at));
     while !is_near(found[2], theirs[2]) && begin.elapsed() < Duration::from_secs(20) {
@@ -67,7 +67,7 @@ fn the_own_picture_is_left_of_the_divider_and_the_other_right_of_it() {
         |found: [[u8; 3]; 3]| [0, 1, 2].map(|i| (is_near(found[i], mine[i]), is_near(found[i], theirs[i])));
     assert_eq!(is_mine(found), [(true, false), (true, false), (false, true)], "{found:?}");
 
-    // With the divider at a quarter the other picture begins there.
+    // With the divider at a quarter, the other picture starts there.
     let knob = rect.center();
     drag_from(&mut harness, knob, Vec2::new(-0.25 * rect.width(), 0.0));
     harness.run_steps(5);

@@ -1,4 +1,4 @@
-//! Pieces that the families' scenes are made of.
+//! Building blocks for the families' scenes.
 
 use crate::recipe::Recipe;
 use crate::render::RenderSettings;
@@ -13,28 +13,28 @@ const SIZE: [u32; 2] = [24, 16];
 /// Samples per pixel of most pictures.
 const SAMPLES: u64 = 32;
 
-/// A sky that is 1 everywhere: what arrives is what the surfaces left of it.
+/// A sky that is 1 everywhere: a path returns the product of the reflectances that it met.
 pub const WHITE_SKY: Sky = Sky { bottom: DVec3::ONE, top: DVec3::ONE };
 
 /// A sphere's centre, radius and material.
 pub type Ball = (DVec3, f64, Material);
 
-/// Matte of this reflectance in all channels.
+/// A matte material with this reflectance in all channels.
 pub fn matte(albedo: f64) -> Material {
     Material::Lambertian { albedo: DVec3::splat(albedo) }
 }
 
-/// Metal of this reflectance in all channels.
+/// A metal with this reflectance in all channels.
 pub fn metal(albedo: f64, fuzz: f64) -> Material {
     Material::Metal { albedo: DVec3::splat(albedo), fuzz }
 }
 
-/// Glass.
+/// Glass with this refraction index.
 pub fn glass(refraction_index: f64) -> Material {
     Material::Dielectric { refraction_index }
 }
 
-/// A scene of these balls. Balls of one material share it.
+/// A scene of these balls. Balls with equal materials share one.
 pub fn scene(balls: impl IntoIterator<Item = Ball>, sky: Sky) -> Scene {
     let mut scene = Scene { sky, ..Scene::default() };
     for (center, radius, material) in balls {
@@ -48,17 +48,17 @@ pub fn scene(balls: impl IntoIterator<Item = Ball>, sky: Sky) -> Scene {
     scene
 }
 
-/// An eye and what it looks at, by a vertical field of view in degrees.
+/// A camera with a vertical field of view in degrees.
 pub fn eye(look_from: DVec3, look_at: DVec3, vfov_degrees: f64) -> Camera {
     Camera { look_from, look_at, vfov_degrees, ..Camera::BOOK }
 }
 
-/// A small picture of these balls under a white sky, paths of up to 50 rays.
+/// A small picture of these balls under a white sky, with paths of up to 50 rays.
 pub fn picture(balls: impl IntoIterator<Item = Ball>, camera: Camera) -> Recipe {
     of_scene(scene(balls, WHITE_SKY), camera)
 }
 
-/// A small picture of a scene, paths of up to 50 rays.
+/// A small picture of a scene, with paths of up to 50 rays.
 pub fn of_scene(scene: Scene, camera: Camera) -> Recipe {
     let [width, height] = SIZE;
     Recipe {
@@ -71,19 +71,19 @@ pub fn of_scene(scene: Scene, camera: Camera) -> Recipe {
     }
 }
 
-/// The recipe with another depth.
+/// The recipe with another maximum depth.
 pub fn deep(mut recipe: Recipe, max_depth: u32) -> Recipe {
     recipe.settings.max_depth = max_depth;
     recipe
 }
 
-/// The recipe in another size, with other samples per pixel.
+/// The recipe with another size and number of samples per pixel.
 pub fn sized(mut recipe: Recipe, [width, height]: [u32; 2], samples: u64) -> Recipe {
     (recipe.settings.width, recipe.settings.height) = (width, height);
     Recipe { samples_per_pixel: samples, ..recipe }
 }
 
-/// The recipe under another name, by which tables call it.
+/// The recipe with another name, which the tables show.
 pub fn named(recipe: Recipe, name: &str) -> Recipe {
     Recipe { name: name.to_owned(), ..recipe }
 }
@@ -105,7 +105,25 @@ pub fn moved(recipe: &Recipe, factor: f64, offset: DVec3) -> Recipe {
     Recipe { scene: Arc::new(scene), camera, ..recipe.clone() }
 }
 
-/// Three balls, one of each material, on a ground a hundred times as large, under the book's sky.
+/// A count with its noun: `1 shell`, `10,000 shells`.
+pub fn counted(count: usize, noun: &str) -> String {
+    format!("{} {noun}{}", grouped(count), if count == 1 { "" } else { "s" })
+}
+
+/// A number with commas between its thousands: `10,000`.
+pub fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Three balls, one of each material, on a ground two hundred times as large, under the book's sky.
 pub fn tame() -> Recipe {
     let balls = [
         (DVec3::new(0.0, -100.5, -1.0), 100.0, matte(0.5)),
@@ -125,4 +143,17 @@ pub fn one_ball() -> Recipe {
 /// A camera that sees nothing but the unit ball at the origin.
 pub fn in_front() -> Camera {
     eye(DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, 20.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_read_well() {
+        assert_eq!(counted(1, "ray"), "1 ray");
+        assert_eq!(counted(50, "ray"), "50 rays");
+        assert_eq!(counted(100_000, "ray"), "100,000 rays");
+        assert_eq!(grouped(1_234_567), "1,234,567");
+    }
 }

@@ -1,4 +1,4 @@
-//! Closed rooms, from which no light may come.
+//! Closed rooms, which no light may leave or enter.
 
 use super::build::{Ball, deep, eye, matte, metal, moved, picture, sized};
 use crate::recipe::Recipe;
@@ -6,17 +6,17 @@ use crate::scene::Material;
 use crate::stress::case::{Case, Family};
 use glam::DVec3;
 
-/// Closed rooms.
+/// The eye in a closed room.
 pub const CAVITIES: Family = Family {
     id: "cavity",
     title: "The eye in a closed ball",
-    lesson: "No light gets in, so a single path that leaks shows as a bright speck. A contact with the ground is \
-             where surfaces come nearer to each other than rounding.",
+    lesson: "No light gets in, so a single leaking path shows as a bright speck. Where the ball touches the ground, \
+             the surfaces are closer to each other than rounding can tell.",
 };
 
-const WHY: &str = "the room is closed: every path ends in it, at the latest with its last ray";
+const WHY: &str = "the room is closed: no path leaves it";
 
-/// Alone, on the ground, cut by the ground; near and far.
+/// Alone, touching the ground, and cut by the ground; near the origin and far from it.
 pub fn cavities() -> Vec<Case> {
     let materials = [
         ("white", matte(1.0)),
@@ -26,11 +26,12 @@ pub fn cavities() -> Vec<Case> {
     ];
     let mut cases = Vec::new();
     for (material_name, material) in materials {
+        let words = if material_name == "fuzzy" { "fuzzy metal" } else { material_name };
         for (place, ground) in [("alone", None), ("touching", Some(-1001.0)), ("cut", Some(-1000.4))] {
             let stiff = match place {
-                "alone" => format!("the eye in a closed {material_name} ball"),
-                "touching" => format!("the eye in a {material_name} ball that touches the ground from above"),
-                _ => format!("the eye in a {material_name} ball that the ground cuts"),
+                "alone" => format!("the eye in a closed {words} ball"),
+                "touching" => format!("the eye in a {words} ball that stands on the ground"),
+                _ => format!("the eye in a {words} ball that the ground cuts"),
             };
             let case =
                 Case::new(&CAVITIES, format!("{material_name}-{place}"), stiff, room(material, ground))
@@ -39,8 +40,7 @@ pub fn cavities() -> Vec<Case> {
         }
     }
     let touching = room(matte(1.0), Some(-1001.0));
-    let stiff =
-        "a white ball that touches the ground, 2,000 rays a path: each bounce is a chance to slip out";
+    let stiff = "a white ball that touches the ground, up to 2,000 rays per path: each bounce is a chance to slip out";
     let recipe = sized(deep(touching.clone(), 2000), [8, 8], 8);
     cases.push(Case::new(&CAVITIES, "white-touching-deep", stiff, recipe).every(0.0, WHY));
     let recipe = moved(&touching, 1.0, DVec3::new(800.0, 0.0, 600.0));
@@ -48,11 +48,11 @@ pub fn cavities() -> Vec<Case> {
     let case = Case::new(&CAVITIES, "white-touching-at-1000", stiff, recipe).every(0.0, WHY);
     cases.push(case.watched(
         "A closed room, a thousand units from the origin",
-        "Nothing: the room is closed and black. With the book's arithmetic in f32 single paths slip through the wall, \
-         each a bright speck.",
+        "Nothing: the room is closed and black. With the book's arithmetic in f32, some paths slip through the wall, \
+         each of them a bright speck.",
     ));
     let recipe = sized(deep(moved(&touching, 1.0, DVec3::new(800.0, 0.0, 600.0)), 2000), [8, 8], 8);
-    let stiff = "the same, 2,000 rays a path";
+    let stiff = "the same, up to 2,000 rays per path";
     cases.push(Case::new(&CAVITIES, "white-touching-at-1000-deep", stiff, recipe).every(0.0, WHY));
     let recipe = moved(&room(matte(1.0), None), 1.0, DVec3::new(800.0, 0.0, 600.0));
     let stiff = "a white ball alone, 1,000 units from the origin";
@@ -66,7 +66,7 @@ pub fn cavities() -> Vec<Case> {
     cases
 }
 
-/// A ball of radius 1 about the origin with the eye in it, and a ground of radius 1000 that lies so far below.
+/// A ball of radius 1 at the origin with the eye in it, and a ground of radius 1000 centred at this height.
 fn room(material: Material, ground: Option<f64>) -> Recipe {
     let ground = ground.map(|y| (DVec3::new(0.0, y, 0.0), 1000.0, matte(1.0)));
     let balls: Vec<Ball> = [(DVec3::ZERO, 1.0, material)].into_iter().chain(ground).collect();

@@ -1,35 +1,38 @@
-//! Spheres at one place, or almost.
+//! Spheres at the same place, or almost.
 
-use super::build::{Ball, in_front, matte, of_scene, one_ball, picture, scene, sized};
+use super::build::{Ball, grouped, in_front, matte, of_scene, one_ball, picture, scene, sized};
 use crate::scene::{Material, Sky};
 use crate::stress::case::{Case, Expected, Family};
 use glam::DVec3;
 
-/// Copies.
+/// Identical spheres.
 pub const COPIES: Family = Family {
     id: "copies",
-    title: "Many spheres at one place",
-    lesson: "Two surfaces at one place tie at every hit. A ray that leaves one of them starts on the other, too, \
-             and must not be caught by it.",
+    title: "Many spheres at the same place",
+    lesson: "Two surfaces at the same place tie at every hit. A ray that leaves one of them also starts on the other \
+             and must not hit it.",
 };
 
-/// Almost copies.
+/// Two spheres that almost coincide.
 pub const SHIFTS: Family = Family {
     id: "shifts",
-    title: "A copy, moved by less than can be seen",
-    lesson: "Between touching and overlapping there is no safe distance to choose: every shift must give the \
+    title: "A copy, moved imperceptibly",
+    lesson: "No threshold separates coinciding surfaces from distinct ones: every shift must give the \
              picture of one ball, to within the shift.",
 };
 
-const WHY: &str = "a convex ball of albedo .5 under a sky of 1: one bounce, and no copy may change that";
+const WHY: &str = "a convex ball of albedo .5 under a sky of 1: one bounce, whatever the copies";
 
-/// The same ball, again and again.
+/// Identical balls, up to a hundred thousand.
 pub fn copies() -> Vec<Case> {
     let counts = [2, 3, 10, 110, 1000, 10_000, 20_000, 100_000];
     let identical = counts.into_iter().map(|count| {
         let balls = vec![(DVec3::ZERO, 1.0, matte(0.5)); count];
-        let stiff = format!("{count} identical balls: no plane divides them, and every hit is a tie of all");
-        // What is stiff about many is building the hierarchy and its depth, which few samples show.
+        let stiff = format!(
+            "{} identical balls: no plane separates them, and every hit is a tie between all of them",
+            grouped(count)
+        );
+        // Large counts test how the hierarchy is built and how deep it gets, which few samples show.
         let (size, samples) = match count {
             0..=1000 => ([24, 16], 32),
             1001..=20_000 => ([24, 16], 4),
@@ -49,8 +52,8 @@ pub fn copies() -> Vec<Case> {
     {
         let recipe = picture([(DVec3::ZERO, 1.0, first), (DVec3::ZERO, 1.0, second)], in_front());
         let why =
-            "of two surfaces at one place the scene's first is seen, in a list and in a hierarchy alike";
-        let stiff = "two balls of other colours at one place: which is seen must not depend on the search";
+            "of two surfaces at the same place, the first in the scene is seen, in a list as in a hierarchy";
+        let stiff = "two balls of different colours at the same place: which one is seen must not depend on the search";
         let expected = Expected::Every { value, why };
         cases.push(Case::new(&COPIES, name, stiff, recipe).expect(expected, 1e-6).quick());
     }
@@ -61,37 +64,35 @@ pub fn copies() -> Vec<Case> {
     let recipe = sized(of_scene(scene(balls.clone(), Sky::default()), look), [24, 16], 8);
     balls.truncate(5000);
     let other = sized(of_scene(scene(balls, Sky::default()), look), [24, 16], 8);
-    let why = "a copy of a matte ball adds no surface and no random number";
-    let expected = Expected::Same { other: Box::new(super::build::named(other, "copies removed")), why };
-    let stiff = "5,000 balls and 120 more copies of one of them";
+    let why = "a copy of a matte ball adds neither a surface nor a random number";
+    let expected = Expected::Same { other: Box::new(super::build::named(other, "without copies")), why };
+    let stiff = "5,000 balls and 120 copies of one of them";
     cases.push(Case::new(&COPIES, "one-of-5000", stiff, recipe).expect(expected, 1e-9));
     cases
 }
 
-/// A ball of a cloud: index to place, in a cube about the origin.
+/// Ball `index` of a cloud, in a cube around the origin.
 fn scattered(index: u32, half_width: f64) -> Ball {
     let [a, b, c, d] = crate::sampling::pcg4d([index, 1, 2, 3]).map(|word| f64::from(word) / 4_294_967_296.0);
     let place = DVec3::new(a, b, c) * 2.0 - DVec3::ONE;
     (half_width * place, 0.004 + 0.004 * d, matte(0.5))
 }
 
-/// As many balls, each at a place of its own.
+/// The same number of balls, each at its own place.
 fn spread(count: usize) -> crate::recipe::Recipe {
     let balls = (0..count as u32).map(|index| scattered(index, 0.9));
-    super::build::named(picture(balls, in_front()), "as many, apart")
+    super::build::named(picture(balls, in_front()), "as many apart")
 }
 
-/// The second ball moved along and across the view.
+/// Two balls, one of them shifted along the view or across it.
 pub fn shifts() -> Vec<Case> {
     let mut cases = Vec::new();
     for exponent in [9, 8, 7, 6, 5, 4, 3] {
         for (axis, direction) in [("z", DVec3::Z), ("x", DVec3::X)] {
             let shift = 10.0_f64.powi(-exponent);
             let balls = [(DVec3::ZERO, 1.0, matte(0.5)), (shift * direction, 1.0, matte(0.5))];
-            let stiff = format!(
-                "two balls {shift:e} apart along {axis}: nearer to each other than rounding, or than any threshold"
-            );
-            let why = "two balls are convex but for a crease that is as shallow as the shift";
+            let stiff = format!("two balls {shift:e} apart along {axis}: too close for any threshold");
+            let why = "the two balls are convex but for a crease as shallow as the shift";
             let expected = Expected::Mean { value: 0.5, why };
             let case = Case::new(&SHIFTS, format!("1e-{exponent}-{axis}"), stiff, picture(balls, in_front()))
                 .expect(expected, 1e-6 + shift)
@@ -115,9 +116,9 @@ fn overlapping() -> Case {
     camera.look_at += offset;
     let recipe = of_scene(scene((0..20).map(ball), Sky::default()), camera);
     let stiff =
-        "20 overlapping balls at 1e4: whoever starts a ray on one of them is within others, by rounding";
+        "20 overlapping balls at 1e4: by rounding, a ray that leaves one of them starts inside others";
     Case::new(&SHIFTS, "overlapping-at-1e4", stiff, recipe).expect(
-        Expected::Reference { why: "in f64 positions at 1e4 have twelve digits after the point" },
+        Expected::Reference { why: "in f64, positions at 1e4 have twelve digits after the point" },
         5e-6,
     )
 }

@@ -1,4 +1,4 @@
-//! Scenes in files: those worth looking at.
+//! Scene files that are worth looking at.
 
 use super::build::sized;
 use crate::recipe::file;
@@ -33,28 +33,28 @@ const ENTRIES: [Entry; 6] = [
         unit: 1.0,
         expected: F64,
         tolerance: 5e-6,
-        look_for: "Bubbles: nothing but a pale rim. The book's arithmetic passes through skins that are thinner than \
+        look_for: "Each bubble shows only a pale rim. The book's arithmetic passes through skins thinner than \
                 its threshold and turns them into balls of glass.",
     },
     Entry {
         name: "dust",
         title: "Dust on a table",
         text: include_str!("../../../assets/scenes/stress/dust.toml"),
-        stiff: "grains of a ten-thousandth, whose shadows are shorter than the book's threshold",
+        stiff: "grains with a radius of a ten-thousandth, whose shadows are shorter than the book's threshold",
         unit: 1e-3,
         expected: F64,
         tolerance: 5e-6,
-        look_for: "Each grain stands in a shadow of its own. With the book's arithmetic the grains float in even light.",
+        look_for: "Each grain has its own shadow. With the book's arithmetic, the grains float in even light.",
     },
     Entry {
         name: "contact",
         title: "Balls in contact",
         text: include_str!("../../../assets/scenes/stress/contact.toml"),
-        stiff: "balls that touch the ground and each other in a point",
+        stiff: "balls that touch the ground and each other at a point",
         unit: 1.0,
         expected: F64,
         tolerance: 5e-6,
-        look_for: "The dark points where the balls touch. Zoom in: they stay dark and smooth.",
+        look_for: "The points where the balls touch are dark. Zoom in: they stay dark and smooth.",
     },
     Entry {
         name: "planet-coast",
@@ -64,7 +64,7 @@ const ENTRIES: [Entry; 6] = [
         unit: 1.0,
         expected: F64,
         tolerance: 5e-6,
-        look_for: "A straight horizon and round pebbles. In the book's f32 the ground is a staircase of half a metre.",
+        look_for: "The horizon is straight and the pebbles are round. In the book's f32, the ground is a staircase of half a metre.",
     },
     Entry {
         name: "nested",
@@ -74,8 +74,8 @@ const ENTRIES: [Entry; 6] = [
         unit: 1.0,
         expected: F64,
         tolerance: 5e-6,
-        look_for: "A red ball under four coats of varnish, which mirror the sky. To the book's arithmetic most of the coats are \
-                   not there.",
+        look_for: "A red ball under four coats of varnish that mirror the sky. The book's arithmetic misses most of \
+                   the coats.",
     },
     Entry {
         name: "closed-room",
@@ -83,17 +83,14 @@ const ENTRIES: [Entry; 6] = [
         text: include_str!("../../../assets/scenes/stress/closed-room.toml"),
         stiff: "a closed white room that stands on the ground, with a ball in it",
         unit: 1.0,
-        expected: Expected::Every {
-            value: [0.0; 3],
-            why: "the room is closed: every path ends in it, at the latest with its last ray",
-        },
+        expected: Expected::Every { value: [0.0; 3], why: "the room is closed: no path leaves it" },
         tolerance: 0.0,
-        look_for: "Black. Every bright speck would be a path that slipped through the wall; the book's arithmetic lets \
-                light in all around.",
+        look_for: "Nothing: the room is black. A bright speck would be a path that slipped through the wall. The book's \
+                arithmetic lets light in all around.",
     },
 ];
 
-/// The files, in small.
+/// The scenes of the files, as small pictures.
 pub fn files() -> Vec<Case> {
     let case = |entry: &Entry| {
         let recipe = file::parse(entry.text, entry.name).ok()?;

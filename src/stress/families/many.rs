@@ -1,4 +1,4 @@
-//! One odd sphere among many, which must not slow the others down.
+//! One unusual sphere among many, which must not slow the others down.
 
 use super::build::{named, sized};
 use crate::recipe::Recipe;
@@ -7,15 +7,15 @@ use crate::stress::case::{Case, Family};
 use glam::DVec3;
 use std::sync::Arc;
 
-/// Odd ones.
+/// One unusual thing in a large field.
 pub const ODD: Family = Family {
     id: "odd",
     title: "One odd thing among four thousand balls",
-    lesson: "Precision that one sphere needs must be paid for by that sphere. Anchoring all of them makes a list \
-             of what was a hierarchy.",
+    lesson: "If one sphere needs more precision, only that sphere should pay for it. Anchoring all spheres would turn \
+             the hierarchy into a list.",
 };
 
-/// A field with something odd in it.
+/// The field with each of several changes.
 pub fn odd_ones() -> Vec<Case> {
     let Some(field) = Recipe::builtin("field:4000") else { return Vec::new() };
     let field = named(sized(field, [48, 32], 16), "field:4000");
@@ -28,12 +28,12 @@ pub fn odd_ones() -> Vec<Case> {
     let cases = [
         (
             "tiny",
-            "one ball of 1e-4 among 4,000 of some .3",
+            "one ball of radius 1e-4 among 4,000 of about .3",
             with(&|scene, recipe| scene.add_sphere(recipe.camera.look_at + 2.0 * DVec3::Y, 1e-4, 0)),
         ),
         (
             "focus",
-            "a focus 1e-4 before the eye",
+            "a focus 1e-4 in front of the eye",
             with(&|_, recipe| recipe.camera.focus_distance = Some(1e-4)),
         ),
         (
@@ -46,7 +46,7 @@ pub fn odd_ones() -> Vec<Case> {
         ),
         (
             "huge",
-            "a second ground of 1e9 below",
+            "a second ground of radius 1e9 below",
             with(&|scene, _| scene.add_sphere(DVec3::new(0.0, -1e9 - 50.0, 0.0), 1e9, 0)),
         ),
         (

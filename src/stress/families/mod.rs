@@ -1,4 +1,4 @@
-//! The registry: all cases, by family.
+//! The registry of all cases, by family.
 
 pub mod build;
 mod cavities;
@@ -36,12 +36,12 @@ const ENTRIES: [Entry; 15] = [
     (&files::FILES, files::files),
 ];
 
-/// All families.
+/// All families, in the order of the table.
 pub fn families() -> impl Iterator<Item = &'static Family> {
     ENTRIES.iter().map(|(family, _)| *family)
 }
 
-/// The cases that the window shows. They are listed apart, so that it need not build the largest scenes.
+/// The cases that the window shows. They are listed separately, so that it need not build the largest scenes.
 pub fn shown_cases() -> &'static [Case] {
     static SHOWN: OnceLock<Vec<Case>> = OnceLock::new();
     SHOWN.get_or_init(|| {
@@ -56,7 +56,7 @@ pub fn shown_cases() -> &'static [Case] {
     })
 }
 
-/// All cases, family by family. Built once: the largest scenes have a hundred thousand spheres.
+/// All cases, in the order of the table. They are built once: the largest scenes have a hundred thousand spheres.
 pub fn cases() -> &'static [Case] {
     static CASES: OnceLock<Vec<Case>> = OnceLock::new();
     CASES.get_or_init(|| ENTRIES.iter().flat_map(|(_, list)| list()).collect())

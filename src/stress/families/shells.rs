@@ -1,7 +1,7 @@
-//! Spheres within spheres: shells and coats.
+//! Spheres inside spheres: shells and coats.
 
 use super::build::{
-    Ball, WHITE_SKY, deep, eye, glass, in_front, matte, named, of_scene, picture, scene, sized,
+    Ball, WHITE_SKY, counted, deep, eye, glass, in_front, matte, named, of_scene, picture, scene, sized,
 };
 use crate::scene::Sky;
 use crate::stress::case::{Case, Expected, Family};
@@ -10,20 +10,20 @@ use glam::DVec3;
 /// Nested spheres.
 pub const SHELLS: Family = Family {
     id: "shells",
-    title: "Spheres within spheres",
-    lesson: "Concentric shells are the worst a hierarchy can meet: every box holds all smaller ones, so that it \
-             becomes as deep as there are shells.",
+    title: "Spheres inside spheres",
+    lesson: "Concentric shells are the worst case for a hierarchy: every box contains all smaller ones, so the tree \
+             can become as deep as there are shells.",
 };
 
-/// Thin layers.
+/// Thin coats.
 pub const COATS: Family = Family {
     id: "coats",
     title: "A coat of glass over matte",
-    lesson: "The coat's thickness is a difference of two radii. The thinner it is and the farther from the \
-             origin, the fewer digits are left of it.",
+    lesson: "The coat's thickness is the difference of two radii. The thinner the coat and the farther from the \
+             origin, the fewer of its digits remain.",
 };
 
-/// One to ten thousand of them.
+/// One to ten thousand shells.
 pub fn shells() -> Vec<Case> {
     let nested = |count: usize| -> Vec<Ball> {
         (0..count).map(|index| (DVec3::ZERO, 1.0 - 0.9 * index as f64 / count as f64, matte(0.5))).collect()
@@ -33,8 +33,8 @@ pub fn shells() -> Vec<Case> {
         .map(|count| {
             let recipe =
                 sized(picture(nested(count), in_front()), [24, 16], if count > 1000 { 4 } else { 32 });
-            let stiff = format!("{count} concentric shells: no box lies beside another");
-            let why = "only the outermost is seen: a convex ball of albedo .5 under a sky of 1";
+            let stiff = format!("{}: no box lies beside another", counted(count, "concentric shell"));
+            let why = "only the outermost shell is seen, a convex ball of albedo .5 under a sky of 1";
             let case = Case::new(&SHELLS, count, stiff, recipe).every(0.5, why);
             if count <= 108 { case.quick() } else { case }
         })
@@ -48,16 +48,16 @@ pub fn shells() -> Vec<Case> {
         }
         let size = if pairs < 50 { [24, 16] } else { [12, 8] };
         let recipe = sized(deep(of_scene(scene(balls, WHITE_SKY), in_front()), 10_000), size, 16);
-        let stiff =
-            format!("{pairs} bubbles of glass, one within the other: long paths of nothing but reflections");
-        let why = "glass absorbs nothing, and of 10,000 rays all but none find out: a sky of 1";
+        let bubbles = if pairs == 1 { "one bubble".to_owned() } else { format!("{pairs} nested bubbles") };
+        let stiff = format!("{bubbles} of glass: long paths of nothing but reflections");
+        let why = "glass absorbs nothing, and within 10,000 rays practically every path reaches a sky of 1";
         let expected = Expected::Mean { value: 1.0, why };
         cases.push(Case::new(&SHELLS, format!("glass-{pairs}"), stiff, recipe).expect(expected, 1e-6));
     }
     cases
 }
 
-/// Thinner and thinner, at the origin and far from it.
+/// Coats of decreasing thickness, at the origin and far from it.
 pub fn coats() -> Vec<Case> {
     let coat = |thickness: f64, offset: DVec3| {
         let balls = [(offset, 1.0, glass(1.5)), (offset, 1.0 - thickness, matte(0.5))];
@@ -66,10 +66,10 @@ pub fn coats() -> Vec<Case> {
         camera.look_at += offset;
         of_scene(scene(balls, Sky::default()), camera)
     };
-    let why = "in f64 the thickness keeps nine digits";
+    let why = "in f64, the thickness keeps nine digits";
     let mut cases: Vec<Case> = (3..=7)
         .map(|exponent| {
-            let stiff = format!("a coat of 1e-{exponent} over a ball of 1");
+            let stiff = format!("a coat of 1e-{exponent} over a ball of radius 1");
             let recipe = coat(10.0_f64.powi(-exponent), DVec3::ZERO);
             Case::new(&COATS, format!("1e-{exponent}"), stiff, recipe)
                 .expect(Expected::Reference { why }, 2e-6)
@@ -78,15 +78,14 @@ pub fn coats() -> Vec<Case> {
         .collect();
     for (exponent, distance) in [(3, 4), (3, 5), (4, 4), (4, 5)] {
         let offset = 10.0_f64.powi(distance) * DVec3::new(1.0, 0.5, -0.7);
-        let stiff =
-            format!("a coat of 1e-{exponent}, with the eye beside it, but 1e{distance} from the origin");
+        let stiff = format!("a coat of 1e-{exponent} close to the eye, 1e{distance} from the origin");
         let case = Case::new(
             &COATS,
             format!("1e-{exponent}-at-1e{distance}"),
             stiff,
             coat(10.0_f64.powi(-exponent), offset),
         )
-        .expect(Expected::Reference { why: "in f64 the thickness keeps seven digits" }, 2e-6);
+        .expect(Expected::Reference { why: "in f64, the thickness keeps seven digits" }, 2e-6);
         cases.push(case);
     }
     let shell = 1e-4;
@@ -94,7 +93,7 @@ pub fn coats() -> Vec<Case> {
     let balls = [(offset, 1.0, glass(1.5)), (offset, 1.0 - shell, glass(1.0 / 1.5))];
     let look = eye(offset + DVec3::new(0.0, 0.0, 3.0), offset, 50.0);
     let recipe = of_scene(scene(balls, Sky::default()), look);
-    let stiff = "a bubble with a skin of 1e-4, with the eye beside it, but 1e5 from the origin";
+    let stiff = "a bubble with a skin of 1e-4, close to the eye and 1e5 from the origin";
     cases.push(Case::new(&COATS, "bubble-at-1e5", stiff, recipe).expect(Expected::Reference { why }, 2e-6));
     cases
 }

@@ -1,4 +1,4 @@
-//! What must hold of every scene.
+//! Properties that every scene must have.
 
 use crate::film::Film;
 use crate::recipe::Recipe;
@@ -14,33 +14,33 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// What a mean may be off by besides noise, linear radiance.
+/// By how much a mean may differ apart from noise, linear radiance.
 const TOLERANCE: f64 = 1e-5;
 
-/// Times the samples with which a difference is looked at again. Chaotic paths part by chance wherever rounding differs,
-/// a few of a thousand in glass; a wrong picture stays wrong, whatever the seed.
+/// A difference is looked at again with this many times the samples. Wherever rounding differs, chaotic paths part by
+/// chance, a few in a thousand in glass; a wrong picture stays wrong whatever the seed.
 const SECOND_LOOK: f64 = 64.0;
 
-/// What a second look may take about, seconds: with fewer samples if need be.
+/// About how long a second look may take, seconds; it takes fewer samples if need be.
 const SECOND_LOOK_TIME: f64 = 5.0;
 
-/// Seeds of second looks, added to the scene's. A few pixels may have most of the noise, so that one look is not enough.
+/// Seeds of the second looks, added to the scene's. If few pixels have most of the noise, one look is not enough.
 const SEEDS: [u32; 2] = [0, 1];
 
-/// Something that must hold.
+/// A property that is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Check {
-    /// `f32` gives the picture of `f64`.
+    /// `f32` gives the same picture as `f64`.
     Rounding,
-    /// Forty distant spheres, and with them a hierarchy, change nothing.
+    /// Adding forty distant spheres, and thereby a hierarchy, changes nothing.
     Hierarchy,
-    /// All lengths times four: the same bits, but for the last.
+    /// Multiplying all lengths by four changes nothing but the last bits.
     Scaling,
-    /// Copies of matte and metal spheres change nothing.
+    /// Removing copies of matte and metal spheres changes nothing.
     Copies,
-    /// No path brings more light than the sky has.
+    /// No pixel is brighter than the sky.
     Energy,
-    /// All places moved by some lengths of the scene.
+    /// Moving everything by a few lengths of the scene changes nothing.
     Translation,
 }
 
@@ -48,7 +48,7 @@ impl Check {
     const ALL: [Check; 6] =
         [Check::Rounding, Check::Hierarchy, Check::Scaling, Check::Copies, Check::Energy, Check::Translation];
 
-    /// As a saved scene calls it.
+    /// Its name in messages and saved scenes.
     pub fn name(self) -> &'static str {
         match self {
             Check::Rounding => "f32 against f64",
@@ -56,34 +56,34 @@ impl Check {
             Check::Scaling => "the scene times 4",
             Check::Translation => "the scene moved",
             Check::Copies => "copies removed",
-            Check::Energy => "more light than the sky has",
+            Check::Energy => "brighter than the sky",
         }
     }
 }
 
-/// What a scene gave, by the backend's index (`None`: the reference).
+/// Results of a scene, by backend index (`None`: the reference).
 type Outcomes = HashMap<Option<usize>, Result<Traced, String>>;
 
-/// Backends that are checked, and the reference.
+/// Checks scenes on the backends, with the reference to compare them with.
 pub struct Checker {
     backends: Vec<Backend>,
     reference: Backend,
-    /// What the last scene gave, unchanged: all checks begin with it.
+    /// Results of the last scene, unchanged, since every check starts with them.
     last: Option<(Recipe, Outcomes)>,
 }
 
 impl Checker {
-    /// Of these.
+    /// A checker that has not seen a scene yet.
     pub fn new(backends: Vec<Backend>, reference: Backend) -> Self {
         Checker { backends, reference, last: None }
     }
 
-    /// The first check that fails, and how.
+    /// The first check that fails, and the reason.
     pub fn first_failure(&mut self, recipe: &Recipe, interrupt: &AtomicBool) -> Option<(Check, String)> {
         Check::ALL.into_iter().find_map(|check| Some((check, self.fails(check, recipe, interrupt)?)))
     }
 
-    /// How a check fails; `None` if it holds. A scene that is refused holds everything: it has been said.
+    /// Why a check fails; `None` if it passes. A refused scene passes, because the user was told.
     pub fn fails(&mut self, check: Check, recipe: &Recipe, interrupt: &AtomicBool) -> Option<String> {
         let pair = Pair::of(check, recipe)?;
         for index in 0..self.backends.len() {
@@ -124,7 +124,7 @@ impl Checker {
     ) -> Result<(), String> {
         let one = self.traced(Some(index), &pair.one, interrupt)?;
         if !one.warnings.is_empty() {
-            // What f32 cannot hold was said.
+            // The backend warned about what f32 cannot represent.
             return Ok(());
         }
         let film = one.film;
@@ -142,16 +142,16 @@ impl Checker {
     }
 }
 
-/// What a check traces.
+/// The two pictures that a check compares.
 struct Pair {
     check: Check,
     one: Recipe,
-    /// What must give the same picture; `None` where the picture is held against something else.
+    /// Must give the same picture as `one`; `None` if `one` is compared with something else.
     other: Option<Recipe>,
 }
 
 impl Pair {
-    /// `None` where there is nothing to check, or a scene is refused.
+    /// `None` if there is nothing to check or a scene is refused.
     fn of(check: Check, recipe: &Recipe) -> Option<Self> {
         let [one, other] = match check {
             Check::Rounding | Check::Energy => {
@@ -180,7 +180,7 @@ impl Pair {
 }
 
 impl Checker {
-    /// A scene as it is, traced once for all checks that begin with it.
+    /// The unchanged scene, traced once for all checks.
     fn traced(
         &mut self,
         backend: Option<usize>,
@@ -204,10 +204,10 @@ impl Checker {
     }
 }
 
-/// The scene moved away, and that one moved back: the digits that the way costs are lost in both. `None` where they are
-/// all that tells on which side of a surface the eye is.
+/// The scene moved away, and the same moved back, so that both have lost the same digits. `None` if only those digits
+/// tell on which side of a surface the eye is.
 fn there_and_back(recipe: &Recipe) -> Option<[Recipe; 2]> {
-    // A power of two, so that places keep their digits.
+    // A power of two, so that coordinates keep their digits.
     let length = extent(recipe).log2().round().exp2();
     let way = length * DVec3::new(4.0, -8.0, 2.0);
     let there = moved(recipe, 1.0, way);
@@ -217,7 +217,7 @@ fn there_and_back(recipe: &Recipe) -> Option<[Recipe; 2]> {
     recipe.scene.spheres.iter().all(is_clear).then(|| [moved(&there, 1.0, -way), there])
 }
 
-/// The length within which the scene lies about the eye, but for what is much larger.
+/// Distance within which most of the scene lies around the eye; much larger things do not count.
 fn extent(recipe: &Recipe) -> f64 {
     recipe.camera.look_from.distance(recipe.camera.look_at)
 }
@@ -243,7 +243,7 @@ fn has_no_more_light(recipe: &Recipe, film: &Film) -> Result<(), String> {
     for pixel in 0..film.width() as usize * film.height() as usize {
         let mean = film.mean(pixel);
         if let Some(channel) = (0..3).find(|channel| mean[*channel] > most[*channel] * (1.0 + 1e-5)) {
-            return Err(format!("pixel {pixel} is {}, where the sky is {}", mean[channel], most[channel]));
+            return Err(format!("pixel {pixel} is {}; the sky is at most {}", mean[channel], most[channel]));
         }
     }
     Ok(())
@@ -269,7 +269,7 @@ mod tests {
         let mut checker = checker();
         let small = sized(tame(), [12, 8], 8);
         assert_eq!(checker.first_failure(&small, &go_on), None);
-        // Its threshold is a length: what is larger looks other.
+        // Its threshold is a length, so a larger scene looks different.
         let book = by_the_book(&moved(&small, 0.003, DVec3::ZERO));
         let reason = checker.fails(Check::Scaling, &book, &go_on);
         assert!(reason.is_some_and(|reason| reason.starts_with("cpu: ")), "scaling");

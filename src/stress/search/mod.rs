@@ -1,10 +1,11 @@
-//! Random scenes without end: each is held against `f64` and against what no change of it may change.
+//! Renders random scenes until the time is up. Each is compared with `f64`, and with changes that must not matter.
 
 mod check;
 mod random;
 mod shrink;
 
 use super::backend::Backend;
+use super::families::build::counted;
 use crate::backends::BackendChoice;
 use crate::cli::{ProgressChoice, StressOptions};
 use crate::files::write_text;
@@ -17,16 +18,16 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// Where what is found goes, unless that is said.
+/// Where failures are saved unless `--out` says otherwise.
 const DIRECTORY: &str = "stress";
 
-/// Time between lines of progress where there is no terminal.
+/// Interval of progress lines when there is no terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
 
-/// What making one scene smaller may take.
+/// Time limit for shrinking one scene.
 const SHRINK_TIME: Duration = Duration::from_secs(20);
 
-/// Searches for `time` and saves what fails. Returns whether nothing did.
+/// Searches for `time` and saves the failures. Returns whether there were none.
 ///
 /// # Errors
 /// If a file cannot be written.
@@ -42,7 +43,9 @@ pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> R
     while !is_over() {
         let recipe = random::scene(options.seed, scenes);
         scenes += 1;
-        display.update(begin.elapsed().as_secs(), || format!("{scenes} scenes, {} failures", found.len()));
+        display.update(begin.elapsed().as_secs(), || {
+            format!("{}, {}", counted(scenes as usize, "scene"), counted(found.len(), "failure"))
+        });
         let Some((check, reason)) = checker.first_failure(&recipe, interrupt) else { continue };
         if interrupt.load(Ordering::Relaxed) {
             break;
@@ -57,16 +60,17 @@ pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> R
         let path = directory.join(format!("found-{}-{}.toml", options.seed, scenes - 1));
         save(&path, &small, check, &reason, [options.seed, scenes - 1])?;
         printed = printed.and(display.above(|| {
-            let spheres = small.scene.spheres.len();
-            let text = format!("{} ({spheres} spheres): {}: {reason}\n", path.display(), check.name());
+            let spheres = counted(small.scene.spheres.len(), "sphere");
+            let text = format!("{} ({spheres}): {}: {reason}\n", path.display(), check.name());
             terminal::print_beside(options.json.as_ref(), &text)
         }));
         found.push(path);
     }
     display.clear();
     let text = format!(
-        "search: {} of {scenes} random scenes failed in {:.0} s\n",
+        "search: {} of {} failed in {:.0} s\n",
         found.len(),
+        counted(scenes as usize, "random scene"),
         begin.elapsed().as_secs_f64()
     );
     printed.and(terminal::print_beside(options.json.as_ref(), &text))?;
@@ -91,7 +95,7 @@ fn save(path: &Path, recipe: &Recipe, check: Check, reason: &str, [seed, number]
 
 fn saved_text(recipe: &Recipe, check: Check, reason: &str, [seed, number]: [u32; 2]) -> String {
     format!(
-        "# Found by weekender stress --search, seed {seed}, scene {number}, and made as small as it goes.\n\
+        "# Found by weekender stress --search, seed {seed}, scene {number}, shrunk as far as it still fails.\n\
          # What failed: {}: {}\n\n{}",
         check.name(),
         reason.replace('\n', " "),

@@ -1,5 +1,5 @@
-//! Random scenes in which all that is stiff meets: scales from 1e-6 to 1e6, copies, shells, contacts, glass of any
-//! index, eyes in and on things.
+//! Random scenes that combine all difficulties: scales from 1e-6 to 1e6, copies, shells, contacts, glass of any index,
+//! and eyes inside or on spheres.
 
 use crate::recipe::Recipe;
 use crate::sampling::pcg4d;
@@ -7,14 +7,14 @@ use crate::scene::{Camera, Material, Scene, Sky, Sphere};
 use crate::stress::families::build::{moved, of_scene, sized};
 use glam::DVec3;
 
-/// Numbers in the order in which they are drawn.
+/// A stream of random numbers.
 struct Draws {
     key: [u32; 2],
     count: u32,
 }
 
 impl Draws {
-    /// Evenly in `0..1`.
+    /// Uniform in `0..1`.
     fn unit(&mut self) -> f64 {
         let [word, ..] = pcg4d([self.key[0], self.key[1], self.count, 0x5712_e550]);
         self.count += 1;
@@ -25,7 +25,7 @@ impl Draws {
         low + (high - low) * self.unit()
     }
 
-    /// Evenly in the logarithm.
+    /// Uniform in the logarithm.
     fn log(&mut self, low: f64, high: f64) -> f64 {
         (self.within(low.ln(), high.ln())).exp()
     }
@@ -46,7 +46,7 @@ impl Draws {
     }
 }
 
-/// Scene `number` of a seed: always the same one.
+/// Scene `number` of a seed. The same numbers always give the same scene.
 pub fn scene(seed: u32, number: u32) -> Recipe {
     let draws = &mut Draws { key: [seed, number], count: 0 };
     let mut scene = Scene { sky: sky(draws), ..Scene::default() };
@@ -99,7 +99,7 @@ fn material(draws: &mut Draws) -> Material {
     }
 }
 
-/// A sphere on its own, or stiffly related to one that is there.
+/// An independent sphere, or one in a stiff relation to an existing one.
 fn sphere(draws: &mut Draws, others: &[Sphere], material: usize) -> Sphere {
     let free = |draws: &mut Draws| {
         let radius = draws.log(1e-3, 10.0);
@@ -117,12 +117,12 @@ fn sphere(draws: &mut Draws, others: &[Sphere], material: usize) -> Sphere {
         },
         // A shell or a coat.
         2 | 3 => Sphere { radius: other.radius * (1.0 - draws.log(1e-5, 0.5)), material, ..other },
-        // In contact from without.
+        // In contact from outside.
         4 => {
             let radius = other.radius * draws.log(1e-3, 1e3);
             Sphere { center: other.center + (other.radius + radius) * draws.direction(), radius, material }
         }
-        // In contact from within.
+        // In contact from inside.
         5 => {
             let radius = other.radius * draws.within(0.1, 0.9);
             Sphere { center: other.center + (other.radius - radius) * draws.direction(), radius, material }
@@ -136,7 +136,7 @@ fn camera(draws: &mut Draws, scene: &Scene) -> Camera {
     let chosen = scene.spheres[(draws.below(count) as usize).min(count as usize - 1)];
     let away = draws.direction();
     let look_from = match draws.below(4) {
-        // Within, on the surface or next to it, and free.
+        // Inside; on the surface or close to it; anywhere outside.
         0 => chosen.center + chosen.radius * draws.within(0.0, 0.99) * away,
         1 => chosen.center + chosen.radius * (1.0 + draws.log(1e-6, 1e-1)) * away,
         _ => chosen.center + chosen.radius * draws.log(1.1, 30.0) * away,

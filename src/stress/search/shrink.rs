@@ -1,4 +1,4 @@
-//! Makes a scene that fails as small and as plain as it goes.
+//! Makes a failing scene as small and simple as possible.
 
 use crate::recipe::Recipe;
 use crate::scene::{Camera, Material, Scene, Sky};
@@ -6,10 +6,10 @@ use crate::stress::families::build::moved;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// A change that makes a recipe plainer; `None` where there is nothing to change.
+/// A change that makes a recipe simpler; `None` if there is nothing to change.
 type Step = Box<dyn Fn(&Recipe) -> Option<Recipe>>;
 
-/// Takes each change after which the scene still fails, until there is none.
+/// Applies every change after which the scene still fails, until none is left.
 pub fn shrink(recipe: Recipe, mut still_fails: impl FnMut(&Recipe) -> bool) -> Recipe {
     let mut smallest = recipe;
     loop {
@@ -19,7 +19,7 @@ pub fn shrink(recipe: Recipe, mut still_fails: impl FnMut(&Recipe) -> bool) -> R
             let all = steps(&smallest);
             let Some(step) = all.get(index) else { break };
             match step(&smallest).filter(|smaller| *smaller != smallest && still_fails(smaller)) {
-                // The same place again: after a sphere is dropped another stands there.
+                // The same index again: once a sphere is dropped, the next one has its index.
                 Some(smaller) => {
                     smallest = smaller;
                     has_shrunk = true;
@@ -33,7 +33,7 @@ pub fn shrink(recipe: Recipe, mut still_fails: impl FnMut(&Recipe) -> bool) -> R
     }
 }
 
-/// Changes, the largest first.
+/// Possible changes, the largest first.
 fn steps(recipe: &Recipe) -> Vec<Step> {
     let count = recipe.scene.spheres.len();
     let mut steps: Vec<Step> = Vec::new();
@@ -117,7 +117,7 @@ fn without_unused_materials(recipe: &Recipe) -> Recipe {
     Recipe { scene: Arc::new(scene), ..recipe.clone() }
 }
 
-/// `x` with so many significant digits.
+/// `x` rounded to this many significant digits.
 fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
 }
@@ -136,7 +136,7 @@ mod tests {
 
     #[test]
     fn what_does_not_matter_goes_away() {
-        // "Fails" while a glass sphere is there whose radius is above a thousandth.
+        // "Fails" as long as there is a glass sphere with a radius above a thousandth.
         let is_glass = |scene: &Scene| {
             scene.spheres.iter().any(|sphere| {
                 matches!(scene.material_of(sphere), Material::Dielectric { .. }) && sphere.radius > 1e-3
