@@ -6,7 +6,7 @@
 //!
 //! Twin: shaders/material.wgsl
 
-use super::lanes::{Float, Lanes, Mask, V3};
+use super::lanes::{Float, Lanes, Mask, V3, is_idle};
 use crate::kernel::LoadShading;
 use crate::stages::DielectricLaws;
 
@@ -94,8 +94,8 @@ pub fn scatter<L: Lanes, const GLASS: bool>(
     let mut refracts = l.mask(0);
     let mut is_metal = reflects;
     let mut ratio = one;
-    if GLASS {
-        let is_glass = zero.lt(surface.refraction_index);
+    let is_glass = zero.lt(surface.refraction_index);
+    if GLASS && !is_idle::<L>(is_glass) {
         ratio = front.select(surface.inverse_index, surface.refraction_index);
         // Squared sine of the refraction angle: above 1, Snell's law has no solution.
         let refracted_sine2 = ratio * ratio * sine2;

@@ -2,7 +2,7 @@
 //!
 //! Twin: shaders/sphere.wgsl
 
-use super::lanes::{Float, Key, Lanes, Mask, Unsigned, V3, Wide, WideU, load3, splat3};
+use super::lanes::{Float, Key, Lanes, Mask, Unsigned, V3, Wide, WideU, is_idle, load3, splat3};
 use crate::kernel::{AnchoredSphere, Roots};
 pub use crate::kernel::{EYE, NONE};
 
@@ -130,27 +130,28 @@ impl<L: Lanes> Nearest<L> {
 ///
 /// Source: Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019.
 #[inline(always)]
-fn chord<L: Lanes>(rays: &Rays<L>, sphere: &Spheres<L>) -> (L::F, L::F) {
+fn chord<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> (L::F, L::F) {
     let g = rays.origin - sphere.center;
     let h = rays.direction.dot(g);
     let across = rays.direction.neg_mul_add(h, g);
     let d = across.z.neg_mul_add(across.z, sphere.radius2);
     let d = across.y.neg_mul_add(across.y, d);
     let d = across.x.neg_mul_add(across.x, d);
-    (h, d.sqrt())
+    let s = if is_idle::<L>(!d.is_negative()) { l.constant(f64::NAN) } else { d.sqrt() };
+    (h, s)
 }
 
 /// Distance to a sphere that no ray is inside of.
 #[inline(always)]
 pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
-    let (h, s) = chord(rays, sphere);
+    let (h, s) = chord(l, rays, sphere);
     l.key_unless(rays.left.eq(sphere.number), h + s)
 }
 
 /// Distance to a sphere from inside or outside.
 #[inline(always)]
 pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
-    let (h, s) = chord(rays, sphere);
+    let (h, s) = chord(l, rays, sphere);
     let leaves = rays.left.eq(sphere.number);
     let enters = rays.inside.eq(sphere.number);
     let near = l.key_unless(enters, h + s);

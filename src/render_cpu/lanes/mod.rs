@@ -112,6 +112,13 @@ pub trait Key: Copy {
     fn eq(self, other: Self) -> Self::Mask;
 }
 
+/// Whether work that only the lanes in `m` need can be left out. With one lane, a jump costs less than needless work; with
+/// several, some lane nearly always needs it, and only a width of one is asked for.
+#[inline(always)]
+pub fn is_idle<L: Lanes>(m: L::M) -> bool {
+    L::WIDTH == 1 && m.bits() == 0
+}
+
 /// Rows of numbers of one width, and how they are made, loaded, stored and converted.
 ///
 /// Distances are ordered by [`Lanes::key`]: the bits of `-t` are compared as signed integers. In that order positive

@@ -6,7 +6,7 @@ use crate::film::FIXED_POINT_SCALE;
 use crate::kernel::{NONE, RADIANCE_TOTAL_LIMIT, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::screen;
-use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3};
+use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle};
 use crate::render_cpu::work::{TileStats, Work};
 use crate::stages::Shading;
 
@@ -25,13 +25,19 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     let is_last = packet.stream.eq(last_stream(l, broadcast, packet));
     let mut ended = miss | is_last | packet.absorbed;
     let mut lit = miss & !packet.absorbed;
-    let mut light = shade_miss(l, broadcast, packet.rays.direction.y);
+    let mut light = if is_idle::<L>(lit) {
+        V3 { x: l.constant(0.0), y: l.constant(0.0), z: l.constant(0.0) }
+    } else {
+        shade_miss(l, broadcast, packet.rays.direction.y)
+    };
     if PARTS & parts::RULES != 0 && prepared.features.shading != Shading::Path {
         light = shade_hit::<L, PARTS>(l, broadcast, packet, miss, light);
         lit = l.mask(u32::MAX);
         ended = lit;
     }
-    add_radiance(l, packet, lit, light, stats);
+    if !is_idle::<L>(lit) {
+        add_radiance(l, packet, lit, light, stats);
+    }
 
     // Lanes whose path has ended go on to the next sample or the next block.
     let next = packet.counter + packet.blocks.step;

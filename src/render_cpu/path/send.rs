@@ -6,7 +6,7 @@ use crate::kernel::{EYE, LoadShading, NEAR_ZERO, parts};
 use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::camera::{CameraRays, lens_ray, pinhole_ray};
-use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3};
+use crate::render_cpu::lanes::{Float, Lanes, Mask, Unsigned, V3, is_idle};
 use crate::render_cpu::material::{
     Incidence, Scatter, Surface, hemisphere, incidence_of, incidence_of_sine2, refracted, scatter, surface_of,
 };
@@ -22,8 +22,16 @@ pub(super) fn send_on<L: Lanes, const PARTS: u32>(
 ) {
     let one = l.constant(1.0);
     let (hit, ended) = (packet.nearest.sphere, packet.ended);
-    let bounced = scatter_path::<L, PARTS>(l, broadcast, packet);
-    let camera = generate_camera_ray::<L, PARTS>(l, broadcast, packet);
+    let bounced = if is_idle::<L>(!ended) {
+        Bounced::nowhere(l)
+    } else {
+        scatter_path::<L, PARTS>(l, broadcast, packet)
+    };
+    let camera = if is_idle::<L>(ended) {
+        CameraRays { origin: bounced.origin, direction: bounced.direction }
+    } else {
+        generate_camera_ray::<L, PARTS>(l, broadcast, packet)
+    };
     let next = ended.select(camera.direction, bounced.direction);
     let next = normalised_or(l, next, bounced.normal);
     // Metal absorbs a fuzzy reflection that points into the surface.
@@ -88,6 +96,23 @@ struct Bounced<L: Lanes> {
     is_metal: L::M,
     /// Whether the path continues inside the sphere.
     inward: L::M,
+}
+
+impl<L: Lanes> Bounced<L> {
+    /// What stands for the bounces of lanes whose paths have all ended.
+    #[inline(always)]
+    fn nowhere(l: L) -> Self {
+        let zero = l.constant(0.0);
+        let none = V3 { x: zero, y: zero, z: zero };
+        Bounced {
+            origin: none,
+            direction: none,
+            normal: none,
+            albedo: none,
+            is_metal: l.mask(0),
+            inward: l.mask(0),
+        }
+    }
 }
 
 /// Scatters at the hit.
