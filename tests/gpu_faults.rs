@@ -6,7 +6,7 @@ mod gpu_common;
 use gpu_common::{gpu, job_of};
 use std::time::Duration;
 use weekender::backends::BackendChoice;
-use weekender::progressive::{EndReason, Phase, Plan, Progressive, Status, Work};
+use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Status};
 use weekender::render::{RenderJob, SamplerKind};
 use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
 use weekender::scene::builtin::BuiltinScene;
@@ -54,7 +54,7 @@ fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
         for (point, after) in points {
             let Some(backend) = failing(fault, point, after) else { return };
             let mut progressive = Progressive::spawn().unwrap();
-            progressive.start(Work::new(job([64, 36]), backend, Plan::samples(64)));
+            progressive.start(RenderRequest::new(job([64, 36]), backend, Plan::samples(64)));
             let status = progressive.wait_until_over();
             check(progressive, &status, &format!("{fault:?} at {point:?} {after}"));
         }
@@ -66,7 +66,7 @@ fn a_fault_during_a_pause_is_survived() {
     for fault in [Fault::Lost, Fault::Hang] {
         let Some(backend) = failing(fault, InjectionPoint::Fetch, 1) else { return };
         let mut progressive = Progressive::spawn().unwrap();
-        progressive.start(Work::new(job([64, 36]), backend, Plan::samples(64)));
+        progressive.start(RenderRequest::new(job([64, 36]), backend, Plan::samples(64)));
         // What is on the device is sent for at a pause.
         for _ in 0..3 {
             progressive.pause();
@@ -84,7 +84,7 @@ fn a_new_job_is_begun_while_the_device_hangs() {
     let Some(backend) = failing(Fault::Hang, InjectionPoint::Dispatch, 5) else { return };
     let mut progressive = Progressive::spawn().unwrap();
     for (width, samples) in [(64, 100_000), (50, 100_000), (41, 100_000), (32, 64)] {
-        progressive.start(Work::new(job([width, 20]), backend.clone(), Plan::samples(samples)));
+        progressive.start(RenderRequest::new(job([width, 20]), backend.clone(), Plan::samples(samples)));
         std::thread::sleep(Duration::from_millis(60));
     }
     let status = progressive.wait_until_over();

@@ -8,7 +8,7 @@ use std::time::Duration;
 use weekender::backends::{BackendChoice, Together};
 use weekender::film::{Film, PixelSum};
 use weekender::progressive::{
-    EndReason, Factory, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, Stop, Work,
+    EndReason, Factory, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, RenderRequest, Stop,
 };
 use weekender::recipe::Recipe;
 use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
@@ -111,7 +111,7 @@ fn expected(samples: u64) -> Film {
 
 fn started(backend: BackendChoice, plan: Plan) -> Progressive {
     let mut progressive = Progressive::with_factory(factory()).unwrap();
-    progressive.start(Work::new(job(2), backend, plan));
+    progressive.start(RenderRequest::new(job(2), backend, plan));
     progressive
 }
 
@@ -152,7 +152,7 @@ fn a_failing_fallback_ends_with_what_there_is() {
         Ok(Box::new(fake) as Box<dyn Renderer>)
     };
     let mut progressive = Progressive::with_factory(Box::new(fails)).unwrap();
-    progressive.start(Work::new(job(2), other_cpu(), Plan::samples(100)));
+    progressive.start(RenderRequest::new(job(2), other_cpu(), Plan::samples(100)));
     let status = progressive.wait_until_over();
     assert!(matches!(&status.phase, Phase::Failed(reason) if reason.contains("pulled out")), "{status:?}");
     assert_eq!(progressive.finish(), Some(expected(8)));
@@ -177,7 +177,7 @@ fn a_panic_keeps_the_film_and_another_backend_goes_on() {
         Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at }))
     }));
     let mut progressive = progressive.unwrap();
-    progressive.start(Work::new(job(2), CPU, Plan::samples(100)));
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(100)));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
     let [message] = status.messages.as_slice() else { unreachable!("{:?}", status.messages) };
@@ -194,7 +194,7 @@ fn a_panic_of_every_backend_leaves_the_film_of_the_last_whole_pass() {
         Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: Some(16) }))
     }));
     let mut progressive = progressive.unwrap();
-    progressive.start(Work::new(job(2), CPU, Plan::samples(100)));
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(100)));
     let status = progressive.wait_until_over();
     assert!(matches!(&status.phase, Phase::Failed(reason) if reason.contains("a slip of the tracer")));
     assert_eq!(*asked.lock().unwrap(), ["the CPU", "the CPU's scalar code", "the reference"]);
@@ -209,7 +209,7 @@ fn a_panic_while_preparing_or_looking_ends_nothing() {
         Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None }))
     }));
     let mut progressive = progressive.unwrap();
-    progressive.start(Work::new(job(2), CPU, Plan::samples(2000)));
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(2000)));
     wait_for(&progressive, 8);
     progressive.inspect(|_| unreachable!("a slip of the onlooker"));
     let status = progressive.wait_until_over();
@@ -249,7 +249,7 @@ fn samples_that_were_asked_for_and_not_added_are_missed() {
         Ok(if *choice == CPU { Box::new(Forgetful) as Box<dyn Renderer> } else { Box::new(fake) })
     }));
     let mut progressive = progressive.unwrap();
-    progressive.start(Work::new(job(2), CPU, Plan::samples(64)));
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(64)));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
     assert!(status.messages.iter().any(|said| said.contains("of 64 samples")), "{:?}", status.messages);
@@ -415,7 +415,7 @@ fn a_pause_brings_home_what_the_device_holds() {
     let mut progressive = progressive.unwrap();
     // Passes stay short enough for the samples to be added up while they are waited for.
     let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
-    progressive.start(Work::new(job(2), CPU, plan));
+    progressive.start(RenderRequest::new(job(2), CPU, plan));
     for more in [64, 512] {
         let begin = std::time::Instant::now();
         let first = *traced.lock().unwrap();
@@ -464,9 +464,9 @@ fn a_new_job_takes_over_in_the_middle_of_a_pass() {
         Ok(Box::new(Fake { name: "cpu", pause, fails_at: None, panics_at: None }))
     }))
     .unwrap();
-    progressive.start(Work::new(job(7), CPU, Plan { pass_target: PATIENCE, ..Plan::endless() }));
+    progressive.start(RenderRequest::new(job(7), CPU, Plan { pass_target: PATIENCE, ..Plan::endless() }));
     wait_for(&progressive, 16);
-    progressive.start(Work::new(job(2), CPU, Plan::samples(4)));
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(4)));
     let status = progressive.wait_until_over();
     assert_eq!((status.run, status.samples_per_pixel), (2, 4));
     assert_eq!(progressive.finish(), Some(expected(4)));
@@ -480,7 +480,8 @@ fn a_film_goes_on_where_it_has_gaps() {
         fake.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
     }
     let mut progressive = Progressive::with_factory(factory()).unwrap();
-    progressive.start(Work { film: Some(film), ..Work::new(job(2), CPU, Plan::samples(100)) });
+    progressive
+        .start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, Plan::samples(100)) });
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
     // The history is that of this render: what the film held before has no seconds.

@@ -18,7 +18,7 @@ use crate::failure::{Failure, INTERRUPTED};
 use crate::files::{check_replaceable, check_writable, write_text};
 use crate::film::Film;
 use crate::interrupt::Interrupt;
-use crate::progressive::{Phase, Progressive, Status, Work};
+use crate::progressive::{Phase, Progressive, RenderRequest, Status};
 use crate::recipe::{Recipe, file};
 use crate::render::Renderer;
 use crate::saved::{self, SavedFilm};
@@ -150,7 +150,7 @@ impl Begun<'_> {
         let keeper = |place: &SharedPlace| Keeper::new(render, place.clone(), held_before, seconds_before);
         let mut keeper = self.places.checkpoint.as_ref().map(keeper);
         let mut progress = Progress::new(self.options.progress, render);
-        progressive.start(Work {
+        progressive.start(RenderRequest {
             job: render.job.clone(),
             backend: self.options.backend.clone(),
             renderer,

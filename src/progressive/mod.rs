@@ -36,8 +36,8 @@ use worker::{Command, Worker};
 /// Makes renderers, on the render thread or, while another renderer works, on a separate thread.
 pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, BackendError> + Send>;
 
-/// A job to render, with its backend and plan.
-pub struct Work {
+/// What a render thread is asked to render.
+pub struct RenderRequest {
     /// The picture.
     pub job: RenderJob,
     /// The backend that renders it.
@@ -50,10 +50,10 @@ pub struct Work {
     pub film: Option<Film>,
 }
 
-impl Work {
+impl RenderRequest {
     /// A render from the beginning.
     pub fn new(job: RenderJob, backend: BackendChoice, plan: Plan) -> Self {
-        Work { job, backend, renderer: None, plan, film: None }
+        RenderRequest { job, backend, renderer: None, plan, film: None }
     }
 }
 
@@ -93,13 +93,17 @@ impl Progressive {
         })
     }
 
-    /// Starts `work`. A render in progress is abandoned in the middle of its pass.
-    pub fn start(&mut self, work: Work) {
+    /// Starts what `request` asks for. A render in progress is abandoned in the middle of its pass.
+    pub fn start(&mut self, request: RenderRequest) {
         self.cancel.store(true, Ordering::Relaxed);
         self.cancel = Arc::new(AtomicBool::new(false));
         self.run += 1;
         self.shared.publish(&Status { run: self.run, phase: Phase::Preparing, ..Status::default() });
-        self.send(Command::Start { run: self.run, work: Box::new(work), cancel: Arc::clone(&self.cancel) });
+        self.send(Command::Start {
+            run: self.run,
+            request: Box::new(request),
+            cancel: Arc::clone(&self.cancel),
+        });
     }
 
     /// Abandons the render in progress.

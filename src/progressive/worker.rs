@@ -4,7 +4,7 @@ use super::guard::Backend;
 use super::guard::{dismiss, guarded};
 use super::render::Render;
 use super::shared::Shared;
-use super::{EndReason, Factory, Phase, Plan, Status, View, Work};
+use super::{EndReason, Factory, Phase, Plan, RenderRequest, Status, View};
 use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::render::RenderError;
@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
 pub(super) enum Command {
-    Start { run: u64, work: Box<Work>, cancel: Arc<AtomicBool> },
+    Start { run: u64, request: Box<RenderRequest>, cancel: Arc<AtomicBool> },
     Abandon,
     Pause,
     Resume,
@@ -111,8 +111,8 @@ impl Worker {
     }
 
     fn obey(&mut self, command: Command) {
-        if let Command::Start { run, work, cancel } = command {
-            self.start(run, *work, cancel);
+        if let Command::Start { run, request, cancel } = command {
+            self.start(run, *request, cancel);
             return;
         }
         if let Command::SetView(view) = command {
@@ -151,10 +151,10 @@ impl Worker {
         self.shared.publish(&render.status);
     }
 
-    fn start(&mut self, run: u64, work: Work, cancel: Arc<AtomicBool>) {
+    fn start(&mut self, run: u64, request: RenderRequest, cancel: Arc<AtomicBool>) {
         // Drop the old film before the new one is made, so that both need not fit into memory.
         self.render = None;
-        let Work { job, backend: choice, renderer, plan, film } = work;
+        let RenderRequest { job, backend: choice, renderer, plan, film } = request;
         if let Some(renderer) = renderer {
             self.backend = Some((choice.clone(), renderer));
         }
