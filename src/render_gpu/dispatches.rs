@@ -52,7 +52,7 @@ impl From<RenderError> for Broken {
 }
 
 /// A dispatch with everything that it binds.
-struct Work {
+struct BoundDispatch {
     kernel: Features,
     pipeline: wgpu::ComputePipeline,
     scene: wgpu::BindGroup,
@@ -73,7 +73,7 @@ struct UnderWay {
     slot: usize,
     submission: wgpu::SubmissionIndex,
     submitted: Instant,
-    work: Work,
+    dispatch: BoundDispatch,
     /// Samples finished by earlier rounds of this dispatch.
     finished: u64,
     /// Whether its film is still needed.
@@ -200,33 +200,46 @@ impl Dispatches {
     }
 
     /// Submits a dispatch, using a free slot.
-    fn submit(&mut self, gpu: &Gpu, slot: usize, work: Work, finished: u64) -> Result<(), String> {
+    fn submit(
+        &mut self,
+        gpu: &Gpu,
+        slot: usize,
+        dispatch: BoundDispatch,
+        finished: u64,
+    ) -> Result<(), String> {
         let Slot { receipt, aside, group, is_littered } = &mut self.slots[slot];
-        gpu.queue.write_buffer(&work.blocks_buffer, 0, bytemuck::cast_slice(&work.blocks));
-        gpu.queue.write_buffer(&work.order_buffer, 0, bytemuck::bytes_of(&work.order));
+        gpu.queue.write_buffer(&dispatch.blocks_buffer, 0, bytemuck::cast_slice(&dispatch.blocks));
+        gpu.queue.write_buffer(&dispatch.order_buffer, 0, bytemuck::bytes_of(&dispatch.order));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if *is_littered {
             encoder.clear_buffer(aside, 0, None);
             *is_littered = false;
         }
-        receipt.begin(&mut encoder, &work.counters);
+        receipt.begin(&mut encoder, &dispatch.counters);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("path_trace"),
                 timestamp_writes: receipt.writes(),
             });
-            pass.set_pipeline(&work.pipeline);
-            pass.set_bind_group(0, &work.scene, &[]);
-            pass.set_bind_group(1, &work.film, &[]);
+            pass.set_pipeline(&dispatch.pipeline);
+            pass.set_bind_group(0, &dispatch.scene, &[]);
+            pass.set_bind_group(1, &dispatch.film, &[]);
             pass.set_bind_group(2, &*group, &[]);
-            let [x, y] = groups(work.order.tile_count);
+            let [x, y] = groups(dispatch.order.tile_count);
             pass.dispatch_workgroups(x, y, 1);
         }
-        receipt.end(&mut encoder, &work.counters);
+        receipt.end(&mut encoder, &dispatch.counters);
         let submitted = Instant::now();
         let submission = gpu.queue.submit([encoder.finish()]);
         receipt.ask();
-        self.under_way.push_back(UnderWay { slot, submission, submitted, work, finished, is_wanted: true });
+        self.under_way.push_back(UnderWay {
+            slot,
+            submission,
+            submitted,
+            dispatch,
+            finished,
+            is_wanted: true,
+        });
         self.count += 1;
         gpu.faults.check()
     }
@@ -249,16 +262,16 @@ impl Dispatches {
             self.slots[done.slot].is_littered |= told.counters.unfinished > 0;
             return Ok(());
         }
-        self.learn(&done.work, &told, took);
+        self.learn(&done.dispatch, &told, took);
         done.finished += told.finished();
         if told.counters.stuck > 0 {
             return Err(failed(stuck(told.counters.stuck)).into());
         }
-        if told.counters.unfinished > 0 && done.work.kernel.aside {
-            done.work.order.resumes = 1;
-            self.submit(gpu, done.slot, done.work, done.finished).map_err(failed)?;
-        } else if done.finished != done.work.samples {
-            self.shortfall = Some(done.work.shortfall(done.finished));
+        if told.counters.unfinished > 0 && done.dispatch.kernel.aside {
+            done.dispatch.order.resumes = 1;
+            self.submit(gpu, done.slot, done.dispatch, done.finished).map_err(failed)?;
+        } else if done.finished != done.dispatch.samples {
+            self.shortfall = Some(done.dispatch.shortfall(done.finished));
         }
         self.check_whole()
     }
@@ -268,10 +281,10 @@ impl Dispatches {
         self.shortfall.clone().map_or(Ok(()), |shortfall| Err(Broken::Short(shortfall)))
     }
 
-    fn learn(&mut self, work: &Work, told: &Told, took: Duration) {
-        let share = told.finished() as f64 / work.samples.max(1) as f64;
-        let paths = ((work.paths as f64 * share) as u64).max(1);
-        self.budget(&work.kernel).learn(paths, took);
+    fn learn(&mut self, dispatch: &BoundDispatch, told: &Told, took: Duration) {
+        let share = told.finished() as f64 / dispatch.samples.max(1) as f64;
+        let paths = ((dispatch.paths as f64 * share) as u64).max(1);
+        self.budget(&dispatch.kernel).learn(paths, took);
     }
 
     /// Waits for all dispatches in flight.
@@ -294,7 +307,7 @@ impl Dispatches {
     }
 }
 
-impl Work {
+impl BoundDispatch {
     fn shortfall(&self, finished: u64) -> String {
         let GpuDispatch { first_tile, tile_count, first_row, .. } = self.order;
         let block_count = self.blocks.len();
@@ -369,7 +382,7 @@ impl GpuRenderer {
                         row_count,
                         ..GpuDispatch::default()
                     };
-                    let work = Work {
+                    let dispatch = BoundDispatch {
                         kernel: loaded.features,
                         pipeline: loaded.kernel.pipeline.clone(),
                         scene: loaded.scene.group.clone(),
@@ -382,7 +395,7 @@ impl GpuRenderer {
                         paths: u64::from(tile_count) * tile_pixels * samples,
                         samples: pixels_within(area, tile, first_tile..first_tile + tile_count) * samples,
                     };
-                    self.send_off(slot, work).map_err(failed)?;
+                    self.send_off(slot, dispatch).map_err(failed)?;
                     first_tile += tile_count;
                     if loaded.film.is_leaving() {
                         stats.add(&loaded.film.arrive(&self.gpu, film)?);
@@ -395,12 +408,12 @@ impl GpuRenderer {
     }
 
     /// Submits a new dispatch, unless an injected fault is due.
-    fn send_off(&mut self, slot: usize, mut work: Work) -> Result<(), String> {
+    fn send_off(&mut self, slot: usize, mut dispatch: BoundDispatch) -> Result<(), String> {
         let fault = self.inject(InjectionPoint::Dispatch, self.dispatches.count);
         if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
-            work.order.block_count = 0;
+            dispatch.order.block_count = 0;
         }
-        self.dispatches.submit(&self.gpu, slot, work, 0)
+        self.dispatches.submit(&self.gpu, slot, dispatch, 0)
     }
 
     /// Sends for the film once it is complete.
