@@ -31,7 +31,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
-use worker::{Command, Worker};
+use worker::{RenderCommand, Worker};
 
 /// Makes renderers, on the render thread or, while another renderer works, on a separate thread.
 pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, BackendError> + Send>;
@@ -59,7 +59,7 @@ impl RenderRequest {
 
 /// The handle of a render thread.
 pub struct Progressive {
-    commands: Sender<Command>,
+    commands: Sender<RenderCommand>,
     shared: Arc<Shared>,
     run: u64,
     cancel: Arc<AtomicBool>,
@@ -99,7 +99,7 @@ impl Progressive {
         self.cancel = Arc::new(AtomicBool::new(false));
         self.run += 1;
         self.shared.publish(&Status { run: self.run, phase: Phase::Preparing, ..Status::default() });
-        self.send(Command::Start {
+        self.send(RenderCommand::Start {
             run: self.run,
             request: Box::new(request),
             cancel: Arc::clone(&self.cancel),
@@ -109,32 +109,32 @@ impl Progressive {
     /// Abandons the render in progress.
     pub fn abandon(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
-        self.send(Command::Abandon);
+        self.send(RenderCommand::Abandon);
     }
 
     /// Pauses at the end of the pass. The backend and the film are kept.
     pub fn pause(&self) {
-        self.send(Command::Pause);
+        self.send(RenderCommand::Pause);
     }
 
     /// Continues after a pause or a stop.
     pub fn resume(&self) {
-        self.send(Command::Resume);
+        self.send(RenderCommand::Resume);
     }
 
     /// Ends the render at the end of the pass.
     pub fn stop(&self) {
-        self.send(Command::Stop);
+        self.send(RenderCommand::Stop);
     }
 
     /// Continues the same film with another backend. If that backend is not available, the old one continues.
     pub fn switch_backend(&self, backend: BackendChoice) {
-        self.send(Command::Switch(backend));
+        self.send(RenderCommand::Switch(backend));
     }
 
     /// Changes when the render ends. A finished render continues if the new plan has work left.
     pub fn set_plan(&self, plan: Plan) {
-        self.send(Command::SetPlan(plan));
+        self.send(RenderCommand::SetPlan(plan));
     }
 
     /// The status after the last pass.
@@ -159,13 +159,13 @@ impl Progressive {
     /// no picture is resolved.
     pub fn ask_for_picture(&self) {
         if self.shared.want_picture() {
-            self.send(Command::Look);
+            self.send(RenderCommand::Look);
         }
     }
 
     /// Sets what later pictures show.
     pub fn set_view(&self, view: View) {
-        self.send(Command::SetView(view));
+        self.send(RenderCommand::SetView(view));
     }
 
     /// Sets a callback that the render thread calls when a picture is ready or the phase has changed. It must be quick.
@@ -175,7 +175,7 @@ impl Progressive {
 
     /// Runs `look` with the film on the render thread, at the end of a pass. Without a film, `look` is dropped.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
-        self.send(Command::Inspect(Box::new(look)));
+        self.send(RenderCommand::Inspect(Box::new(look)));
     }
 
     /// Waits until the status changes, at most `timeout`, and returns it.
@@ -196,7 +196,7 @@ impl Progressive {
     /// Ends the render after the current pass and returns the film; `None` if there is no film.
     pub fn take_film(&self) -> Option<Film> {
         let (sender, receiver) = mpsc::channel();
-        self.send(Command::Take(sender));
+        self.send(RenderCommand::Take(sender));
         receiver.recv().ok().flatten()
     }
 
@@ -206,7 +206,7 @@ impl Progressive {
     }
 
     /// Sends a command. A dead thread has reported its end in the status, so a failed send can be ignored.
-    fn send(&self, command: Command) {
+    fn send(&self, command: RenderCommand) {
         let _ = self.commands.send(command);
     }
 }
@@ -215,7 +215,7 @@ impl Drop for Progressive {
     fn drop(&mut self) {
         if let Some(thread) = self.thread.take() {
             self.cancel.store(true, Ordering::Relaxed);
-            self.send(Command::Finish);
+            self.send(RenderCommand::Finish);
             let _ = thread.join();
         }
     }
