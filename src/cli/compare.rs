@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{self, RawPicture};
-use super::sources::{self, Source};
+use super::sources::{self, ChosenRecipe};
 use super::values::JsonTarget;
 use crate::backends::BackendChoice;
 use crate::output::Encoding;
@@ -135,8 +135,8 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         CompareSide::File(path) => sources::find(&raw.picture, Some(path)).ok(),
         CompareSide::Backend { .. } => None,
     });
-    let Source { mut recipe, .. } = match told {
-        Some(source) => source,
+    let ChosenRecipe { mut recipe, .. } = match told {
+        Some(chosen) => chosen,
         None => sources::find(&raw.picture, None)?,
     };
     raw::change(&mut recipe, &raw.picture, None);

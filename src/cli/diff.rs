@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{self, RawPicture, RawSwitch};
-use super::sources::{self, Source};
+use super::sources::{self, ChosenRecipe};
 use super::values::{JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance};
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::{CpuOptions, Isa};
@@ -122,7 +122,7 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
         .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
         .write_json(json.as_ref())
         .check(&[])?;
-    let Source { mut recipe, stage } = sources::find(&raw.picture, None)?;
+    let ChosenRecipe { mut recipe, stage } = sources::find(&raw.picture, None)?;
     raw::change(&mut recipe, &raw.picture, raw.estimate_error);
     if raw.find.is_some() {
         sources::narrow(&mut recipe, &raw.picture, FIND_WIDTH);
