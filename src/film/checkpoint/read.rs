@@ -29,36 +29,36 @@ pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
 /// # Errors
 /// [`CheckpointError`]; each message says what to do.
 pub fn read(mut reader: impl Read + Seek, length: u64, path: &Path) -> Result<FilmFile, CheckpointError> {
-    let source = Source { path };
-    source.check_magic(&mut reader)?;
-    let reader = Reader::read_from_buffered(reader, true).map_err(|error| source.damaged(error))?;
-    let [header] = reader.headers() else { return Err(source.not_film()) };
-    let head = source.head(header)?.ok_or_else(|| source.not_film())?;
-    let planes = find_planes(header, &head).map_err(|what| source.damaged(what))?;
-    check_length(header, length).map_err(|what| source.damaged(what))?;
-    let description = source.description(header, &head)?;
-    let samples = head.ranges().map_err(|error| source.damaged(error))?;
+    let file = NamedFile { path };
+    file.check_magic(&mut reader)?;
+    let reader = Reader::read_from_buffered(reader, true).map_err(|error| file.damaged(error))?;
+    let [header] = reader.headers() else { return Err(file.not_film()) };
+    let head = file.head(header)?.ok_or_else(|| file.not_film())?;
+    let planes = find_planes(header, &head).map_err(|what| file.damaged(what))?;
+    check_length(header, length).map_err(|what| file.damaged(what))?;
+    let description = file.description(header, &head)?;
+    let samples = head.ranges().map_err(|error| file.damaged(error))?;
     let texts = texts(header).map(|texts| (texts.recipe.to_vec(), texts.comments.to_vec()));
-    let (recipe, comments) = texts.ok_or_else(|| source.not_film())?;
+    let (recipe, comments) = texts.ok_or_else(|| file.not_film())?;
 
     let film = Film::try_new(head.width, head.height, head.halves);
     let mut rows = Rows {
         planes,
         width: head.width as usize,
-        halves: film.map_err(|error| source.no_film(error))?.halves,
+        halves: film.map_err(|error| file.no_film(error))?.halves,
         unit: Film::fixed_point(samples.count()),
         words: vec![0; head.width as usize],
         means: vec![[0; 3]; head.width as usize],
     };
-    let chunks = reader.filter_chunks(true, |_, _, _| true).map_err(|error| source.damaged(error))?;
+    let chunks = reader.filter_chunks(true, |_, _, _| true).map_err(|error| file.damaged(error))?;
     chunks
         .decompress_sequential(true, |meta, block| rows.take(&meta.headers[0], &block))
-        .map_err(|error| source.damaged(error))?;
+        .map_err(|error| file.damaged(error))?;
     if !head.has_sums(Texts { recipe: &recipe, comments: &comments }, &rows.halves) {
-        return Err(source.damaged("the sums are not those that were written"));
+        return Err(file.damaged("the sums are not those that were written"));
     }
     let film = Film::from_parts(head.width, head.height, rows.halves, samples, head.rejected);
-    Ok(FilmFile { film: film.map_err(|error| source.no_film(error))?, description })
+    Ok(FilmFile { film: film.map_err(|error| file.no_film(error))?, description })
 }
 
 /// Reads the description of an EXR file; `None` if Weekender did not write one.
@@ -69,20 +69,20 @@ pub(crate) fn read_description(
     mut reader: impl Read + Seek,
     path: &Path,
 ) -> Result<Option<Description>, CheckpointError> {
-    let source = Source { path };
-    source.check_magic(&mut reader)?;
-    let meta = MetaData::read_from_buffered(reader, true).map_err(|error| source.damaged(error))?;
+    let file = NamedFile { path };
+    file.check_magic(&mut reader)?;
+    let meta = MetaData::read_from_buffered(reader, true).map_err(|error| file.damaged(error))?;
     let [header] = meta.headers.as_slice() else { return Ok(None) };
-    let Some(head) = source.head(header)? else { return Ok(None) };
-    source.description(header, &head).map(Some)
+    let Some(head) = file.head(header)? else { return Ok(None) };
+    file.description(header, &head).map(Some)
 }
 
 /// A file that is being read, with the path that messages name.
-struct Source<'a> {
+struct NamedFile<'a> {
     path: &'a Path,
 }
 
-impl Source<'_> {
+impl NamedFile<'_> {
     fn path(&self) -> PathBuf {
         self.path.to_owned()
     }
