@@ -26,10 +26,10 @@ const SCHEMA: u32 = 1;
 const NAMED_BLOCKS: usize = 5;
 
 #[derive(Serialize)]
-struct Report {
+struct ComparisonJson {
     schema: u32,
     version: &'static str,
-    sides: [ReportedSide; 2],
+    sides: [SideJson; 2],
     width: u32,
     height: u32,
     is_equal: bool,
@@ -48,20 +48,20 @@ struct Report {
     largest_limit: f64,
     left_out: usize,
     non_finite: NonFinite,
-    worst_blocks: Vec<ReportedBlock>,
+    worst_blocks: Vec<BlockJson>,
     paired_samples: Option<PairedSamples>,
     reasons: Vec<String>,
     notes: Vec<String>,
 }
 
 #[derive(Serialize)]
-struct ReportedSide {
+struct SideJson {
     name: String,
     about: String,
 }
 
 #[derive(Serialize)]
-struct ReportedBlock {
+struct BlockJson {
     x: [u32; 2],
     y: [u32; 2],
     z: [f64; 3],
@@ -105,7 +105,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
         replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
     }
     if let Some(target) = &options.json {
-        write_json(&report(&sides, &comparison), target)?;
+        write_json(&json(&sides, &comparison), target)?;
     }
     Ok(if comparison.is_equal() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -197,10 +197,10 @@ fn note_on_jobs(a: &Side, b: &Side) -> Option<String> {
     })
 }
 
-fn report(sides: &[Side; 2], comparison: &Comparison) -> Report {
-    let side = |side: &Side| ReportedSide { name: side.name.clone(), about: side.about.clone() };
+fn json(sides: &[Side; 2], comparison: &Comparison) -> ComparisonJson {
+    let side = |side: &Side| SideJson { name: side.name.clone(), about: side.about.clone() };
     let test = &comparison.test;
-    Report {
+    ComparisonJson {
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
         sides: [side(&sides[0]), side(&sides[1])],
@@ -225,7 +225,7 @@ fn report(sides: &[Side; 2], comparison: &Comparison) -> Report {
         worst_blocks: test
             .worst(NAMED_BLOCKS)
             .into_iter()
-            .map(|block| ReportedBlock {
+            .map(|block| BlockJson {
                 x: [block.x.start, block.x.end],
                 y: [block.y.start, block.y.end],
                 z: block.z,
