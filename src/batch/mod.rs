@@ -30,7 +30,7 @@ use progress::Progress;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use summary::{Report, Summary};
+use summary::{Summary, SummaryJson};
 
 /// Renders and writes everything that is asked for.
 ///
@@ -252,10 +252,10 @@ fn outcome(
 fn write_figures(options: &BatchOptions, mut summaries: Vec<Summary>) -> anyhow::Result<()> {
     let Some(target) = &options.json else { return Ok(()) };
     match (&options.directory, summaries.pop()) {
-        (None, Some(summary)) => write_json(&Report::of_one(summary), target),
+        (None, Some(summary)) => write_json(&SummaryJson::of_one(summary), target),
         (_, last) => {
             summaries.extend(last);
-            write_json(&Report::of_all(summaries), target)
+            write_json(&SummaryJson::of_all(summaries), target)
         }
     }
 }
