@@ -1,6 +1,6 @@
 //! The table, for the terminal and as Markdown.
 
-use super::report::{CaseReport, Report};
+use super::report::{CaseReport, StressReport};
 use super::verdict::Verdict;
 use std::fmt::Write;
 
@@ -70,7 +70,7 @@ fn line<S: AsRef<str>>(cells: [S; 8]) -> String {
 }
 
 /// What the run comes to.
-pub fn summary(report: &Report) -> String {
+pub fn summary(report: &StressReport) -> String {
     let count = report.cases.len();
     let wrong: Vec<&CaseReport> = report.cases.iter().filter(|case| !case.is_right()).collect();
     let failures = |precision: &str| {
@@ -94,7 +94,7 @@ pub fn summary(report: &Report) -> String {
 }
 
 /// The table for a document, family by family.
-pub fn markdown(report: &Report) -> String {
+pub fn markdown(report: &StressReport) -> String {
     let mut text = String::new();
     let mut family = "";
     for case in &report.cases {
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn documents_have_a_table_for_each_family() {
-        let report = Report {
+        let report = StressReport {
             schema: 1,
             version: "",
             backends: vec!["avx2".into()],
