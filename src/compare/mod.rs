@@ -105,7 +105,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
         replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
     }
     if let Some(target) = &options.json {
-        write_json(&json(&sides, &comparison), target)?;
+        write_json(&comparison_json(&sides, &comparison), target)?;
     }
     Ok(if comparison.is_equal() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -197,7 +197,7 @@ fn note_on_jobs(a: &Side, b: &Side) -> Option<String> {
     })
 }
 
-fn json(sides: &[Side; 2], comparison: &Comparison) -> ComparisonJson {
+fn comparison_json(sides: &[Side; 2], comparison: &Comparison) -> ComparisonJson {
     let side = |side: &Side| SideJson { name: side.name.clone(), about: side.about.clone() };
     let test = &comparison.test;
     ComparisonJson {
