@@ -13,7 +13,7 @@ use weekender::render::{RenderJob, Renderer, SamplerKind, Stats};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa, record_path};
 use weekender::render_gpu::GpuOptions;
 use weekender::scene::builtin::BuiltinScene;
-use weekender::stages::Surface;
+use weekender::stages::SurfaceRule;
 
 fn small(scene: &str, width: u32, height: u32) -> RenderJob {
     let mut recipe = Recipe::find(scene).unwrap();
@@ -96,7 +96,7 @@ fn the_gpu_records_what_it_renders_to_the_bit() {
 fn the_gpu_and_the_cpu_record_the_same_paths() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     for (name, job) in jobs(16, 9) {
-        if job.rules().surface != Surface::Exact {
+        if job.rules().surface != SurfaceRule::Exact {
             // What is seen there is rounding itself.
             continue;
         }

@@ -12,7 +12,7 @@ use weekender::render::{RenderJob, Renderer, SamplerKind};
 use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, HierarchyKind, InjectionPoint, TURN_LIMIT};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};
-use weekender::stages::{Rules, Surface};
+use weekender::stages::{Rules, SurfaceRule};
 
 fn go_on() -> AtomicBool {
     AtomicBool::new(false)
@@ -93,7 +93,7 @@ fn long_lists_are_whole_or_refused() {
             scene.add_sphere(DVec3::new(f64::from(i % 100), 3.0, 40.0 + f64::from(i / 100)), 0.3, far);
         }
         let settings = *job_of(&scene, camera, [6, 4], 8, SamplerKind::Sobol, false).settings();
-        let rules = Rules { surface: Surface::Acne, ..Rules::default() };
+        let rules = Rules { surface: SurfaceRule::Acne, ..Rules::default() };
         RenderJob::new(scene, camera, settings, rules).unwrap()
     };
     let job = list(6000);

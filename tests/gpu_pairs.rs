@@ -12,7 +12,7 @@ use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::render_gpu::GpuOptions;
 use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Material, Scene};
-use weekender::stages::Surface;
+use weekender::stages::SurfaceRule;
 
 /// Beyond this a pair of samples has taken different ways.
 const DIVERGED: f64 = 1e-3;
@@ -83,7 +83,7 @@ fn every_stage_and_scene_is_the_cpus_sample_by_sample() {
     let mut cpu = cpu();
     let mut failures = Vec::new();
     for (name, job) in jobs(160, 90) {
-        if job.rules().surface != Surface::Exact {
+        if job.rules().surface != SurfaceRule::Exact {
             // What is seen there is rounding itself.
             continue;
         }

@@ -9,7 +9,7 @@ use weekender::recipe::file::{FileError, load, parse, to_picture_toml, to_toml};
 use weekender::render::{RenderSettings, SamplerKind};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Camera, Material, Scene, Sky};
-use weekender::stages::{DielectricLaws, Diffuse, Rules, Shading, Stage, Surface, Transfer};
+use weekender::stages::{DielectricLaws, Diffuse, Rules, Shading, Stage, SurfaceRule, Transfer};
 
 /// The least that a file must hold.
 const CAMERA: &str = "[camera]\nlook_from = [0, 0, 3]\nlook_at = [0, 0, 0]\nvfov_degrees = 40\n";
@@ -103,7 +103,7 @@ fn rules() -> impl Strategy<Value = Rules> {
         DielectricLaws::TotalReflection,
         DielectricLaws::Schlick,
     ]);
-    let surface = prop::sample::select(vec![Surface::Exact, Surface::Acne, Surface::Book]);
+    let surface = prop::sample::select(vec![SurfaceRule::Exact, SurfaceRule::Acne, SurfaceRule::Book]);
     let transfer =
         prop::sample::select(vec![Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2]);
     (shading, diffuse, dielectric, surface, any::<bool>(), any::<bool>(), transfer).prop_map(
@@ -215,7 +215,7 @@ fn what_is_left_out_has_defaults() {
     let recipe = parse(&text, "some").expect("enough");
     assert_eq!(recipe.settings, RenderSettings { width: 400, ..RenderSettings::default() });
     assert_eq!(recipe.scene.sky, Sky { top: DVec3::Z, ..Sky::default() });
-    assert_eq!(recipe.rules, Rules { surface: Surface::Acne, ..Rules::default() });
+    assert_eq!(recipe.rules, Rules { surface: SurfaceRule::Acne, ..Rules::default() });
 }
 
 #[test]

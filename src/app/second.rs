@@ -155,7 +155,7 @@ fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stages::{Stage, Surface};
+    use crate::stages::{Stage, SurfaceRule};
     use crate::stress::shown_cases;
 
     #[test]
@@ -196,7 +196,7 @@ mod tests {
         for case in shown_cases() {
             let mine = Document::new(Origin::of_case(case));
             let theirs = second.document_of(Other::ByTheBook(Arc::clone(&mine.origin)), &mine);
-            assert_eq!(theirs.rules().surface, Surface::Book, "{}", case.id);
+            assert_eq!(theirs.rules().surface, SurfaceRule::Book, "{}", case.id);
             assert_eq!(
                 (theirs.camera, theirs.settings, theirs.stop),
                 (mine.camera, mine.settings, mine.stop)

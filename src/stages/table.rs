@@ -1,6 +1,6 @@
 //! The stages in the book's order. Section numbers and scene values are those of v4.0.2.
 
-use super::{DielectricLaws, Diffuse, Rules, Setup, Shading, Stage, Surface, Transfer};
+use super::{DielectricLaws, Diffuse, Rules, Setup, Shading, Stage, SurfaceRule, Transfer};
 use crate::scene::Camera;
 use crate::scene::builtin::{
     BOOK_CAMERA, LeftSphere, book, empty, matte_on_ground, metals, one_sphere, three_spheres,
@@ -216,7 +216,7 @@ pub(super) const STAGES: &[Stage] = &[
         look_for: "Dark speckles and rings on both surfaces, which are real rounding and not added noise. Their \
                    pattern follows the spacing of the numbers.",
         pair: Some("diffuse-limited"),
-        setup: Setup { rules: Rules { surface: Surface::Acne, ..HEMISPHERE }, ..HALF_ENERGY_LIMITED },
+        setup: Setup { rules: Rules { surface: SurfaceRule::Acne, ..HEMISPHERE }, ..HALF_ENERGY_LIMITED },
     },
     Stage {
         id: "lambertian-linear",
