@@ -149,8 +149,8 @@ fn names_that_do_not_exist_are_refused() {
 #[test]
 fn what_the_processor_lacks_is_refused_with_what_it_has() {
     let foreign = if cfg!(target_arch = "x86_64") { "neon" } else { "avx2" };
-    refused(&["--batch", "--isa", foreign], &[foreign, "baseline"]);
-    refused(&["--batch", "--isa", "baseline", "--simd", "16"], &["16 lanes", "baseline"]);
+    refused(&["--batch", "--isa", foreign], &[foreign, "portable"]);
+    refused(&["--batch", "--isa", "portable", "--simd", "16"], &["16 lanes", "portable"]);
 }
 
 #[test]
@@ -515,7 +515,7 @@ fn the_list_names_scenes_stages_and_devices() {
     let output = run(temp().path(), &["--list"]);
     assert!(output.status.success());
     let list = text(&output.stdout);
-    for part in ["three-spheres", "book", "glass-schlick", "11.4", "baseline", "reference", "(auto)"] {
+    for part in ["three-spheres", "book", "glass-schlick", "11.4", "portable", "reference", "(auto)"] {
         assert!(list.contains(part), "{list}");
     }
 }

@@ -180,7 +180,7 @@ fn backends_agree_on_the_same_samples() {
     assert!(code == 0 && text.contains("equal to the bit") && text.contains("(first)"), "{text}");
     // A film beside a backend: its scene, its size, its samples.
     render(at, "film.exr", &["--samples", "24", "--scene", "metals"]);
-    let (code, text, errors) = compare(&["film.exr", "baseline"], at);
+    let (code, text, errors) = compare(&["film.exr", "portable"], at);
     assert!(
         code == 0 && text.contains("the same samples") && text.contains("metals, 160x90, 24"),
         "{text}{errors}"

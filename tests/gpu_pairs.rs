@@ -63,7 +63,7 @@ fn one(renderer: &mut dyn Renderer, job: &RenderJob, index: u64) -> Film {
 
 /// The CPU with multiply and add rounded apart.
 fn unfused() -> CpuRenderer {
-    CpuRenderer::new(CpuOptions { isa: Some(Isa::Baseline), ..CpuOptions::default() }).unwrap()
+    CpuRenderer::new(CpuOptions { isa: Some(Isa::Portable), ..CpuOptions::default() }).unwrap()
 }
 
 /// The share of samples that part between two renderers.

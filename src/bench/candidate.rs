@@ -45,7 +45,7 @@ pub fn candidates(
             found.push(Candidate::cpu(*isa, *lanes, 1, kind, job));
         }
     }
-    let best = options.levels.last().copied().unwrap_or(Isa::Baseline);
+    let best = options.levels.last().copied().unwrap_or(Isa::Portable);
     if options.threads > 1 {
         found.push(Candidate::cpu(best, 1, options.threads, Kind::Threads, job));
         if best.native_lanes() > 1 {

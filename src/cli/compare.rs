@@ -16,7 +16,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(super) struct RawCompare {
     /// A film or picture (.exr, .pfm, .png, .ppm) of any program, or what is to render it now: cpu, scalar,
-    /// baseline (multiply and add rounded apart), reference (f64) or gpu
+    /// portable (multiply and add rounded apart), reference (f64) or gpu
     #[arg(value_name = "FIRST")]
     pub first: String,
     /// As the first; a backend beside a film renders the same samples, beside a picture one of its size

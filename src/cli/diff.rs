@@ -27,7 +27,7 @@ pub(super) struct RawDiff {
           num_args = 0..=1, default_missing_value = "4", help_heading = "Path")]
     pub find: Option<u64>,
 
-    /// Who is compared: two of cpu (the level --isa), baseline (multiply and add rounded apart), reference (f64)
+    /// Who is compared: two of cpu (the level --isa), portable (multiply and add rounded apart), reference (f64)
     /// and gpu
     #[arg(long, value_name = "A,B", value_parser = parse_sides, default_value = "cpu,gpu",
           help_heading = "Comparison")]
@@ -39,7 +39,7 @@ pub(super) struct RawDiff {
     /// The GPU whose name, kind, backend or driver contains this; the only way to a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
     pub adapter: Option<String>,
-    /// Instruction level of the side cpu: auto, baseline, sse4.2, avx2, avx512, neon
+    /// Instruction level of the side cpu: auto, portable, sse4.2, avx2, avx512, neon
     #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
           help_heading = "Comparison")]
     pub isa: Level,
@@ -140,8 +140,8 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
     };
     let sides = raw.sides.map(|side| match side {
         RawSide::Cpu => SideChoice::Cpu(CpuOptions { isa: raw.isa.0, ..CpuOptions::default() }),
-        RawSide::Baseline => {
-            SideChoice::Cpu(CpuOptions { isa: Some(Isa::Baseline), ..CpuOptions::default() })
+        RawSide::Portable => {
+            SideChoice::Cpu(CpuOptions { isa: Some(Isa::Portable), ..CpuOptions::default() })
         }
         RawSide::Reference => SideChoice::Reference,
         RawSide::Gpu => SideChoice::Gpu(GpuOptions::of_adapter(raw.adapter.as_deref())),

@@ -32,7 +32,7 @@ pub enum SideError {
     Cpu(#[from] CpuError),
     /// There is no GPU to be had.
     #[error(
-        "the side gpu cannot be had: {reason}. Other sides can be compared: --sides cpu,reference or --sides cpu,baseline"
+        "the side gpu cannot be had: {reason}. Other sides can be compared: --sides cpu,reference or --sides cpu,portable"
     )]
     Gpu {
         /// Why, with the adapters that there are.
@@ -49,7 +49,7 @@ impl Side {
         Ok(match choice {
             SideChoice::Cpu(options) => {
                 let renderer = CpuRenderer::new(*options)?;
-                let best = Isa::available().last().copied().unwrap_or(Isa::Baseline);
+                let best = Isa::available().last().copied().unwrap_or(Isa::Portable);
                 let isa = options.isa.unwrap_or(best);
                 let rounding = if isa.is_fused() { "rounded once" } else { "rounded apart" };
                 Side {
