@@ -32,7 +32,7 @@ fn json(arguments: &[&str], directory: &Path) -> (i32, serde_json::Value) {
 }
 
 #[test]
-fn films_that_differ_in_noise_are_equal_and_one_that_differs_in_a_sphere_is_not() {
+fn films_that_differ_in_noise_are_equal_but_not_with_a_larger_sphere() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "a.exr", &["--samples", "64"]);
@@ -46,7 +46,7 @@ fn films_that_differ_in_noise_are_equal_and_one_that_differs_in_a_sphere_is_not(
     let (code, text, _) = compare(&["a.exr", "a.exr"], at);
     assert!(code == 0 && text.contains("equal to the bit") && text.contains("0.00 x noise"), "{text}");
 
-    // A ball that is a hundredth larger.
+    // A sphere that is a hundredth larger.
     let (code, _, errors) = weekender(&["--save-scene", "scene.toml", "--size", "160x90"], at);
     assert_eq!(code, 0, "{errors}");
     let scene = fs::read_to_string(at.join("scene.toml")).unwrap();
@@ -63,7 +63,7 @@ fn films_that_differ_in_noise_are_equal_and_one_that_differs_in_a_sphere_is_not(
 }
 
 #[test]
-fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
+fn integer_and_float_pictures_are_compared_with_films() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     render(at, "film.exr", &["--samples", "256"]);
@@ -71,11 +71,11 @@ fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
         render(at, name, &[&["--samples", "64"], &flags[..]].concat());
         let (code, text, errors) = compare(&["film.exr", name], at);
         assert_eq!(code, 0, "{text}{errors}");
-        assert!(text.contains("whole numbers") && text.contains("spread of the differences"), "{text}");
+        assert!(text.contains("integers") && text.contains("spread of the differences"), "{text}");
         let (code, text, _) = compare(&[name, "cpu"], at);
         assert!(code == 0 && text.contains("cpu"), "{text}");
     }
-    // Without its description a picture is that of another program, and its scene has to be said.
+    // Without its description, a picture counts as another program's, and its scene must be named.
     let plain = image::open(at.join("a.png")).unwrap().to_rgb8();
     plain.save(at.join("plain.png")).unwrap();
     let scene = ["--scene", "three-spheres"];
@@ -93,16 +93,16 @@ fn pictures_of_whole_numbers_and_of_floats_are_held_against_films() {
     fs::write(at.join("turned.pfm"), &pfm).unwrap();
     let (code, text, errors) = compare(&["turned.pfm", "turned.pfm"], at);
     assert!(code == 0 && text.contains("equal to the bit"), "{text}{errors}");
-    // As a float picture its steps are not known: only the blocks of the smooth sky may tell it apart.
+    // The steps of a float picture are not known. Only the blocks of the smooth sky may show a difference.
     let (_, text, _) = compare(&["turned.pfm", "film.exr"], at);
-    assert!(text.contains("float") && text.contains("verdict"), "{text}");
+    assert!(text.contains("floats") && text.contains("verdict"), "{text}");
 }
 
 #[test]
-fn a_picture_is_read_as_its_recipe_has_it_encoded() {
+fn a_picture_is_decoded_as_its_recipe_says() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    // Linear bytes, and bytes whose upper half alone is linear: the recipe tells, whatever --encoding says of others.
+    // Linear bytes, and bytes of which only the upper half is linear. The recipe overrides --encoding.
     for stage in ["diffuse", "gamut"] {
         render(at, "film.exr", &["--stage", stage, "--samples", "64"]);
         render(at, "picture.png", &["--stage", stage, "--samples", "64"]);
@@ -122,7 +122,7 @@ fn pfm(at: &Path, name: &str, value: f32) {
 }
 
 #[test]
-fn pixels_that_are_no_numbers_in_one_picture_alone_are_differences() {
+fn nan_or_infinity_in_only_one_picture_is_a_difference() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     for (name, value) in [
@@ -146,7 +146,7 @@ fn pixels_that_are_no_numbers_in_one_picture_alone_are_differences() {
         } else {
             assert!(code == 1 && text.contains("different") && !text.contains("to the bit"), "{text}");
             assert!(
-                text.contains("2880 channels of 960 pixels are NaN or infinite in one picture alone"),
+                text.contains("2880 channels of 960 pixels are NaN or infinite in only one picture"),
                 "{text}"
             );
             assert_eq!(found["non_finite"]["differing"], 2880, "{found}");
@@ -157,7 +157,7 @@ fn pixels_that_are_no_numbers_in_one_picture_alone_are_differences() {
         let is_bright = map.get_pixel(30, 12).0 == [252, 255, 164];
         assert_eq!(is_bright, first != second, "{first} and {second}");
     }
-    // Against whole numbers, too.
+    // Integer pictures, too.
     let grey = image::RgbImage::from_pixel(64, 16, image::Rgb([128; 3]));
     grey.save(at.join("grey.png")).unwrap();
     for name in &names[1..] {
@@ -178,7 +178,7 @@ fn backends_agree_on_the_same_samples() {
     }
     let (code, text, _) = compare(&["cpu", "cpu", "--samples", "4", "--size", "96x54"], at);
     assert!(code == 0 && text.contains("equal to the bit") && text.contains("(first)"), "{text}");
-    // A film beside a backend: its scene, its size, its samples.
+    // A backend renders the scene, size and samples of the film.
     render(at, "film.exr", &["--samples", "24", "--scene", "metals"]);
     let (code, text, errors) = compare(&["film.exr", "portable"], at);
     assert!(
@@ -200,7 +200,7 @@ fn what_cannot_be_compared_exits_with_2() {
         (&["a.exr", "cpu", "--json", "nowhere/a.json"], &["a.json", "create its directory"]),
         (&["a.exr", "nowhere.exr"], &["nowhere.exr"]),
         (&["a.exr", "text.png"], &["text.png", "no PFM, EXR, PNG or PPM"]),
-        (&["a.exr", "small.exr"], &["160x90", "80x45", "one size"]),
+        (&["a.exr", "small.exr"], &["160x90", "80x45", "the same size"]),
         (&["a.exr", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
         (&["cpu", "reference", "--stage", "all"], &["--stage all", "choose one"]),
     ];

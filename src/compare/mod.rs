@@ -1,12 +1,17 @@
 //! `weekender compare`: whether two pictures are the same except for noise.
 
 mod heat_map;
+mod non_finite;
+mod paired;
 mod side;
 mod text;
+mod variances;
 mod verdict;
 
+pub use non_finite::NonFinite;
+pub use paired::{PairedSamples, PairedSums};
 pub use side::Side;
-pub use verdict::{Comparison, Evidence, NonFinite, PairedSamples, PairedSums, ROUNDING_BIAS, compare};
+pub use verdict::{Comparison, Evidence, ROUNDING_BIAS, compare};
 
 use crate::cli::{CompareOptions, JsonTarget};
 use crate::failure::Failure;
@@ -19,10 +24,10 @@ use serde::Serialize;
 use side::{Opened, Rendering, check_memory, new_film};
 use std::process::ExitCode;
 
-/// Version of the JSON: it grows when a key changes its meaning or goes away.
+/// Version of the JSON. It grows when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
 
-/// Blocks that are named.
+/// Number of blocks that the output names.
 const NAMED_BLOCKS: usize = 5;
 
 #[derive(Serialize)]
@@ -68,7 +73,7 @@ struct BlockJson {
     mean_difference: [f64; 3],
 }
 
-/// Compares two pictures and prints how they differ. The exit code is 0 if the difference is only noise, else 1.
+/// Compares two pictures and prints how they differ. The exit code is 0 if they differ only by noise, else 1.
 ///
 /// # Errors
 /// [`Failure::Input`] if they cannot be compared, because exit code 1 means that they differ.
@@ -88,7 +93,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
     let [a, b] = &sides;
     if (a.width, a.height) != (b.width, b.height) {
         bail!(
-            "{} has {}x{} pixels and {} has {}x{}; render them at one size",
+            "{} has {}x{} pixels and {} has {}x{}; render both at the same size",
             a.name,
             a.width,
             a.height,
@@ -110,7 +115,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
     Ok(if comparison.is_equal() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Both sides; where backends render both, compared sample by sample besides.
+/// Both sides. If backends render both, also their comparison sample by sample.
 fn sides(options: &CompareOptions) -> Result<([Side; 2], Option<PairedSamples>)> {
     let [first, second] = &options.sides;
     let open = |side| Opened::open(side, options.encoding);
@@ -133,7 +138,7 @@ fn sides(options: &CompareOptions) -> Result<([Side; 2], Option<PairedSamples>)>
     })
 }
 
-/// Renders what is to be held against `read`, at its size; the same samples if it is a film of the same job.
+/// Renders the counterpart of `read` at its size, and with the same samples if `read` is a film of the same job.
 fn beside(options: &CompareOptions, read: &Side, rendering: &mut Rendering) -> Result<Side> {
     let mut recipe = options.recipe.clone();
     (recipe.settings.width, recipe.settings.height) = (read.width, read.height);
@@ -153,7 +158,7 @@ fn beside(options: &CompareOptions, read: &Side, rendering: &mut Rendering) -> R
     }
 }
 
-/// Renders the same samples with both.
+/// Renders the same samples with both backends.
 fn both(
     recipe: &Recipe,
     samples: u64,
@@ -162,7 +167,7 @@ fn both(
 ) -> Result<([Side; 2], PairedSamples)> {
     let job = recipe.job()?;
     let RenderSettings { width, height, .. } = *job.settings();
-    // Two of all samples, and two of the last.
+    // Two films of all samples, and two of the last sample.
     job.check_memory(4)?;
     check_memory(width, height, 4)?;
     let (mut film_a, mut film_b) = (new_film(&job)?, new_film(&job)?);
@@ -181,14 +186,14 @@ fn both(
     Ok((sides, sums.finish()))
 }
 
-/// What the pictures say of their jobs, where that matters.
+/// A note on the jobs of the pictures, if they explain the result.
 fn note_on_jobs(a: &Side, b: &Side) -> Option<String> {
     let (job_a, job_b) = (a.job.as_ref()?, b.job.as_ref()?);
     let (film_a, film_b) = (a.film.as_ref()?, b.film.as_ref()?);
     if job_a == job_b {
         let is_paired = film_a.samples() == film_b.samples();
         return is_paired
-            .then(|| "both hold the same samples, so that only rounding can tell them apart".to_owned());
+            .then(|| "both hold the same samples, so they can differ only by rounding".to_owned());
     }
     let is_other_picture =
         job_a.scene() != job_b.scene() || job_a.camera() != job_b.camera() || job_a.rules() != job_b.rules();
