@@ -156,7 +156,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
     }
     let mut chosen = sources::find(&raw.picture, raw.resume.as_deref())?;
     let unchanged = chosen.recipe.clone();
-    raw::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
     chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
     let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
@@ -187,10 +187,10 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
 }
 
 fn render(mut chosen: ChosenRecipe, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
-    raw::change(&mut source.recipe, &raw.picture, raw.estimate_error);
+    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
     chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
-    if raw.noise_target.is_some() && !source.recipe.settings.estimate_error {
+    if raw.noise_target.is_some() && !chosen.recipe.settings.estimate_error {
         return Err(CliError::Needs {
             flag: "--noise-target",
             other: "--estimate-error on",
