@@ -306,7 +306,7 @@ fn keys_of_a_material_suit_its_kind() {
     let lambertian = "kind = \"lambertian\"\nalbedo = [0, 0, 0]\n";
 
     let message = refusal(&with(&format!("{lambertian}fuzz = 0.1\n")), 8);
-    assert!(message.contains("materials.ball.fuzz means nothing to lambertian"), "{message}");
+    assert!(message.contains("materials.ball.fuzz has no meaning for lambertian"), "{message}");
     let message = refusal(&with("kind = \"dielectric\"\nrefraction_index = 1.5\nalbedo = [1, 1, 1]\n"), 8);
     assert!(message.contains("has only refraction_index"), "{message}");
     let message = refusal(&with("kind = \"metal\"\nfuzz = 0.1\n"), 5);
@@ -455,7 +455,7 @@ fn unreadable_files_are_told_from_bad_ones() {
     let binary = folder.path().join("binary.toml");
     std::fs::write(&binary, b"[camera]\nlook_from = [0,\xff\xfe").expect("written");
     let message = load(&binary).expect_err("no text").to_string();
-    assert!(message.contains("binary.toml:2: this is no text in UTF-8"), "{message}");
+    assert!(message.contains("binary.toml:2: this is not UTF-8 text"), "{message}");
 
     let bad = folder.path().join("bad.toml");
     std::fs::write(&bad, ONE_SPHERE.replace("radius = 1", "radius = 0")).expect("written");
@@ -526,5 +526,5 @@ fn a_picture_names_a_large_field_and_restores_it() {
     let unknown = message(&named.replace("three-spheres", "three-sphere"));
     assert!(unknown.starts_with("x:1:1: ") && unknown.contains("did you mean three-spheres"), "{unknown}");
     let both = message(&format!("{named}\n[sky]\ntop = [1, 1, 1]\n"));
-    assert!(both.contains("sky cannot stand beside scene"), "{both}");
+    assert!(both.contains("sky cannot be combined with scene"), "{both}");
 }
