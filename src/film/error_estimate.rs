@@ -84,15 +84,15 @@ impl Film {
         if estimate.rmse == 0.0 && self.halves.iter().flatten().all(|sum| sum.0 == [0; 3]) {
             let count = self.sample_count();
             return Some(format!(
-                "no path has found any light in {count} samples per pixel, so that the error cannot be estimated; only \
-                 more samples tell whether there is some"
+                "no path has found any light in {count} samples per pixel, so the error cannot be estimated; more \
+                 samples may find some"
             ));
         }
         let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
         (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64).then(|| {
             format!(
-                "few pixels dominate the error estimate: it is worth that of {pixels:.0} of {all} pixels, where \
-                 {PIXELS_IN_EFFECT_MIN:.0} would do; it may be off by a factor, and only more samples tell"
+                "few pixels dominate the error estimate: in effect it rests on {pixels:.0} of {all} pixels, but needs \
+                 {PIXELS_IN_EFFECT_MIN:.0}; it may be wrong by a factor until there are more samples"
             )
         })
     }

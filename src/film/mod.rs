@@ -95,21 +95,25 @@ impl Film {
     fn validate(&self) -> Result<(), String> {
         let pixels = self.width as usize * self.height as usize;
         if pixels == 0 {
-            return Err(format!("a size of {}x{}", self.width, self.height));
+            return Err(format!("its size is {}x{}", self.width, self.height));
         }
         if !(1..=2).contains(&self.halves.len()) {
-            return Err(format!("{} halves", self.halves.len()));
+            return Err(format!("it has {} halves, but a film has 1 or 2", self.halves.len()));
         }
         if u128::from(self.rejected) > u128::from(self.sample_count()) * pixels as u128 {
-            return Err(format!("{} samples rejected of {} a pixel", self.rejected, self.sample_count()));
+            return Err(format!(
+                "{} samples rejected, more than all pixels have with {} each",
+                self.rejected,
+                self.sample_count()
+            ));
         }
         for (index, half) in self.halves.iter().enumerate() {
             if half.len() != pixels {
-                return Err(format!("{} sums for {pixels} pixels", half.len()));
+                return Err(format!("a half has {} sums for {pixels} pixels", half.len()));
             }
             let limit = u128::from(self.half_sample_count(index)) * u128::from(FIXED_POINT_MAX);
             if let Some(pixel) = half.iter().position(|sum| sum.0.iter().any(|k| u128::from(*k) > limit)) {
-                return Err(format!("a sum of pixel {pixel} that its samples cannot reach"));
+                return Err(format!("the sum of pixel {pixel} is larger than its samples can give"));
             }
         }
         Ok(())
@@ -208,9 +212,9 @@ impl Film {
     }
 }
 
-/// Advice for making a film that fits into memory.
+/// What to do about a film that does not fit into memory.
 const SMALLER_FILM: &str =
-    "choose a smaller picture, or half the film with --estimate-error off, or close other programs";
+    "choose a smaller picture, halve the film with --estimate-error off, or close other programs";
 
 /// Why films cannot be merged, or why data is not a film.
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
@@ -225,7 +229,7 @@ pub enum FilmError {
     },
     /// The sample indices are outside the range that a film can hold.
     #[error(
-        "samples {}..{} are no range of samples, which begins before it ends, at {SAMPLE_LIMIT} at most",
+        "{}..{} is not a range of samples: the start must be below the end, and the end at most {SAMPLE_LIMIT}",
         range.start, range.end
     )]
     Range {
@@ -233,7 +237,7 @@ pub enum FilmError {
         range: Range<u64>,
     },
     /// A sample would be counted twice.
-    #[error("samples {}..{} are already in the film; each sample may be added once", range.start, range.end)]
+    #[error("samples {}..{} are already in the film; each sample may be added only once", range.start, range.end)]
     Overlap {
         /// The samples that are in both.
         range: Range<u64>,
@@ -242,7 +246,7 @@ pub enum FilmError {
     #[error(transparent)]
     Memory(#[from] MemoryError),
     /// The parts do not fit together.
-    #[error("this is no film: {what}")]
+    #[error("this is not a valid film: {what}")]
     Parts {
         /// What is wrong.
         what: String,

@@ -24,7 +24,7 @@ const ATTEMPTS: usize = 5;
 /// The largest number that is tried for a free file name.
 const NAME_LIMIT: u32 = 10_000;
 
-/// A file that a run writes its film to again and again.
+/// A file to which a run writes its film repeatedly.
 #[derive(Debug)]
 pub struct SharedFile {
     path: PathBuf,
@@ -37,7 +37,7 @@ pub struct SharedFile {
     held: SampleRanges,
     /// Samples that other runs have added.
     others: Option<Film>,
-    /// Those of them that `base` does not hold.
+    /// Those samples of `others` that `base` does not hold.
     others_since: Option<Film>,
 }
 
@@ -141,7 +141,7 @@ impl SharedFile {
                 return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
             }
         }
-        self.save_elsewhere(film, description, "others write it again and again")
+        self.save_elsewhere(film, description, "other runs keep writing it")
     }
 
     /// The film merged with what others have added; `None` if they have added nothing.
@@ -171,10 +171,10 @@ impl SharedFile {
         let FilmFile { film: theirs, description: told } =
             checkpoint::load(&self.path).map_err(|error| error.to_string())?;
         same_job(description.recipe(), told.recipe())
-            .map_err(|difference| format!("it is a film of another picture now: {difference}"))?;
+            .map_err(|difference| format!("it now holds a film of another picture: {difference}"))?;
         let shape = |film: &Film| (film.width(), film.height(), film.halves().len());
         if shape(mine) != shape(&theirs) {
-            return Err("it is a film of another shape now".to_owned());
+            return Err("it now holds a film of another shape".to_owned());
         }
         let only_theirs = minus(theirs.samples(), mine.samples());
         if only_theirs.is_empty() {
@@ -187,7 +187,7 @@ impl SharedFile {
             (self.seen, self.may_replace) = (seen, false);
             return Ok(Verdict::Leave(is_new.then(|| {
                 format!(
-                    "{} holds all samples of this run and {} besides, so it is left as it is",
+                    "{} already holds all samples of this run, and also {}, so it is left unchanged",
                     self.path.display(),
                     told(&only_theirs)
                 )
@@ -197,7 +197,7 @@ impl SharedFile {
         let added = if common.is_empty() { Some(theirs) } else { self.without_base(theirs, &common) };
         let added = added.ok_or_else(|| {
             format!(
-                "another run has put samples there that cannot be told apart from these: {}",
+                "another run has added samples that cannot be separated from those of this run: {}",
                 told(&common)
             )
         })?;
@@ -209,7 +209,7 @@ impl SharedFile {
         }
         (self.seen, self.may_replace) = (seen, true);
         Ok(Verdict::Added(format!(
-            "{} was written by another run meanwhile; its samples {} are kept beside these",
+            "another run has written {} in the meantime; its samples {} are kept too",
             self.path.display(),
             told(&only_theirs)
         )))
@@ -244,8 +244,8 @@ impl SharedFile {
             let new = NewFile::write(&path, |writer| checkpoint::write(film, description, writer))?;
             if new.put_new()? {
                 let note = format!(
-                    "{} was written by another program meanwhile: {reason}; it is left as it is, and these samples \
-                     are in {}",
+                    "another program has written {} in the meantime: {reason}; it is left unchanged, and the samples \
+                     of this run are in {}",
                     taken.display(),
                     path.display()
                 );
@@ -253,7 +253,7 @@ impl SharedFile {
                 return Ok(Saved { path, note: Some(note), is_elsewhere: true });
             }
         }
-        let reason = std::io::Error::other("every name beside it is taken");
+        let reason = std::io::Error::other("all numbered names next to it are taken");
         Err(WriteError { path: taken, reason })
     }
 }

@@ -1,9 +1,7 @@
 //! Films of known noise.
 
 use std::ops::Range;
-use weekender::film::{
-    Description, Film, fixed_point, key,
-};
+use weekender::film::{Description, Film, fixed_point, key};
 
 pub const RECIPE: &str = "[render]\nwidth = 7\nsamples_per_pixel = 10\n";
 

@@ -1,9 +1,7 @@
 //! The error estimate.
 
 use super::common::{add, noisy_film};
-use weekender::film::{
-    ErrorEstimate, Film,
-};
+use weekender::film::{ErrorEstimate, Film};
 
 #[test]
 fn the_error_is_that_of_the_mean() {

@@ -6,9 +6,7 @@ use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 use weekender::files::InputError;
-use weekender::film::{
-    CheckpointError, Film, checkpoint,
-};
+use weekender::film::{CheckpointError, Film, checkpoint};
 use weekender::output::decode_description;
 
 proptest! {
@@ -92,7 +90,10 @@ fn another_version_is_refused() {
     spoil(&path, b"version = 3", 10, b'2');
     let error = load_error(&path);
     let told = error.to_string();
-    assert!(told.contains("version 2, but this program reads version 3; go on with the program"), "{told}");
+    assert!(
+        told.contains("version 2, but this program reads version 3; continue with the program"),
+        "{told}"
+    );
     assert_eq!(error, CheckpointError::Version { path, version: 2 });
 }
 

@@ -4,9 +4,7 @@ use super::common::{RECIPE, description, noisy_film};
 use std::ops::Range;
 use std::path::Path;
 use weekender::film::{
-    Description, Film, FilmError,
-    MergeError, checkpoint, key,
-    merge_files, same_recipe_text,
+    Description, Film, FilmError, MergeError, checkpoint, key, merge_files, same_recipe_text,
 };
 
 #[test]

@@ -4,8 +4,7 @@ use super::common::description;
 use proptest::prelude::*;
 use std::collections::HashSet;
 use weekender::film::{
-    Film, FilmError, SAMPLE_LIMIT, SampleRanges, checkpoint,
-    merge_files, same_recipe_text,
+    Film, FilmError, SAMPLE_LIMIT, SampleRanges, checkpoint, merge_files, same_recipe_text,
 };
 
 proptest! {

@@ -79,7 +79,7 @@ fn failures_are_told_in_words() {
         ("missing.png", None, "cannot read"),
         ("broken.png", Some("nothing of the kind"), "does not say how it was made"),
         ("broken.toml", Some("[camera"), "broken.toml"),
-        ("broken.exr", Some("nothing"), "is no EXR file"),
+        ("broken.exr", Some("nothing"), "is not an EXR file"),
     ] {
         let path = directory.path().join(name);
         if let Some(content) = content {

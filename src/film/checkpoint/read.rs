@@ -55,7 +55,7 @@ pub fn read(mut reader: impl Read + Seek, length: u64, path: &Path) -> Result<Fi
         .decompress_sequential(true, |meta, block| rows.take(&meta.headers[0], &block))
         .map_err(|error| file.damaged(error))?;
     if !head.has_sums(Texts { recipe: &recipe, comments: &comments }, &rows.halves) {
-        return Err(file.damaged("the sums are not those that were written"));
+        return Err(file.damaged("the sums do not match their checksum"));
     }
     let film = Film::from_parts(head.width, head.height, rows.halves, samples, head.rejected);
     Ok(FilmFile { film: film.map_err(|error| file.no_film(error))?, description })
@@ -124,13 +124,13 @@ impl NamedFile<'_> {
         })
     }
 
-    /// The description of the picture, once it is certain that it is unchanged.
+    /// The description of the picture, checked against its checksum.
     fn description(&self, header: &Header, head: &Head) -> Result<Description, CheckpointError> {
         let texts = texts(header).ok_or_else(|| self.damaged("its recipe is missing"))?;
         if !head.is_whole(texts) {
-            return Err(self.damaged("its head or its recipe is not what was written"));
+            return Err(self.damaged("its head or texts do not match their checksum"));
         }
-        let no_text = |_| self.damaged("its recipe or what it says of the picture is not text");
+        let no_text = |_| self.damaged("its recipe or description is not text");
         let mut description = Description::new(std::str::from_utf8(texts.recipe).map_err(no_text)?);
         for line in std::str::from_utf8(texts.comments).map_err(no_text)?.lines() {
             description.set_line(line);
@@ -162,10 +162,12 @@ fn find_planes(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
         ));
     }
     if !(1..=SIZE_LIMIT).contains(&head.width) || !(1..=SIZE_LIMIT).contains(&head.height) {
-        return Err(format!("a size of {columns}x{rows}, where each side has 1 to {SIZE_LIMIT} pixels"));
+        return Err(format!(
+            "its size is {columns}x{rows}, but each side must have 1 to {SIZE_LIMIT} pixels"
+        ));
     }
     if header.deep || header.blocks != BlockDescription::ScanLines || header.compression != Compression::RLE {
-        return Err("its pixels are not laid out as those of a film".to_owned());
+        return Err("its pixels are not stored as those of a film".to_owned());
     }
     let known = Plane::all(head.halves);
     let channels = &header.channels.list;
@@ -173,24 +175,24 @@ fn find_planes(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
         let channel = channels.iter().find(|channel| channel.name.as_slice() == name.as_bytes());
         let channel = channel.ok_or_else(|| format!("the channel {name} is missing"))?;
         if channel.sample_type != plane.sample_type() || channel.sampling.area() != 1 {
-            return Err(format!("the channel {name} is of another type"));
+            return Err(format!("the channel {name} has the wrong type"));
         }
     }
     let found = channels.iter().map(|channel| {
         let plane = known.iter().find(|(name, _)| channel.name.as_slice() == name.as_bytes());
-        plane.map(|(_, plane)| *plane).ok_or_else(|| format!("the channel {} is of no film", channel.name))
+        plane.map(|(_, plane)| *plane).ok_or_else(|| format!("a film has no channel {}", channel.name))
     });
     let planes = found.collect::<Result<Vec<_>, _>>()?;
     if planes.len() != known.len() {
-        return Err(format!("{} channels, where a film has {}", planes.len(), known.len()));
+        return Err(format!("it has {} channels, but a film has {}", planes.len(), known.len()));
     }
     Ok(planes)
 }
 
-/// The fewest bytes that a chunk takes: its entry in the offset table, its row number and its length.
+/// Fewest bytes of a chunk: its entry in the offset table, its row number and its length.
 const CHUNK_BYTES: u64 = 16;
 
-/// A chunk may always be this large, whatever the file's length: tiles may be larger than the picture.
+/// A chunk may always have this many bytes, whatever the file's length, because tiles may be larger than the picture.
 const SMALL_CHUNK_BYTES: u64 = 16 << 20;
 
 /// Refuses a file that is too short for what it claims to hold, and files that no reader can handle.
@@ -213,7 +215,7 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     let least = (header.chunk_count as u64).saturating_mul(CHUNK_BYTES).saturating_add(bytes / ratio);
     if length < least {
         return Err(format!(
-            "it has {length} bytes, but {columns}x{rows} pixels of {} bytes take at least {least}",
+            "it has {length} bytes, but {columns}x{rows} pixels of {} bytes need at least {least}",
             header.channels.bytes_per_pixel
         ));
     }
@@ -242,7 +244,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// Takes a block, which is a row, and holds its picture against its sums.
+    /// Takes a block, which is one row, and compares its picture with its sums.
     fn take(&mut self, header: &Header, block: &UncompressedBlock) -> Result<(), exr::error::Error> {
         let start = block.index.pixel_position.y() * self.width;
         let pixels = start..start + self.width;
@@ -265,7 +267,7 @@ impl Rows {
                 let sum =
                     self.halves.iter().try_fold(0_u64, |sum, half| sum.checked_add(half[pixel].0[colour]));
                 if sum.map(|sum| mean(sum, self.unit).to_bits()) != Some(*bits) {
-                    return Err(exr::error::Error::Invalid("the picture is not that of the sums".into()));
+                    return Err(exr::error::Error::Invalid("the picture does not match the sums".into()));
                 }
             }
         }
