@@ -33,7 +33,7 @@ fn check(progressive: Progressive, status: &Status, case: &str) {
     println!("{case}: {said}");
     assert!(said.contains("gpu failed") && said.contains("the CPU goes on"), "{case}: {said}");
     if case.contains("Hang") {
-        assert!(said.contains("has not answered"), "{case}: {said}");
+        assert!(said.contains("has not responded"), "{case}: {said}");
     }
     let by_cpu = status.contributions.iter().find(|part| part.backend.name == "cpu");
     assert!(by_cpu.is_some_and(|part| part.samples_per_pixel > 0), "{case}: {status:?}");
