@@ -5,7 +5,6 @@ use std::time::Duration;
 use weekender::progressive::{
     EndReason, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, RenderRequest, Stop,
 };
-use weekender::render::Renderer;
 
 #[test]
 fn a_plan_of_samples_is_met_exactly() {
