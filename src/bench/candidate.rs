@@ -88,7 +88,7 @@ impl Candidate {
             Ok(Runner::Baseline { baseline: Rc::clone(baseline), scene })
         });
         let name = match baseline {
-            Ok(baseline) => format!("C89, {} -O2, 1 thread", baseline.compiler),
+            Ok(baseline) => baseline.about(),
             Err(_) => "C89, 1 thread".to_owned(),
         };
         Candidate::new(name, Kind::Baseline, 1, 1, made)

@@ -83,7 +83,7 @@ impl Candidate {
                     let measured = by_baseline(baseline, &scene, job, samples, reference, go_on);
                     measured.context("the C89 program")
                 })?;
-                (format!("C89, {} -O2, 1 thread", baseline.compiler), prepared, points)
+                (baseline.about(), prepared, points)
             }
         };
         Ok(points.map(|points| Run {
