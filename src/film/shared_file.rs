@@ -294,6 +294,7 @@ fn lock_directory(path: &Path) -> Option<File> {
 }
 
 #[cfg(test)]
+#[expect(clippy::single_range_in_vec_init, reason = "a list of one range is meant")]
 mod tests {
     use super::*;
     use crate::film::fixed_point;
