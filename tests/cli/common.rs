@@ -9,7 +9,7 @@ pub const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn weekender(directory: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    // Whatever should have been refused opens no window.
+    // If a command that should be refused is accepted, it must not open a window.
     for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
         command.env_remove(display);
     }

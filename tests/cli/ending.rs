@@ -44,7 +44,7 @@ fn ctrl_c_writes_picture_and_checkpoint() {
     .stderr(Stdio::piped())
     .spawn()
     .unwrap();
-    // Its first words come after it has begun to listen.
+    // It prints its first line after it has started to listen.
     let mut stderr = std::io::BufReader::new(child.stderr.take().unwrap());
     std::io::BufRead::read_line(&mut stderr, &mut String::new()).unwrap();
     std::thread::sleep(Duration::from_millis(500));
@@ -67,7 +67,7 @@ fn ctrl_c_writes_picture_and_checkpoint() {
     let samples = film(directory.path().join("film.exr")).sample_count();
     assert!(samples > 0);
 
-    // What was kept goes on.
+    // The saved film can be resumed.
     let more = (samples + 2).to_string();
     let resumed =
         run(directory.path(), &["--batch", "--resume", "film.exr", "--samples", &more, "--out", "more.exr"]);

@@ -23,7 +23,7 @@ fn a_resumed_film_equals_an_uninterrupted_one() {
     let at = |name: &str| directory.path().join(name);
     render(directory.path(), &["--samples", "37", "--checkpoint", "whole.exr"]);
     render(directory.path(), &["--samples", "10", "--checkpoint", "part.exr"]);
-    // The film knows its scene and size: nothing of that need be said again.
+    // The film contains its scene and size, so the command need not repeat them.
     let output = run(
         directory.path(),
         &["--batch", "--resume", "part.exr", "--samples", "37", "--checkpoint", "part.exr", "--json", "-"],
@@ -48,7 +48,7 @@ fn seconds_add_up_over_runs() {
     render(directory.path(), &["--samples", "4", "--out", "film.exr"]);
     let first = seconds("film.exr").unwrap();
     assert!(first > 0.0 && first < 500.0, "{first}");
-    // An earlier run that took long.
+    // As if the earlier run had taken long.
     let mut kept = checkpoint::load(&at("film.exr")).unwrap();
     kept.description.set(key::SECONDS, 1000.0);
     checkpoint::save(&at("film.exr"), &kept.film, &kept.description).unwrap();
@@ -61,7 +61,7 @@ fn seconds_add_up_over_runs() {
     let json: Value = serde_json::from_slice(&std::fs::read(at("more.json")).unwrap()).unwrap();
     let of_run = json["trace_seconds"].as_f64().unwrap();
     assert!(of_run > 1e-5 && (both - 1000.0 - of_run).abs() < 1e-6, "{both} of 1000 and {of_run}");
-    // Where the first run does not say what it took, nobody knows the sum.
+    // If the time of the first run is not known, neither is the sum.
     let mut silent = weekender::film::Description::new(kept.description.recipe());
     silent.set(key::SAMPLES, 4);
     checkpoint::save(&at("film.exr"), &kept.film, &silent).unwrap();
@@ -74,7 +74,7 @@ fn films_of_other_pictures_are_not_resumed() {
     let directory = temp();
     render(directory.path(), &["--samples", "2", "--checkpoint", "film.exr"]);
     std::fs::write(directory.path().join("broken.exr"), "not a film").unwrap();
-    // The window refuses them as a batch render does.
+    // The window refuses them, too.
     for way in [&["--batch"][..], &[]] {
         let with = |film: &'static str, more: &[&'static str]| [way, &["--resume", film], more].concat();
         for (flags, parts) in [

@@ -1,4 +1,4 @@
-//! The program from outside: what it writes, says and returns.
+//! The program as a user runs it: files, messages and exit codes.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 

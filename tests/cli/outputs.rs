@@ -51,11 +51,11 @@ fn files_that_get_in_each_other_s_way_are_refused_before_rendering() {
     let endless = ["--batch", "--samples", "4294967296", "--size", "32x18"];
     let refused =
         |more: &[&str], parts: &[&str]| refused_in(&directory, &[&endless[..], more].concat(), parts);
-    // Outputs over outputs.
+    // Outputs that would replace outputs.
     refused(&["--out", "x.exr", "--checkpoint", "./x.exr"], &["--out", "--checkpoint", "x.exr"]);
     refused(&["--out", "x.png", "--json", "../x.png/../x.png"], &["x.png"]);
     refused(&["--checkpoint", "x.exr", "--save-scene", "x.exr"], &["--checkpoint", "--save-scene"]);
-    // Outputs over inputs.
+    // Outputs that would replace inputs.
     refused(&["--resume", "g.exr", "--json", "g.exr"], &["--json", "--resume", "g.exr"]);
     refused(&["--resume", "g.exr", "--save-scene", "./g.exr"], &["--save-scene", "--resume"]);
     refused(&["--scene", "s.toml", "--json", "s.toml"], &["--json", "--scene"]);
@@ -77,7 +77,7 @@ fn files_that_get_in_each_other_s_way_are_refused_before_rendering() {
         std::fs::remove_file(path("future.exr")).unwrap();
     }
     assert_eq!(std::fs::read(path("g.exr")).unwrap(), before);
-    // What lives on in the output may be replaced.
+    // A film may be replaced by its own continuation.
     let resumed =
         ["--resume", "g.exr", "--checkpoint", "./g.exr", "--samples", "4", "--batch", "--out", "y.png"];
     let output = run(directory.path(), &resumed);
@@ -99,7 +99,7 @@ fn places_that_look_like_files_and_are_none_are_found_before_rendering() {
         refused_in(&directory, &dangling, &["to-nowhere.png", "it is a link to gone/target.png"]);
         symlink("circle.png", directory.path().join("circle.png")).unwrap();
         refused_in(&directory, &[&endless[..], &["--out", "circle.png"]].concat(), &["circle.png"]);
-        // One whose target can be made is followed.
+        // A link to a file that can be created is followed.
         symlink("target.png", directory.path().join("link.png")).unwrap();
         render(directory.path(), &["--samples", "1", "--out", "link.png"]);
         assert!(directory.path().join("link.png").is_symlink());

@@ -10,11 +10,11 @@ use weekender::film::{Film, checkpoint};
 pub const PATIENCE: Duration = Duration::from_secs(120);
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_weekender");
 
-/// A small picture; enough samples to be interrupted in.
+/// A small picture with enough samples to interrupt.
 pub const PICTURE: [&str; 8] =
     ["--batch", "--size", "48x27", "--threads", "2", "--device", "cpu", "--progress"];
 
-/// Never ends by itself, and keeps its film.
+/// A render that never ends by itself and keeps its film.
 pub const ENDLESS: [&str; 8] =
     ["--samples", "4294967296", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png"];
 
@@ -65,7 +65,7 @@ pub fn wait(child: &mut Child) -> ExitStatus {
     }
 }
 
-/// Waits until `is_so`.
+/// Waits until `is_so` returns true.
 pub fn until(what: &str, is_so: impl Fn() -> bool) {
     let begin = Instant::now();
     while !is_so() {
@@ -78,7 +78,7 @@ pub fn film(path: &Path) -> Film {
     checkpoint::load(path).unwrap().film
 }
 
-/// Files in a directory, without the unfinished ones that a kill leaves.
+/// Files in a directory, except unfinished ones that a kill leaves behind.
 pub fn names(at: &Path) -> Vec<String> {
     let entries = fs::read_dir(at).unwrap();
     let mut names: Vec<String> =

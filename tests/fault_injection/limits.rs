@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
 
-/// Runs the program under limits of the shell.
+/// Runs the program with resource limits of the shell.
 fn limited(at: &Path, limits: &str, arguments: &[&str]) -> Output {
     let mut command = Command::new("sh");
     command.arg("-c").arg(format!("{limits}; exec \"$0\" \"$@\"")).arg(PROGRAM).args(arguments);

@@ -1,7 +1,7 @@
-//! Drills: the program under kills, full disks, limits, closed pipes and other runs on the same film. What it had
-//! rendered must be there afterwards, to the bit.
+//! Fault drills: kills, full disks, resource limits, closed pipes, and other runs that use the same film. All rendered
+//! samples must be there afterwards, to the bit.
 //!
-//! Each runs a few rounds. For long series by hand, WEEKENDER_FAULT_ROUNDS is the number of rounds:
+//! Each test runs a few rounds. For a long series, set WEEKENDER_FAULT_ROUNDS to the number of rounds:
 //! `WEEKENDER_FAULT_ROUNDS=150 cargo test --release --test fault_injection -- --nocapture`.
 
 #![cfg(target_os = "linux")]

@@ -11,7 +11,7 @@ fn what_is_only_said_never_ends_a_run() {
         let at = at.path();
         let mut command = batch(at, "on", &ENDLESS);
         let gone = || {
-            // A reader that has gone away.
+            // A pipe whose reader has gone away.
             let (reader, writer) = std::io::pipe().unwrap();
             drop(reader);
             writer
@@ -33,7 +33,7 @@ fn what_is_only_said_never_ends_a_run() {
         assert_eq!(names(at), ["g.exr", "g.png"]);
         assert!(film(&at.join("g.exr")).sample_count() > 0);
     }
-    // Others that speak: warnings of a lost device, a report, a comparison, bad input.
+    // Other runs that print messages: a lost device, a report, a comparison, bad input.
     let at = TempDir::new().unwrap();
     let at = at.path();
     let quiet = |arguments: &[&str]| {

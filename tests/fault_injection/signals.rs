@@ -12,7 +12,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// Numbers that look random; each test says which it began with.
+/// Pseudo-random numbers; each test prints its seed.
 struct Dice(u64);
 
 impl Dice {
@@ -21,7 +21,7 @@ impl Dice {
         Dice(now.as_nanos() as u64 | 1)
     }
 
-    /// Below `limit`.
+    /// A number below `limit`.
     fn roll(&mut self, limit: u64) -> u64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
@@ -30,7 +30,7 @@ impl Dice {
     }
 }
 
-/// Whether `part`, which a killed run left, goes on to what was never interrupted.
+/// Checks that `part`, left by a killed run, can be continued to the film of an uninterrupted run.
 fn goes_on_to_the_same_bits(at: &Path, part: &str) {
     let whole = film(&at.join(part));
     let samples = whole.samples().end() + 3;
@@ -51,7 +51,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
         let at = at.path();
         let name = ["KILL", "INT", "TERM"][round as usize % 3];
         let mut child = batch(at, "on", &ENDLESS).spawn().unwrap();
-        // Its first words come when it has begun to listen.
+        // It prints its first line after it has started to listen.
         let mut stderr = BufReader::new(child.stderr.take().unwrap());
         stderr.read_line(&mut String::new()).unwrap();
         sleep(Duration::from_millis(dice.roll(400)));
@@ -62,7 +62,7 @@ fn signals_at_any_moment_leave_a_film_that_goes_on() {
             assert_eq!(status.signal(), Some(9));
         } else {
             assert_eq!(status.code(), Some(130), "{name}: {status}");
-            // Before the first sample there is nothing to keep.
+            // Before the first sample, there is nothing to save.
             assert!(names(at).is_empty() || names(at) == ["g.exr", "g.png"], "{name}: {:?}", names(at));
         }
         unfinished += names(at).iter().filter(|name| name.ends_with(".part")).count();
@@ -96,7 +96,7 @@ fn a_kill_costs_no_more_than_the_time_since_the_last_writing() {
 fn signals_while_files_are_written_wait_for_them_and_are_answered() {
     let at = TempDir::new().unwrap();
     let at = at.path();
-    // A pipe takes a picture as slowly as its reader likes.
+    // A pipe accepts a picture as slowly as its reader wants.
     succeeds(Command::new("mkfifo").arg(at.join("slow.png")).arg(at.join("pipe.exr")));
     let flags = ["--samples", "1", "--checkpoint", "g.exr", "--out", "slow.png"];
     let mut child = batch(at, "on", &flags).spawn().unwrap();
@@ -122,11 +122,11 @@ fn signals_while_files_are_written_wait_for_them_and_are_answered() {
             .unwrap();
     assert_eq!(film_in_pipe.status.code(), Some(2), "{film_in_pipe:?}");
     assert!(text(&film_in_pipe.stderr).contains("pipe.exr"), "{film_in_pipe:?}");
-    hear("write slow.png");
+    hear("writing slow.png");
     for _ in 0..3 {
         signal(&child, "INT");
         hear("still writing");
-        // Beyond what counts as one signal that arrives twice.
+        // Longer than the time within which two signals count as one.
         sleep(Duration::from_millis(600));
     }
     assert_eq!(child.try_wait().unwrap(), None);
@@ -152,7 +152,7 @@ fn a_signal_that_arrives_twice_is_one() {
 
 #[test]
 fn a_second_signal_ends_the_program_at_once() {
-    // One pass of this takes far longer than the drill.
+    // One pass takes far longer than this test.
     let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];
     let flags = ["--samples", "1000", "--out", "g.png", "--checkpoint", "g.exr", "--progress", "on"];
     for milliseconds in [800, 3000, 10_000] {
@@ -165,7 +165,7 @@ fn a_second_signal_ends_the_program_at_once() {
         signal(&child, "INT");
         sleep(Duration::from_millis(700));
         if child.try_wait().unwrap().is_some() && names(at).is_empty() {
-            // It came before the first pass, which a busy machine may begin late.
+            // The signal came before the first pass, which may start late on a busy machine.
             continue;
         }
         signal(&child, "INT");

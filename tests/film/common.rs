@@ -5,7 +5,7 @@ use weekender::film::{Description, Film, fixed_point, key};
 
 pub const RECIPE: &str = "[render]\nwidth = 7\nsamples_per_pixel = 10\n";
 
-/// A number that depends on its arguments alone.
+/// A pseudo-random number that depends only on its arguments.
 pub fn noise(pixel: usize, sample: u64, channel: usize) -> f64 {
     let mut x = (pixel as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (sample << 20) ^ channel as u64;
     for _ in 0..3 {
@@ -23,7 +23,7 @@ pub fn add(film: &mut Film, pixel: usize, sample: u64, radiance: [f64; 3]) -> bo
     true
 }
 
-/// A film of noise, as a renderer would fill it.
+/// A film of noise, filled as a renderer would fill it.
 pub fn noisy_film(width: u32, height: u32, halves: usize, ranges: &[Range<u64>]) -> Film {
     let mut film = Film::new(width, height, halves);
     for range in ranges {

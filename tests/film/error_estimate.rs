@@ -5,7 +5,7 @@ use weekender::film::{ErrorEstimate, Film};
 
 #[test]
 fn the_error_is_that_of_the_mean() {
-    // Halves that differ by 0.2 everywhere: MSE = 0.04 / 4.
+    // The halves differ by 0.2 everywhere: MSE = 0.04 / 4.
     let mut film = Film::new(4, 1, 2);
     for pixel in 0..4 {
         add(&mut film, pixel, 0, [0.6; 3]);
@@ -23,7 +23,7 @@ fn the_error_is_that_of_the_mean() {
 
 #[test]
 fn the_error_is_right_for_halves_of_different_counts() {
-    // Noise is uniform in [0, 1): variance 1/12 a sample. Three samples, two of them in half A.
+    // Noise is uniform in [0, 1) with variance 1/12 per sample. Of three samples, two are in half A.
     for samples in [3, 8, 9] {
         let error = noisy_film(200, 100, 2, &[0..samples]).error().unwrap();
         let expected = (1.0 / 12.0 / samples as f64).sqrt();
@@ -33,7 +33,7 @@ fn the_error_is_right_for_halves_of_different_counts() {
 
 #[test]
 fn the_estimate_knows_how_far_off_it_may_be() {
-    // 400 small films of other samples each: the spread of their estimates against what each says of itself.
+    // 400 small films with different samples: compares the spread of their estimates with the stated uncertainty.
     let errors: Vec<_> =
         (0..400).map(|k| noisy_film(16, 12, 2, &[8 * k..8 * k + 8]).error().unwrap()).collect();
     let mean = |of: &dyn Fn(usize) -> f64| (0..errors.len()).map(of).sum::<f64>() / errors.len() as f64;
@@ -56,7 +56,7 @@ fn an_uncertainty_is_a_share_of_the_error() {
     assert_eq!(none.uncertainty(), "± 0.1 %");
 }
 
-/// A film of two samples whose first `noisy` pixels have all the noise.
+/// A film of two samples with noise only in its first `noisy` pixels.
 fn film_with_noise_in(pixels: u32, noisy: usize) -> Film {
     let mut film = Film::new(pixels, 1, 2);
     for pixel in 0..pixels as usize {

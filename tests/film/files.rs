@@ -74,7 +74,7 @@ fn what_is_no_film_file_is_refused_with_the_reason() {
     assert!(matches!(load_error(&path), CheckpointError::NotFilm { .. }));
 }
 
-/// Puts another byte `offset` behind where `needle` begins in the file.
+/// Changes the byte at `offset` after the position of `needle` in the file.
 fn spoil(path: &Path, needle: &[u8], offset: usize, byte: u8) {
     let mut bytes = std::fs::read(path).unwrap();
     let place = bytes.windows(needle.len()).position(|window| window == needle).unwrap();
@@ -97,7 +97,7 @@ fn another_version_is_refused() {
     assert_eq!(error, CheckpointError::Version { path, version: 2 });
 }
 
-/// Where an attribute stands in a file, from its name, type and length to the end of its value.
+/// The bytes of an attribute in a file: name, type, length and value.
 fn attribute(bytes: &[u8], name_and_type: &[u8]) -> Range<usize> {
     let start = bytes.windows(name_and_type.len()).position(|window| window == name_and_type).unwrap();
     let length = start + name_and_type.len();
@@ -113,7 +113,7 @@ fn no_flipped_bit_changes_a_film_unnoticed() {
     checkpoint::save(&path, &film, &description()).unwrap();
     let whole = std::fs::read(&path).unwrap();
     let original = checkpoint::load(&path).unwrap();
-    // What other programs may ask for and this one does not.
+    // Attributes that other programs may read and this one does not.
     let harmless: Vec<Range<usize>> = [
         &b"displayWindow\0box2i\0"[..],
         b"dataWindow\0box2i\0",
@@ -129,7 +129,7 @@ fn no_flipped_bit_changes_a_film_unnoticed() {
     ]
     .into_iter()
     .map(|name| attribute(&whole, name))
-    // The version of OpenEXR.
+    // The version field of OpenEXR.
     .chain([4..8])
     .collect();
     let (mut bytes, mut accepted) = (whole.clone(), Vec::new());

@@ -1,4 +1,4 @@
-//! The film: exact sums, the set of samples, the resolved picture, the error estimate, film files and merging.
+//! The film: exact sums, sample ranges, the resolved picture, the error estimate, film files and merging.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::single_range_in_vec_init)]
 

@@ -68,14 +68,14 @@ fn merged_files_are_the_film_of_one_run() {
     assert_eq!(merged.description.get(key::BACKEND), Some("cpu; gpu"));
     assert_eq!(merged.description.recipe(), RECIPE);
 
-    // Overlap: both files and the samples are named.
+    // Overlap: the message names both files and the samples.
     let overlapping = directory.path().join("overlapping.exr");
     checkpoint::save(&overlapping, &noisy_film(5, 3, 2, &[100..101, 10..20]), &description()).unwrap();
     let error = merge_files(&[&paths[0], &paths[1], &overlapping], same_recipe_text).unwrap_err();
     let (first, other) = (paths[1].clone(), overlapping);
     assert_eq!(error, MergeError::Overlap { first, other, range: 10..12 });
 
-    // Another job, another shape, no files.
+    // Different jobs, different sizes, no files.
     let stranger = directory.path().join("stranger.exr");
     let recipe = RECIPE.replace("width = 7", "width = 8");
     checkpoint::save(&stranger, &noisy_film(5, 3, 2, &[50..51]), &Description::new(&recipe)).unwrap();

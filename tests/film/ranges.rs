@@ -22,7 +22,7 @@ proptest! {
             match samples.overlap(&range) {
                 None => prop_assert!(common.is_empty()),
                 Some(both) => {
-                    // In one piece, it starts at the first common sample and goes as far as they do.
+                    // It is a contiguous range that starts at the first common sample and is as long as possible.
                     prop_assert!(both.clone().all(|i| set.contains(&i) && range.contains(&i)));
                     prop_assert_eq!(Some(&both.start), common.first());
                     prop_assert!(!(set.contains(&both.end) && range.contains(&both.end)));
@@ -88,7 +88,7 @@ fn a_set_of_samples_may_reach_the_last_number_and_no_further() {
 
 #[test]
 fn a_film_may_have_very_many_ranges() {
-    // What is quadratic in them takes most of a minute here.
+    // Anything quadratic in the number of ranges would take most of a minute here.
     let even = || (0..200_000).map(|k| 2 * k..2 * k + 1);
     let mut film = Film::new(1, 1, 1);
     for range in even() {

@@ -60,7 +60,7 @@ fn fixed_point_rounds_and_saturates() {
     assert_eq!(k(f64::from(largest)), u64::from(FIXED_POINT_MAX));
 }
 
-/// A film of one sample whose only channel of interest runs through `values`.
+/// A film of one sample in which one channel takes all of `values`.
 fn film_of(values: &[f64]) -> Film {
     let mut film = Film::new(values.len() as u32, 1, 1);
     for (pixel, x) in values.iter().enumerate() {

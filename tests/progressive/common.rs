@@ -11,12 +11,12 @@ use weekender::render_cpu::CpuOptions;
 use weekender::scene::{Camera, Scene};
 use weekender::stages::Rules;
 
-/// What a sample of the fake takes at least.
+/// Shortest time of a sample of the fake renderer.
 pub const PAUSE: Duration = Duration::from_micros(100);
 
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Adds to each pixel a number that depends on pixel and sample alone.
+/// Adds to each pixel a number that depends only on pixel and sample.
 pub struct Fake {
     pub name: &'static str,
     pub pause: Duration,
@@ -64,7 +64,7 @@ impl Renderer for Fake {
     }
 }
 
-/// The reference of these tests fails past sample 16, every CPU backend works.
+/// In these tests, the reference fails after sample 16, and every CPU backend works.
 pub fn factory() -> Factory {
     Box::new(|choice| {
         let fails_at = matches!(choice, BackendChoice::Reference { .. }).then_some(16);

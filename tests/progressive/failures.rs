@@ -86,7 +86,7 @@ fn a_panic_while_preparing_or_looking_ends_nothing() {
     assert_eq!(progressive.finish(), Some(expected(2000)));
 }
 
-/// Records what it has not added.
+/// A renderer that records samples without adding them.
 struct Forgetful;
 
 impl Renderer for Forgetful {
@@ -136,7 +136,7 @@ fn a_member_that_panics_leaves_its_samples_to_the_others() {
     assert!(said.contains("a slip of the tracer") && said.contains("cpu goes on"), "{said}");
 }
 
-/// The tracer itself, which panics in the middle of a tile.
+/// A panic of the real tracer in the middle of a tile.
 #[test]
 fn a_panic_in_a_tile_leaves_the_film_as_it_was() {
     let recipe = Recipe::find("three-spheres").unwrap();
@@ -155,7 +155,7 @@ fn a_panic_in_a_tile_leaves_the_film_as_it_was() {
         assert!(matches!(error, RenderError::Backend { backend: "cpu", .. }), "{error}");
         assert!(error.to_string().contains("panicked") && error.to_string().contains("blocks"), "{error}");
         assert!(film == before);
-        // It was one slip.
+        // The next attempt works.
         renderer.accumulate(&job, 6..40, &mut film, &never).unwrap();
         let mut whole = job.new_film();
         CpuRenderer::new(CpuOptions::default()).unwrap().accumulate(&job, 0..40, &mut whole, &never).unwrap();

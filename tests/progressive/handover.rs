@@ -11,7 +11,7 @@ use weekender::film::Film;
 use weekender::progressive::{Phase, Plan, Progressive, RenderRequest};
 use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 
-/// The history of a render whose samples take a known time at least.
+/// The history of a render whose samples take at least a known time.
 #[test]
 fn a_point_of_the_history_has_the_seconds_of_its_own_samples() {
     let progressive = started(CPU, Plan::samples(128));
@@ -35,7 +35,7 @@ fn another_backend_goes_on_with_the_same_film() {
     assert_eq!(progressive.finish(), Some(expected(3000)));
 }
 
-/// Keeps samples to itself until they are collected, as a graphics device does.
+/// Holds samples back until they are collected, as a GPU does.
 struct Holding {
     fake: Fake,
     held: Vec<Range<u64>>,
@@ -93,7 +93,7 @@ fn a_pause_brings_home_what_the_device_holds() {
         Ok(Box::new(Holding { fake, held: Vec::new(), traced: Arc::clone(&count) }))
     }));
     let mut progressive = progressive.unwrap();
-    // Passes stay short enough for the samples to be added up while they are waited for.
+    // With short passes, samples accumulate while the test waits.
     let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
     progressive.start(RenderRequest::new(job(2), CPU, plan));
     for more in [64, 512] {
@@ -107,7 +107,7 @@ fn a_pause_brings_home_what_the_device_holds() {
         while progressive.wait(Duration::from_millis(20)).phase != Phase::Paused {
             assert!(begin.elapsed() < PATIENCE, "no pause: {:?}", progressive.status());
         }
-        // All that was traced is in the film, and is told.
+        // All traced samples are in the film and are reported.
         let held = *traced.lock().unwrap();
         let status = progressive.status();
         assert_eq!((status.samples_per_pixel, status.stats.paths), (held, 4 * held));
@@ -132,7 +132,7 @@ fn a_film_goes_on_where_it_has_gaps() {
         .start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, Plan::samples(100)) });
     let status = progressive.wait_until_over();
     assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
-    // The history is that of this render: what the film held before has no seconds.
+    // The history covers only this render, since the film's earlier samples have no times.
     let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
     assert!(history.first().is_some_and(|first| (32..40).contains(first)), "{history:?}");
     assert!(status.history.iter().all(|point| point.trace_seconds > 0.0), "{:?}", status.history);

@@ -1,4 +1,4 @@
-//! The progressive render with a renderer that can be told to fail: nothing is lost, whatever happens to it.
+//! Progressive rendering with a renderer that fails on request: no samples are lost, whatever happens.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 

@@ -54,7 +54,7 @@ fn the_noise_target_ends_it() {
     assert_eq!(status.error, progressive.finish().unwrap().error());
 }
 
-/// A target that the first samples meet: their estimate is too rough to be trusted.
+/// The first samples already meet this target, but their estimate is too rough to be trusted.
 #[test]
 fn a_noise_target_is_not_looked_at_before_its_first_samples() {
     let progressive =

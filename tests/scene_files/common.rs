@@ -5,10 +5,10 @@ use weekender::recipe::Recipe;
 use weekender::recipe::file::{parse, to_toml};
 use weekender::scene::Material;
 
-/// The least that a file must hold.
+/// The least that a file must contain.
 pub const CAMERA: &str = "[camera]\nlook_from = [0, 0, 3]\nlook_at = [0, 0, 0]\nvfov_degrees = 40\n";
 
-/// Line 6 has the material, line 10 the radius.
+/// The material is on line 6, the radius on line 10.
 pub const ONE_SPHERE: &str = "\
 [camera]
 look_from = [0, 0, 3]
@@ -23,7 +23,7 @@ radius = 1
 material = \"ball\"
 ";
 
-/// Every number of a recipe in order, as bits: equality of `f64` would let -0 pass for 0.
+/// Every number of a recipe in order, as bits, because `f64` equality does not distinguish -0 from 0.
 pub fn bits(recipe: &Recipe) -> Vec<u64> {
     let Recipe { scene, camera, .. } = recipe;
     let vector = |v: DVec3| v.to_array().to_vec();

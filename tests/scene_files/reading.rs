@@ -39,7 +39,7 @@ fn materials_are_named_or_inline() {
     assert_eq!(recipe.scene.materials.len(), 2);
     assert_round_trip(&recipe);
 
-    // A name that the reader would have given itself.
+    // A name that the reader would choose itself.
     let taken = text.replace("materials.ball", "materials.sphere-0");
     assert_round_trip(&parse(&taken, "taken").expect("valid"));
 }
@@ -55,7 +55,7 @@ fn materials_keep_their_order() {
     assert_eq!(names, ["zinc", "a b"]);
 }
 
-/// Case 31: up along the view is no error.
+/// Case 31: an up vector along the view is not an error.
 #[test]
 fn up_may_lie_along_the_view() {
     parse(&format!("{CAMERA}vup = [0, 0, 1]\n"), "up").expect("valid");

@@ -15,7 +15,7 @@ fn refusal(text: &str, line: usize) -> String {
     message
 }
 
-/// The refusal of the one-sphere file with one line exchanged.
+/// The error message for the one-sphere file with one line replaced.
 fn refusal_with(old: &str, new: &str, expected: &[&str]) {
     assert!(ONE_SPHERE.contains(old), "{old}");
     let text = ONE_SPHERE.replace(old, new);

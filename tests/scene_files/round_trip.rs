@@ -33,7 +33,7 @@ fn the_example_scenes_are_valid() {
     assert!(count >= 10);
 }
 
-/// The text of a large scene stays readable: a line for a sphere.
+/// The text of a large scene stays readable, with one line per sphere.
 #[test]
 fn large_scenes_are_written_compactly() {
     let book = Recipe::builtin("book").expect("a scene");
@@ -55,7 +55,7 @@ fn a_picture_names_a_large_field_and_restores_it() {
     let text = to_picture_toml(&field);
     assert!(text.len() < 1000 && text.starts_with("scene = \"field:20000\""), "{text}");
     assert_eq!(parse(&text, "field:20000").expect("valid"), field);
-    // One that was changed is listed.
+    // A changed field is listed sphere by sphere.
     let mut changed = field.clone();
     std::sync::Arc::make_mut(&mut changed.scene).spheres[3].radius = 0.25;
     assert_eq!(parse(&to_picture_toml(&changed), "field:20000").expect("valid"), changed);
