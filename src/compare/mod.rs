@@ -21,7 +21,7 @@ use crate::render::RenderSettings;
 use crate::terminal::{print_beside, write_json};
 use anyhow::{Result, bail};
 use serde::Serialize;
-use side::{Opened, Rendering, check_memory, new_film};
+use side::{OpenedSide, Rendering, check_memory, new_film};
 use std::process::ExitCode;
 
 /// Version of the JSON. It grows when a key changes its meaning or is removed.
@@ -118,18 +118,18 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
 /// Both sides. If backends render both, also their comparison sample by sample.
 fn sides(options: &CompareOptions) -> Result<([Side; 2], Option<PairedSamples>)> {
     let [first, second] = &options.sides;
-    let open = |side| Opened::open(side, options.encoding);
+    let open = |side| OpenedSide::open(side, options.encoding);
     Ok(match (open(first)?, open(second)?) {
-        (Opened::Read(a), Opened::Read(b)) => ([*a, *b], None),
-        (Opened::Read(a), Opened::Backend(mut b)) => {
+        (OpenedSide::Read(a), OpenedSide::Read(b)) => ([*a, *b], None),
+        (OpenedSide::Read(a), OpenedSide::Backend(mut b)) => {
             let b = beside(options, &a, &mut b)?;
             ([*a, b], None)
         }
-        (Opened::Backend(mut a), Opened::Read(b)) => {
+        (OpenedSide::Backend(mut a), OpenedSide::Read(b)) => {
             let a = beside(options, &b, &mut a)?;
             ([a, *b], None)
         }
-        (Opened::Backend(mut a), Opened::Backend(mut b)) => {
+        (OpenedSide::Backend(mut a), OpenedSide::Backend(mut b)) => {
             let recipe = options.recipe.clone();
             let (sides, paired) =
                 both(&recipe, options.samples.unwrap_or(recipe.samples_per_pixel), &mut a, &mut b)?;

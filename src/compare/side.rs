@@ -192,23 +192,23 @@ impl Rendering {
 }
 
 /// A side that was read, or a backend that waits for the scene and size of the other side.
-pub enum Opened {
+pub enum OpenedSide {
     /// Read from a file.
     Read(Box<Side>),
     /// To be rendered.
     Backend(Box<Rendering>),
 }
 
-impl Opened {
+impl OpenedSide {
     /// Reads the file or starts the backend.
     ///
     /// # Errors
     /// If the file cannot be read or the backend is not available.
     pub fn open(side: &CompareSide, encoding: Encoding) -> Result<Self> {
         Ok(match side {
-            CompareSide::File(path) => Opened::Read(Box::new(Side::read(path, encoding)?)),
+            CompareSide::File(path) => OpenedSide::Read(Box::new(Side::read(path, encoding)?)),
             CompareSide::Backend { name, choice } => {
-                Opened::Backend(Box::new(Rendering::start(choice, name)?))
+                OpenedSide::Backend(Box::new(Rendering::start(choice, name)?))
             }
         })
     }

@@ -24,7 +24,7 @@ pub use fixed_point::{FIXED_POINT_MAX, FIXED_POINT_SCALE, PixelSum, RADIANCE_LIM
 pub use merge::{MergeError, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;
 pub use resolve::to_byte;
-pub use shared_file::{Saved, SharedFile};
+pub use shared_file::{SaveOutcome, SharedFile};
 
 use crate::memory::{self, MemoryError};
 use std::ops::Range;

@@ -43,7 +43,7 @@ pub struct SharedFile {
 
 /// The result of saving a film.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Saved {
+pub struct SaveOutcome {
     /// The file that holds it.
     pub path: PathBuf,
     /// A note for the user: another run has written the file too.
@@ -100,7 +100,7 @@ impl SharedFile {
         film: &Film,
         description: &Description,
         same_job: &dyn Fn(&str, &str) -> Result<(), String>,
-    ) -> Result<Saved, WriteError> {
+    ) -> Result<SaveOutcome, WriteError> {
         let (mut note, mut lock) = (None, None);
         for attempt in 0..ATTEMPTS {
             // Reading and writing take long and other runs are rare, so the first attempt does not lock.
@@ -122,7 +122,7 @@ impl SharedFile {
                         continue;
                     }
                     Ok(Verdict::Leave(note)) => {
-                        return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
+                        return Ok(SaveOutcome { path: self.path.clone(), note, is_elsewhere: false });
                     }
                     Err(reason) => return self.save_elsewhere(film, description, &reason),
                 }
@@ -138,7 +138,7 @@ impl SharedFile {
                 new.put()?;
                 self.note(ahead.filter(|_| cfg!(unix)).or_else(|| Self::look_at(&self.path)));
                 (self.may_replace, self.held) = (true, mine.samples().clone());
-                return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
+                return Ok(SaveOutcome { path: self.path.clone(), note, is_elsewhere: false });
             }
         }
         self.save_elsewhere(film, description, "other runs keep writing it")
@@ -234,7 +234,7 @@ impl SharedFile {
         film: &Film,
         description: &Description,
         reason: &str,
-    ) -> Result<Saved, WriteError> {
+    ) -> Result<SaveOutcome, WriteError> {
         let taken = self.path.clone();
         for number in 2..NAME_LIMIT {
             let path = numbered(&taken, number);
@@ -250,7 +250,7 @@ impl SharedFile {
                     path.display()
                 );
                 *self = SharedFile::new(&path);
-                return Ok(Saved { path, note: Some(note), is_elsewhere: true });
+                return Ok(SaveOutcome { path, note: Some(note), is_elsewhere: true });
             }
         }
         let reason = std::io::Error::other("all numbered names next to it are taken");

@@ -4,7 +4,7 @@ use super::error::{FileError, Reason, Refusal, refuse};
 use super::materials::{NamedOrInline, RawMaterial, material_of};
 use super::named;
 use super::place::{InlineNames, Step, find_place, line_and_column, name_inline_materials, path_of};
-use super::settings::{RawRender, settings_of};
+use super::settings::{RawSettings, settings_of};
 use super::triple::Triple;
 use crate::files;
 use crate::memory;
@@ -84,7 +84,7 @@ struct RawFile {
     spheres: Option<Vec<RawSphere>>,
     camera: RawCamera,
     #[serde(default)]
-    render: RawRender,
+    render: RawSettings,
     #[serde(default)]
     rules: Rules,
 }

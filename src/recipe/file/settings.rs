@@ -8,7 +8,7 @@ use serde::Deserialize;
 /// The table `[render]`. Integers have TOML's type, so that a value out of range is refused with its limits.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
-pub(super) struct RawRender {
+pub(super) struct RawSettings {
     width: Option<i64>,
     height: Option<i64>,
     samples_per_pixel: Option<i64>,
@@ -18,7 +18,7 @@ pub(super) struct RawRender {
     estimate_error: Option<bool>,
 }
 
-pub(super) fn settings_of(raw: &RawRender) -> Result<(RenderSettings, u64), Refusal> {
+pub(super) fn settings_of(raw: &RawSettings) -> Result<(RenderSettings, u64), Refusal> {
     let whole = |key: &'static str, value: Option<i64>, default: u64, limits: [u64; 2], remedy| match value {
         None => Ok(default),
         Some(value) => u64::try_from(value)
