@@ -63,7 +63,7 @@ pub struct Baseline {
 
 /// The figures of one run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ControlRun {
+pub struct BaselineRun {
     /// Wall time of tracing, seconds.
     pub seconds: f64,
     /// Processor time of tracing, seconds, as the baseline measures it.
@@ -103,6 +103,11 @@ impl Baseline {
         Ok(Baseline { directory, compiler })
     }
 
+    /// Language, compiler and threads, for tables.
+    pub fn about(&self) -> String {
+        format!("C89, {} -O2, 1 thread", self.compiler)
+    }
+
     /// Writes the scene file for the baseline.
     ///
     /// # Errors
@@ -134,7 +139,7 @@ impl Baseline {
         seed: u32,
         out: Option<&Path>,
         is_cancelled: &dyn Fn() -> bool,
-    ) -> Result<ControlRun, BaselineError> {
+    ) -> Result<BaselineRun, BaselineError> {
         let failed = |reason: io::Error| BaselineError::Run(reason.to_string());
         let RenderSettings { width, height, max_depth, .. } = settings;
         let mut command = Command::new(program_in(self.directory.path()));
@@ -197,10 +202,10 @@ fn program_in(directory: &Path) -> PathBuf {
 }
 
 /// Parses `trace_seconds S paths P rays R`, which arrived `wall` after tracing began.
-fn figures(line: &str, wall: Duration) -> Option<ControlRun> {
+fn figures(line: &str, wall: Duration) -> Option<BaselineRun> {
     let words: Vec<&str> = line.split_whitespace().collect();
     let ["trace_seconds", processor, "paths", paths, "rays", rays] = words[..] else { return None };
-    Some(ControlRun {
+    Some(BaselineRun {
         seconds: wall.as_secs_f64(),
         processor_seconds: processor.parse().ok()?,
         paths: paths.parse().ok()?,
@@ -245,7 +250,7 @@ mod tests {
     fn only_the_whole_line_of_figures_is_read() {
         let wall = Duration::from_millis(1600);
         let run = figures("trace_seconds 1.5 paths 30 rays 70", wall).expect("figures");
-        assert_eq!(run, ControlRun { seconds: 1.6, processor_seconds: 1.5, paths: 30, rays: 70 });
+        assert_eq!(run, BaselineRun { seconds: 1.6, processor_seconds: 1.5, paths: 30, rays: 70 });
         for line in ["", "trace_seconds 1.5 paths 30", "trace_seconds x paths 30 rays 70", "paths 30 rays 70"]
         {
             assert_eq!(figures(line, wall), None, "{line}");

@@ -174,7 +174,7 @@ mod tests {
     fn a_cancelled_layer_says_so() {
         let recipe = Recipe::builtin("three-spheres").unwrap();
         let job = Layer::Normals.job(&recipe.job().unwrap()).unwrap();
-        let paths = PathRecorder::new(&job, Isa::Baseline, None);
+        let paths = PathRecorder::new(&job, Isa::Portable, None);
         assert!(!LayerImage::new(Layer::Normals, &job).add_sample(&paths, &AtomicBool::new(true)));
     }
 }

@@ -101,7 +101,7 @@ fn every_level_is_measured_when_all_are_asked_for() {
 }
 
 #[test]
-fn without_a_compiler_the_control_is_left_out() {
+fn without_a_compiler_the_baseline_is_left_out() {
     let directory = tempfile::tempdir().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
     command.env("CC", "no-such-compiler").arg("bench").args(TINY).args(["--scene", "metals"]);

@@ -13,7 +13,7 @@ use weekender::render::{RenderJob, Renderer, SamplerKind, Stats};
 use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa, record_path};
 use weekender::render_gpu::GpuOptions;
 use weekender::scene::builtin::BuiltinScene;
-use weekender::stages::Surface;
+use weekender::stages::SurfaceRule;
 
 fn small(scene: &str, width: u32, height: u32) -> RenderJob {
     let mut recipe = Recipe::find(scene).unwrap();
@@ -96,7 +96,7 @@ fn the_gpu_records_what_it_renders_to_the_bit() {
 fn the_gpu_and_the_cpu_record_the_same_paths() {
     let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
     for (name, job) in jobs(16, 9) {
-        if job.rules().surface != Surface::Exact {
+        if job.rules().surface != SurfaceRule::Exact {
             // These stages show rounding errors on purpose.
             continue;
         }
@@ -120,10 +120,10 @@ fn diff(arguments: &[&str]) -> (i32, String, String) {
 
 #[test]
 fn a_difference_is_found_marked_and_told() {
-    let sides = ["--scene", "book", "--sides", "baseline,reference"];
+    let sides = ["--scene", "book", "--sides", "portable,reference"];
     let (code, found, errors) = diff(&[&sides[..], &["--find", "2"]].concat());
     assert_eq!(code, 1, "{errors}");
-    for part in ["▶ ", "≠", "is allowed", "the paths part", "verdict", "cpu baseline", "reference, f64"] {
+    for part in ["▶ ", "≠", "is allowed", "the paths part", "verdict", "cpu portable", "reference, f64"] {
         assert!(found.contains(part), "{part}: {found}");
     }
     assert!(!found.contains('\x1b'), "no colours in a file");
@@ -156,7 +156,7 @@ fn the_cpu_and_the_reference_agree_within_the_tolerance() {
 fn every_stage_has_a_path() {
     for stage in weekender::stages::Stage::ALL {
         let arguments =
-            ["--stage", stage.id, "--sides", "cpu,baseline", "--pixel", "60,30", "--size", "120x67"];
+            ["--stage", stage.id, "--sides", "cpu,portable", "--pixel", "60,30", "--size", "120x67"];
         let (code, text, errors) = diff(&arguments);
         assert!(code <= 1 && text.contains("verdict"), "{}: {errors}", stage.id);
     }
@@ -181,7 +181,7 @@ fn what_cannot_be_compared_is_refused() {
         (&[], &["--pixel"]),
         (&["--pixel", "800,0", "--sides", "cpu,reference"], &["800,0", "799,449"]),
         (&["--pixel", "1"], &["a column and a row"]),
-        (&["--pixel", "1,1", "--sides", "cpu"], &["cpu, baseline, reference, gpu"]),
+        (&["--pixel", "1,1", "--sides", "cpu"], &["cpu, portable, reference, gpu"]),
         (&["--pixel", "1,1", "--find"], &["--find"]),
         (
             &["--pixel", "1,1", "--sides", "cpu,reference", "--adapter", "x"],

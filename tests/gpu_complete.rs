@@ -12,7 +12,7 @@ use weekender::render::{RenderJob, Renderer, SamplerKind};
 use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, HierarchyKind, InjectionPoint, TURN_LIMIT};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};
-use weekender::stages::{Rules, Surface};
+use weekender::stages::{Rules, SurfaceRule};
 
 fn go_on() -> AtomicBool {
     AtomicBool::new(false)
@@ -93,7 +93,7 @@ fn long_lists_are_whole_or_refused() {
             scene.add_sphere(DVec3::new(f64::from(i % 100), 3.0, 40.0 + f64::from(i / 100)), 0.3, far);
         }
         let settings = *job_of(&scene, camera, [6, 4], 8, SamplerKind::Sobol, false).settings();
-        let rules = Rules { surface: Surface::Acne, ..Rules::default() };
+        let rules = Rules { surface: SurfaceRule::Acne, ..Rules::default() };
         RenderJob::new(scene, camera, settings, rules).unwrap()
     };
     let job = list(6000);
@@ -120,7 +120,7 @@ fn samples_that_a_device_leaves_out_are_traced_again() {
         let mut short = gpu(options.clone()).unwrap();
         assert!(rendered(&mut short, &job, 32) == expected, "{after}");
         let said = short.take_messages().join("; ");
-        assert!(said.contains("traced again") && said.contains("samples the device added 0"), "{said}");
+        assert!(said.contains("traced again") && said.contains("the device added only 0 of"), "{said}");
         // The same with several passes, whenever it is noticed.
         let mut short = gpu(options).unwrap();
         let mut film = job.new_film();
@@ -146,6 +146,6 @@ fn a_device_that_always_leaves_samples_out_fails() {
     };
     let mut film = job.new_film();
     let error = short.accumulate(&job, 0..8, &mut film, &go_on()).unwrap_err().to_string();
-    assert!(error.contains("of 144 samples the device added 0") && error.contains("CPU"), "{error}");
+    assert!(error.contains("the device added only 0 of 144 samples") && error.contains("CPU"), "{error}");
     assert!(film == job.new_film());
 }

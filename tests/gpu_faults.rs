@@ -6,7 +6,7 @@ mod gpu_common;
 use gpu_common::{gpu, job_of};
 use std::time::Duration;
 use weekender::backends::BackendChoice;
-use weekender::progressive::{EndReason, Phase, Plan, Progressive, Status, Work};
+use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest, Status};
 use weekender::render::{RenderJob, SamplerKind};
 use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
 use weekender::scene::builtin::BuiltinScene;
@@ -33,7 +33,7 @@ fn check(progressive: Progressive, status: &Status, case: &str) {
     println!("{case}: {said}");
     assert!(said.contains("gpu failed") && said.contains("the CPU goes on"), "{case}: {said}");
     if case.contains("Hang") {
-        assert!(said.contains("has not answered"), "{case}: {said}");
+        assert!(said.contains("has not responded"), "{case}: {said}");
     }
     let by_cpu = status.contributions.iter().find(|part| part.backend.name == "cpu");
     assert!(by_cpu.is_some_and(|part| part.samples_per_pixel > 0), "{case}: {status:?}");
@@ -54,7 +54,7 @@ fn a_fault_in_any_phase_leaves_a_whole_picture_and_a_message() {
         for (point, after) in points {
             let Some(backend) = failing(fault, point, after) else { return };
             let mut progressive = Progressive::spawn().unwrap();
-            progressive.start(Work::new(job([64, 36]), backend, Plan::samples(64)));
+            progressive.start(RenderRequest::new(job([64, 36]), backend, Plan::samples(64)));
             let status = progressive.wait_until_over();
             check(progressive, &status, &format!("{fault:?} at {point:?} {after}"));
         }
@@ -66,7 +66,7 @@ fn a_fault_during_a_pause_is_survived() {
     for fault in [Fault::Lost, Fault::Hang] {
         let Some(backend) = failing(fault, InjectionPoint::Fetch, 1) else { return };
         let mut progressive = Progressive::spawn().unwrap();
-        progressive.start(Work::new(job([64, 36]), backend, Plan::samples(64)));
+        progressive.start(RenderRequest::new(job([64, 36]), backend, Plan::samples(64)));
         // A pause fetches the samples from the device.
         for _ in 0..3 {
             progressive.pause();
@@ -84,7 +84,7 @@ fn a_new_job_is_begun_while_the_device_hangs() {
     let Some(backend) = failing(Fault::Hang, InjectionPoint::Dispatch, 5) else { return };
     let mut progressive = Progressive::spawn().unwrap();
     for (width, samples) in [(64, 100_000), (50, 100_000), (41, 100_000), (32, 64)] {
-        progressive.start(Work::new(job([width, 20]), backend.clone(), Plan::samples(samples)));
+        progressive.start(RenderRequest::new(job([width, 20]), backend.clone(), Plan::samples(samples)));
         std::thread::sleep(Duration::from_millis(60));
     }
     let status = progressive.wait_until_over();

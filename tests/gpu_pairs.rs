@@ -12,7 +12,7 @@ use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::render_gpu::GpuOptions;
 use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Material, Scene};
-use weekender::stages::Surface;
+use weekender::stages::SurfaceRule;
 
 /// Samples that differ by more have taken different paths.
 const DIVERGED: f64 = 1e-3;
@@ -63,7 +63,7 @@ fn one(renderer: &mut dyn Renderer, job: &RenderJob, index: u64) -> Film {
 
 /// The CPU with multiply and add rounded separately.
 fn unfused() -> CpuRenderer {
-    CpuRenderer::new(CpuOptions { isa: Some(Isa::Baseline), ..CpuOptions::default() }).unwrap()
+    CpuRenderer::new(CpuOptions { isa: Some(Isa::Portable), ..CpuOptions::default() }).unwrap()
 }
 
 /// The fraction of samples that part between two renderers.
@@ -83,7 +83,7 @@ fn every_stage_and_scene_is_the_cpus_sample_by_sample() {
     let mut cpu = cpu();
     let mut failures = Vec::new();
     for (name, job) in jobs(160, 90) {
-        if job.rules().surface != Surface::Exact {
+        if job.rules().surface != SurfaceRule::Exact {
             // These stages show rounding errors on purpose.
             continue;
         }

@@ -9,7 +9,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use weekender::kernel::{CameraTable, Features, RecordColumns, ShadingRecord, records, words_of};
 use weekender::render::SamplerKind;
 use weekender::render_gpu::shader_source::{EntryPoint, source};
-use weekender::stages::{DielectricLaws, Shading, Surface};
+use weekender::stages::{DielectricLaws, Shading, SurfaceRule};
 
 fn parsed(entry_point: EntryPoint) -> naga::Module {
     let text = source(entry_point);
@@ -31,7 +31,7 @@ fn variants() -> [Vec<(String, f64)>; 4] {
             steep_glass: true,
             sampler: SamplerKind::Independent,
             antialiasing: false,
-            surface: Surface::Book,
+            surface: SurfaceRule::Book,
             hemisphere: true,
             reflectance_strips: true,
             shading: Shading::Normals,

@@ -7,7 +7,7 @@ use weekender::film::checkpoint;
 #[test]
 fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
     let directory = tempfile::tempdir().unwrap();
-    for (tiles, level) in [("0", "auto"), ("7", "auto"), ("30", "auto"), ("20", "baseline")] {
+    for (tiles, level) in [("0", "auto"), ("7", "auto"), ("30", "auto"), ("20", "portable")] {
         let output = Command::new(env!("CARGO_BIN_EXE_weekender"))
             .current_dir(directory.path())
             .args(["--batch", "--device", "cpu", "--size", "100x70", "--samples", "64", "--isa", level])

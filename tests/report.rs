@@ -43,7 +43,7 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let (code, text, errors) =
-        report(&[&SMALL[..], &["--backends", "cpu,baseline", "--target", "0.02"]].concat(), at);
+        report(&[&SMALL[..], &["--backends", "cpu,portable", "--target", "0.02"]].concat(), at);
     assert_eq!(code, 0, "{errors}");
     assert!(text.contains("error-vs-time.png"), "{text}");
     let data_found = data(at);
@@ -91,7 +91,7 @@ fn a_report_has_its_files_and_figures_that_make_sense() {
 }
 
 #[test]
-fn the_control_is_a_curve_of_its_own() {
+fn the_baseline_is_a_curve_of_its_own() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let (code, _, errors) =

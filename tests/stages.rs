@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use weekender::recipe::Recipe;
 use weekender::scene::Material;
-use weekender::stages::{DielectricLaws, Rules, Shading, Stage, Surface, Transfer};
+use weekender::stages::{DielectricLaws, Rules, Shading, Stage, SurfaceRule, Transfer};
 
 const IDS: [&str; 27] = [
     "ppm-tiny",
@@ -130,7 +130,7 @@ fn unknown_ids_are_answered_with_a_guess() {
 #[test]
 fn paired_stages_differ_in_what_they_teach() {
     let (limited, acne) = (recipe("diffuse-limited"), recipe("shadow-acne"));
-    assert_eq!(acne.rules, Rules { surface: Surface::Acne, ..limited.rules });
+    assert_eq!(acne.rules, Rules { surface: SurfaceRule::Acne, ..limited.rules });
     assert_eq!(Recipe { name: limited.name.clone(), rules: limited.rules, ..acne }, limited);
 
     let (linear, gamma) = (recipe("lambertian-linear"), recipe("lambertian-gamma"));

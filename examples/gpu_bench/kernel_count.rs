@@ -16,9 +16,9 @@ pub struct Counted {
     info: ModuleInfo,
 }
 
-/// Operations on single numbers. Moves, accesses, changes of sign and reads of memory are not among them.
+/// The cost of code: operations on single numbers. Moves, accesses, changes of sign and reads of memory are not among them.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Work {
+pub struct Cost {
     /// On floats, a fused multiply and add as one.
     pub float: usize,
     /// On integers and truth values.
@@ -27,18 +27,18 @@ pub struct Work {
     pub special: usize,
 }
 
-impl Work {
+impl Cost {
     pub fn total(self) -> usize {
         self.float + self.integer + self.special
     }
 
-    fn times(self, count: usize) -> Work {
-        Work { float: self.float * count, integer: self.integer * count, special: self.special * count }
+    fn times(self, count: usize) -> Cost {
+        Cost { float: self.float * count, integer: self.integer * count, special: self.special * count }
     }
 }
 
-impl AddAssign for Work {
-    fn add_assign(&mut self, other: Work) {
+impl AddAssign for Cost {
+    fn add_assign(&mut self, other: Cost) {
         self.float += other.float;
         self.integer += other.integer;
         self.special += other.special;
@@ -89,9 +89,9 @@ impl Counted {
     }
 
     /// A turn of the path loop with both sides of every branch. `trips` are the turns of the loops over spheres.
-    pub fn turn(&self, trips: &[usize]) -> Work {
+    pub fn turn(&self, trips: &[usize]) -> Cost {
         let mut trips = trips.iter().copied();
-        let mut work = Work::default();
+        let mut cost = Cost::default();
         for (handle, function) in self.module.functions.iter() {
             if function.name.as_deref() == Some("trace")
                 && let Some(body) = function.body.iter().find_map(|statement| match statement {
@@ -99,48 +99,48 @@ impl Counted {
                     _ => None,
                 })
             {
-                work += self.work(body, function, &self.info[handle], &mut trips);
+                cost += self.cost(body, function, &self.info[handle], &mut trips);
             }
         }
-        work
+        cost
     }
 
-    fn work(
+    fn cost(
         &self,
         block: &Block,
         function: &Function,
         info: &FunctionInfo,
         trips: &mut dyn Iterator<Item = usize>,
-    ) -> Work {
-        let mut work = Work::default();
+    ) -> Cost {
+        let mut cost = Cost::default();
         for statement in block.iter() {
             match statement {
                 Statement::Emit(range) => {
                     for expression in range.clone() {
-                        work += self.expression(expression, function, info);
+                        cost += self.expression(expression, function, info);
                     }
                 }
                 Statement::Call { function: called, .. } => {
                     let callee = &self.module.functions[*called];
-                    work += self.work(&callee.body, callee, &self.info[*called], trips);
+                    cost += self.cost(&callee.body, callee, &self.info[*called], trips);
                 }
                 Statement::If { accept, reject, .. } => {
-                    work += self.work(accept, function, info, trips);
-                    work += self.work(reject, function, info, trips);
+                    cost += self.cost(accept, function, info, trips);
+                    cost += self.cost(reject, function, info, trips);
                 }
                 // Unrolled, a loop over spheres has no counter.
                 Statement::Loop { body, .. } => {
                     let count = trips.next().unwrap_or(1);
-                    work += self.work(body, function, info, trips).times(count);
+                    cost += self.cost(body, function, info, trips).times(count);
                 }
-                Statement::Block(inner) => work += self.work(inner, function, info, trips),
+                Statement::Block(inner) => cost += self.cost(inner, function, info, trips),
                 _ => {}
             }
         }
-        work
+        cost
     }
 
-    fn expression(&self, handle: Handle<Expression>, function: &Function, info: &FunctionInfo) -> Work {
+    fn expression(&self, handle: Handle<Expression>, function: &Function, info: &FunctionInfo) -> Cost {
         let shape = |handle: Handle<Expression>| match *info[handle].ty.inner_with(&self.module.types) {
             TypeInner::Scalar(scalar) => (1, scalar.kind),
             TypeInner::Vector { size, scalar } => (size as usize, scalar.kind),
@@ -166,9 +166,9 @@ impl Counted {
             _ => count = 0,
         }
         match kind_of_operands {
-            _ if is_special => Work { special: count, ..Work::default() },
-            ScalarKind::Float => Work { float: count, ..Work::default() },
-            _ => Work { integer: count, ..Work::default() },
+            _ if is_special => Cost { special: count, ..Cost::default() },
+            ScalarKind::Float => Cost { float: count, ..Cost::default() },
+            _ => Cost { integer: count, ..Cost::default() },
         }
     }
 }

@@ -22,7 +22,7 @@ use weekender::kernel::Node;
 use weekender::prepared::PreparedScene;
 use weekender::prepared::cwbvh::{CwBvhNode, Cwbvh};
 use weekender::prepared::hierarchy::Hierarchy;
-use weekender::progressive::{Plan, Progressive, Work};
+use weekender::progressive::{Plan, Progressive, RenderRequest};
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, RenderSettings, Renderer};
 use weekender::render_gpu::{GpuOptions, GpuRenderer, HierarchyKind};
@@ -264,7 +264,7 @@ fn first(arguments: &[String]) -> anyhow::Result<()> {
     ] {
         let begin = Instant::now();
         let backend = BackendChoice::Gpu(options_of(rest)?);
-        progressive.start(Work::new(job, backend, Plan::endless()));
+        progressive.start(RenderRequest::new(job, backend, Plan::endless()));
         let run = progressive.status().run;
         progressive.ask_for_picture();
         while progressive.newest_picture().is_none_or(|picture| picture.run != run) {

@@ -7,7 +7,7 @@ use super::tracer::Tracer;
 use crate::describe::describe;
 use crate::files::replace_file;
 use crate::output::{OutputFormat, write_image};
-use crate::progressive::Reference;
+use crate::progressive::ReferenceMeans;
 use crate::render::RenderJob;
 use crate::saved::{self, OpenError, Opened, SavedFilm};
 use eframe::egui::Context;
@@ -34,7 +34,7 @@ pub struct Files {
     /// Films to resume.
     pub resumed: Answers<Result<Resumed, String>>,
     /// Films to compare with.
-    pub references: Answers<Result<(PathBuf, Reference), String>>,
+    pub references: Answers<Result<(PathBuf, ReferenceMeans), String>>,
 }
 
 impl Files {
@@ -89,7 +89,7 @@ impl Files {
     pub fn load_reference(&self, context: &Context, path: PathBuf) {
         read(&self.references, context, move || {
             let (_, read) = saved::open_film(&path)?;
-            Ok((path, Reference::of(&read.film)))
+            Ok((path, ReferenceMeans::of(&read.film)))
         });
     }
 }

@@ -203,7 +203,7 @@ impl Order {
         slot: &Slot,
         context: &Context,
     ) -> bool {
-        let isa = Isa::available().into_iter().max().unwrap_or(Isa::Baseline);
+        let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
         let earlier = recorder.take();
         let paths = recorder.insert(PathRecorder::new(job, isa, earlier));
         let mut image = LayerImage::new(self.layer, job);

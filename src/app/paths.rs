@@ -67,7 +67,7 @@ impl Paths {
         self.number += 1;
         let (number, count, document) = (self.number, self.count, document.clone());
         let record = move || {
-            let isa = Isa::available().into_iter().max().unwrap_or(Isa::Baseline);
+            let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
             let recorder = PathRecorder::new(&job, isa, None);
             let records = (0..count).map(|sample| recorder.record(pixel, sample)).collect();
             Listed { number, pixel, document, records }

@@ -35,7 +35,7 @@ impl Window {
             Command::Open => self.ask_path(Purpose::Open),
             Command::Save(format) => self.ask_path(Purpose::Save(format)),
             Command::SaveScene => self.ask_path(Purpose::SaveScene),
-            Command::LoadReference => self.ask_path(Purpose::Reference),
+            Command::LoadReference => self.ask_path(Purpose::ReferenceFilm),
             Command::SavePlot => self.ask_path(Purpose::SavePlot),
             Command::CopyCommand => self.copy_command(context),
             Command::CopyPlot => {
@@ -176,7 +176,7 @@ impl Window {
             Purpose::SavePlot => {
                 self.files.save_text(context, &path, &plot::csv(&self.main.status().history));
             }
-            Purpose::Reference => self.files.load_reference(context, path),
+            Purpose::ReferenceFilm => self.files.load_reference(context, path),
         }
     }
 

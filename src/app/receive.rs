@@ -7,7 +7,7 @@ use super::model::document::Document;
 use super::model::origin::{Origin, Source};
 use super::model::show::Show;
 use super::window::Window;
-use crate::progressive::{Reference, Stop};
+use crate::progressive::{ReferenceMeans, Stop};
 use crate::saved::{Content, Opened};
 use eframe::egui;
 use std::path::PathBuf;
@@ -81,7 +81,7 @@ impl Window {
         }
     }
 
-    fn take_reference(&mut self, path: PathBuf, reference: Reference) {
+    fn take_reference(&mut self, path: PathBuf, reference: ReferenceMeans) {
         let settings = self.document().settings;
         if (reference.width, reference.height) == (settings.width, settings.height) {
             self.model.view.reference = Some(Arc::new(reference));

@@ -6,7 +6,7 @@ use super::model::document::Document;
 use super::model::origin::Origin;
 use super::model::view::{Mode, Other, ViewState, differ_in_camera};
 use super::tracer::{Shown, Tracer, Want};
-use crate::progressive::{Reference, View};
+use crate::progressive::{ReferenceMeans, View};
 use crate::scene::Camera;
 use eframe::egui::Context;
 use std::sync::{Arc, Weak};
@@ -18,8 +18,8 @@ pub struct Second {
     tracer: Option<Tracer>,
     of: Option<(Other, Arc<Origin>)>,
     /// Its film when it was last read.
-    film: Option<Arc<Reference>>,
-    films: Answers<(Arc<Origin>, Reference)>,
+    film: Option<Arc<ReferenceMeans>>,
+    films: Answers<(Arc<Origin>, ReferenceMeans)>,
     /// Can be upgraded as long as a request for the film is open.
     waiting: Weak<()>,
 }
@@ -31,7 +31,7 @@ impl Second {
     }
 
     /// Its film, while the difference is shown.
-    pub fn film(&self) -> Option<&Arc<Reference>> {
+    pub fn film(&self) -> Option<&Arc<ReferenceMeans>> {
         self.film.as_ref()
     }
 
@@ -101,7 +101,7 @@ impl Second {
             self.waiting = Arc::downgrade(&question);
             let (answer, origin) = (self.films.answer(context), Arc::clone(&document.origin));
             tracer.inspect(move |film| {
-                let film = Reference::of(film);
+                let film = ReferenceMeans::of(film);
                 drop(question);
                 answer.give((origin, film));
             });
@@ -155,7 +155,7 @@ fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stages::{Stage, Surface};
+    use crate::stages::{Stage, SurfaceRule};
     use crate::stress::shown_cases;
 
     #[test]
@@ -196,7 +196,7 @@ mod tests {
         for case in shown_cases() {
             let mine = Document::new(Origin::of_case(case));
             let theirs = second.document_of(Other::ByTheBook(Arc::clone(&mine.origin)), &mine);
-            assert_eq!(theirs.rules().surface, Surface::Book, "{}", case.id);
+            assert_eq!(theirs.rules().surface, SurfaceRule::Book, "{}", case.id);
             assert_eq!(
                 (theirs.camera, theirs.settings, theirs.stop),
                 (mine.camera, mine.settings, mine.stop)

@@ -4,7 +4,7 @@ use super::model::document::Document;
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::progressive::{Phase, Plan, Progressive, Status, Stop, View, Work};
+use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop, View};
 use eframe::egui;
 use std::io;
 use std::sync::Arc;
@@ -259,8 +259,8 @@ impl Tracer {
     fn start(&mut self, want: &Want<'_>, divisor: u32, film: Option<Film>) -> Result<(), String> {
         let job = want.document.job(divisor).map_err(|error| error.to_string())?;
         let plan = want.plan(want.is_paused);
-        let work = Work { film, ..Work::new(job, want.backend.clone(), plan.clone()) };
-        self.progressive.start(work);
+        let request = RenderRequest { film, ..RenderRequest::new(job, want.backend.clone(), plan.clone()) };
+        self.progressive.start(request);
         self.progressive.ask_for_picture();
         self.status = Arc::new(self.progressive.status());
         self.started = Some(Started {

@@ -53,7 +53,7 @@ impl BackendChoice {
             _ => None,
         });
         let best = CpuOptions { isa: None, lanes: None, panics_after: None, ..given.unwrap_or_default() };
-        let plainest = CpuOptions { isa: Some(Isa::Baseline), lanes: Some(1), ..best };
+        let plainest = CpuOptions { isa: Some(Isa::Portable), lanes: Some(1), ..best };
         let runs_alike = |a: &BackendChoice, b: &BackendChoice| match (a, b) {
             (BackendChoice::Cpu(a), BackendChoice::Cpu(b)) => (a.isa, a.lanes) == (b.isa, b.lanes),
             (a, b) => a.name() == b.name(),
@@ -67,7 +67,7 @@ impl BackendChoice {
     /// Its name in a sentence.
     pub fn words(&self) -> &'static str {
         match self {
-            BackendChoice::Cpu(CpuOptions { isa: Some(Isa::Baseline), lanes: Some(1), .. }) => {
+            BackendChoice::Cpu(CpuOptions { isa: Some(Isa::Portable), lanes: Some(1), .. }) => {
                 "the CPU's scalar code"
             }
             BackendChoice::Cpu(_) => "the CPU",
@@ -78,7 +78,7 @@ impl BackendChoice {
     }
 
     /// Names of single backends, for comparisons: see [`BackendChoice::named`].
-    pub const NAMES: [&str; 5] = ["cpu", "scalar", "baseline", "reference", "gpu"];
+    pub const NAMES: [&str; 5] = ["cpu", "scalar", "portable", "reference", "gpu"];
 
     /// The backend with one of [`BackendChoice::NAMES`]: the CPU's widest packets, one lane at the best level, one
     /// lane without fused multiply and add, `f64`, or the GPU, where `adapter` chooses among several.
@@ -86,8 +86,8 @@ impl BackendChoice {
         Some(match name {
             "cpu" => BackendChoice::Cpu(CpuOptions::default()),
             "scalar" => BackendChoice::Cpu(CpuOptions { lanes: Some(1), ..CpuOptions::default() }),
-            "baseline" => {
-                let (isa, lanes) = (Some(Isa::Baseline), Some(1));
+            "portable" => {
+                let (isa, lanes) = (Some(Isa::Portable), Some(1));
                 BackendChoice::Cpu(CpuOptions { isa, lanes, ..CpuOptions::default() })
             }
             "reference" => BackendChoice::Reference { threads: None },

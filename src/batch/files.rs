@@ -4,7 +4,7 @@ use super::rescue;
 use crate::cli::RenderOptions;
 use crate::describe::describe;
 use crate::files::FileIdentity;
-use crate::film::{Film, Saved, SharedFile};
+use crate::film::{Film, SaveOutcome, SharedFile};
 use crate::output::{OutputFormat, write_image};
 use crate::progressive::Status;
 use crate::saved::same_job;
@@ -86,7 +86,7 @@ pub(super) fn write(
         let (Some(path), Some(place)) = (path, place) else { continue };
         say(path);
         match place.lock().save(film, &description, &same_job) {
-            Ok(Saved { path, note, is_elsewhere }) => {
+            Ok(SaveOutcome { path, note, is_elsewhere }) => {
                 is_film_kept = true;
                 written.files.push(path);
                 match note {

@@ -180,7 +180,7 @@ mod tests {
     use crate::batch::files::Places;
     use crate::batch::tests::options;
     use crate::film::{PixelSum, checkpoint};
-    use crate::progressive::{Contribution, Plan, Work};
+    use crate::progressive::{Contribution, Plan, RenderRequest};
     use crate::render::BackendInfo;
 
     #[test]
@@ -192,7 +192,7 @@ mod tests {
         let mut keeper = Keeper::new(&render, place, 0, Some(0.0));
         let mut progressive = Progressive::spawn().unwrap();
         let backend = crate::backends::BackendChoice::Cpu(crate::render_cpu::CpuOptions::default());
-        progressive.start(Work::new(render.job.clone(), backend, Plan::endless()));
+        progressive.start(RenderRequest::new(render.job.clone(), backend, Plan::endless()));
         let mut seen = Vec::new();
         let begin = Instant::now();
         while seen.len() < 3 && begin.elapsed() < Duration::from_secs(60) {

@@ -18,7 +18,7 @@ use crate::failure::{Failure, INTERRUPTED};
 use crate::files::{check_replaceable, check_writable, write_text};
 use crate::film::Film;
 use crate::interrupt::Interrupt;
-use crate::progressive::{Phase, Progressive, Status, Work};
+use crate::progressive::{Phase, Progressive, RenderRequest, Status};
 use crate::recipe::{Recipe, file};
 use crate::render::Renderer;
 use crate::saved::{self, SavedFilm};
@@ -30,7 +30,7 @@ use progress::Progress;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use summary::{Report, Summary};
+use summary::{Summary, SummaryJson};
 
 /// Renders and writes everything that the options ask for.
 ///
@@ -150,7 +150,7 @@ impl Begun<'_> {
         let keeper = |place: &SharedPlace| Keeper::new(render, place.clone(), held_before, seconds_before);
         let mut keeper = self.places.checkpoint.as_ref().map(keeper);
         let mut progress = Progress::new(self.options.progress, render);
-        progressive.start(Work {
+        progressive.start(RenderRequest {
             job: render.job.clone(),
             backend: self.options.backend.clone(),
             renderer,
@@ -254,10 +254,10 @@ fn outcome(
 fn write_figures(options: &BatchOptions, mut summaries: Vec<Summary>) -> anyhow::Result<()> {
     let Some(target) = &options.json else { return Ok(()) };
     match (&options.directory, summaries.pop()) {
-        (None, Some(summary)) => write_json(&Report::of_one(summary), target),
+        (None, Some(summary)) => write_json(&SummaryJson::of_one(summary), target),
         (_, last) => {
             summaries.extend(last);
-            write_json(&Report::of_all(summaries), target)
+            write_json(&SummaryJson::of_all(summaries), target)
         }
     }
 }

@@ -15,7 +15,7 @@ const SCHEMA: u32 = 1;
 
 /// The JSON of one picture, or of all stages.
 #[derive(Serialize)]
-pub(super) struct Report {
+pub(super) struct SummaryJson {
     schema: u32,
     version: &'static str,
     #[serde(flatten)]
@@ -29,17 +29,17 @@ enum Content {
     All { stages: Vec<Summary> },
 }
 
-impl Report {
+impl SummaryJson {
     pub(super) fn of_one(summary: Summary) -> Self {
-        Report::new(Content::One(Box::new(summary)))
+        SummaryJson::new(Content::One(Box::new(summary)))
     }
 
     pub(super) fn of_all(stages: Vec<Summary>) -> Self {
-        Report::new(Content::All { stages })
+        SummaryJson::new(Content::All { stages })
     }
 
     fn new(content: Content) -> Self {
-        Report { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), content }
+        SummaryJson { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), content }
     }
 }
 

@@ -46,7 +46,7 @@ pub fn candidates(
             found.push(Candidate::cpu(*isa, *lanes, 1, kind, job));
         }
     }
-    let best = options.levels.last().copied().unwrap_or(Isa::Baseline);
+    let best = options.levels.last().copied().unwrap_or(Isa::Portable);
     if options.threads > 1 {
         found.push(Candidate::cpu(best, 1, options.threads, Kind::Threads, job));
         if best.native_lanes() > 1 {
@@ -89,7 +89,7 @@ impl Candidate {
             Ok(Runner::Baseline { baseline: Rc::clone(baseline), scene })
         });
         let name = match baseline {
-            Ok(baseline) => format!("C89, {} -O2, 1 thread", baseline.compiler),
+            Ok(baseline) => baseline.about(),
             Err(_) => "C89, 1 thread".to_owned(),
         };
         Candidate::new(name, Kind::Baseline, 1, 1, made)

@@ -12,7 +12,7 @@ pub const SPREAD_LIMIT: f64 = 0.1;
 
 /// Everything that was measured.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct BenchFigures {
     /// See [`SCHEMA`].
     pub schema: u32,
     /// The machine on which it was measured.

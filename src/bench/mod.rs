@@ -16,7 +16,7 @@ use crate::files::check_writable;
 use crate::interrupt::Interrupt;
 use crate::terminal;
 use candidate::{Cancelled, Candidate, candidates};
-use figures::{Report, SCHEMA, SPREAD_LIMIT, SceneFigures};
+use figures::{BenchFigures, SCHEMA, SPREAD_LIMIT, SceneFigures};
 use machine::{LOAD_LIMIT, Machine};
 use progress::Progress;
 use std::process::ExitCode;
@@ -37,7 +37,7 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     }
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let cancel = interrupt.flag();
-    let mut report = Report {
+    let mut figures = BenchFigures {
         schema: SCHEMA,
         machine: Machine::look(),
         scenes: Vec::new(),
@@ -46,21 +46,21 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
         interrupted: false,
     };
     let measured = match options.scale.as_slice() {
-        [] => scenes(options, &mut report, cancel),
-        counts => fields(options, counts, &mut report, cancel),
+        [] => scenes(options, &mut figures, cancel),
+        counts => fields(options, counts, &mut figures, cancel),
     };
-    report.interrupted = interrupt.is_set();
-    report.warnings = warnings(&report);
-    let written = write(options, &report);
+    figures.interrupted = interrupt.is_set();
+    figures.warnings = warnings(&figures);
+    let written = write(options, &figures);
     measured.and(written).map_err(Failure::Run)?;
-    Ok(if report.interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+    Ok(if figures.interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
 }
 
-fn scenes(options: &BenchOptions, report: &mut Report, cancel: &AtomicBool) -> anyhow::Result<()> {
+fn scenes(options: &BenchOptions, figures: &mut BenchFigures, cancel: &AtomicBool) -> anyhow::Result<()> {
     let baseline = Baseline::compile().map(Rc::new);
     for scene in &options.scenes {
-        let (figures, outcome) = measure_scene(options, scene, &baseline, cancel);
-        report.scenes.push(figures);
+        let (scene_figures, outcome) = measure_scene(options, scene, &baseline, cancel);
+        figures.scenes.push(scene_figures);
         if outcome.is_err() {
             break;
         }
@@ -95,7 +95,7 @@ fn measure_scene(
     let outcome = turns();
     progress.clear();
     let settings = job.settings();
-    let mut figures = SceneFigures {
+    let mut scene_figures = SceneFigures {
         scene: scene.name.clone(),
         width: settings.width,
         height: settings.height,
@@ -104,21 +104,21 @@ fn measure_scene(
         spheres: job.scene().spheres.len(),
         rows: candidates.into_iter().map(|Candidate { row, .. }| row).collect(),
     };
-    figures.sum_up();
-    (figures, outcome)
+    scene_figures.sum_up();
+    (scene_figures, outcome)
 }
 
 fn fields(
     options: &BenchOptions,
     counts: &[u64],
-    report: &mut Report,
+    figures: &mut BenchFigures,
     cancel: &AtomicBool,
 ) -> anyhow::Result<()> {
     let mut progress = Progress::new(options.progress, (counts.len() * options.runs) as u64);
     let mut outcome = Ok(());
     for count in counts {
         match scale::measure(options, *count, &mut progress, cancel) {
-            Ok(Some(figures)) => report.scale.push(figures),
+            Ok(Some(field)) => figures.scale.push(field),
             Ok(None) => break,
             Err(error) => {
                 outcome = Err(error);
@@ -131,21 +131,23 @@ fn fields(
 }
 
 /// Reasons to doubt the figures.
-fn warnings(report: &Report) -> Vec<String> {
+fn warnings(figures: &BenchFigures) -> Vec<String> {
     let mut warnings = Vec::new();
-    if let Some(load) = report.machine.load_at_start.filter(|load| *load > LOAD_LIMIT) {
+    if let Some(load) = figures.machine.load_at_start.filter(|load| *load > LOAD_LIMIT) {
         warnings.push(format!(
             "the machine was busy: load {load:.2} at the start, above {LOAD_LIMIT}; close other programs and measure again"
         ));
     }
-    let rows = report.scenes.iter().flat_map(|scene| {
+    let rows = figures.scenes.iter().flat_map(|scene| {
         scene
             .rows
             .iter()
             .filter_map(|row| Some((format!("{}, {}", scene.scene, row.name), row.paths_per_second?)))
     });
-    let fields =
-        report.scale.iter().filter_map(|row| Some((format!("field:{}", row.spheres), row.paths_per_second?)));
+    let fields = figures
+        .scale
+        .iter()
+        .filter_map(|row| Some((format!("field:{}", row.spheres), row.paths_per_second?)));
     let spreads: Vec<(String, f64)> =
         rows.chain(fields).map(|(name, spread)| (name, spread.share())).collect();
     let wide = spreads.iter().filter(|(_, share)| *share > SPREAD_LIMIT);
@@ -161,15 +163,15 @@ fn warnings(report: &Report) -> Vec<String> {
     warnings
 }
 
-fn write(options: &BenchOptions, report: &Report) -> anyhow::Result<()> {
-    let text = table::text(report);
+fn write(options: &BenchOptions, figures: &BenchFigures) -> anyhow::Result<()> {
+    let text = table::text(figures);
     // The files are written even if printing failed.
     let printed = terminal::print_beside(options.json.as_ref(), &text);
     if let Some(target) = &options.json {
-        terminal::write_json(report, target)?;
+        terminal::write_json(figures, target)?;
     }
     if let Some(path) = &options.plot {
-        chart::save(path, &plot::figure(report))?;
+        chart::save(path, &plot::figure(figures))?;
     }
     printed
 }

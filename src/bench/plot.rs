@@ -1,6 +1,6 @@
 //! Charts of the measurements.
 
-use super::figures::{Kind, Report, ScaleFigures, SceneFigures, Spread};
+use super::figures::{BenchFigures, Kind, ScaleFigures, SceneFigures, Spread};
 use crate::chart::{Axis, Bar, BarChart, Corner, Figure, LineChart, Look, Panel, Point, Scale, Series};
 
 /// Height of a bar's row and of everything around the rows, points.
@@ -8,17 +8,17 @@ const ROW_HEIGHT: u32 = 36;
 const FRAME_HEIGHT: u32 = 100;
 
 /// A chart of the rows of all scenes or, if they were measured, of the fields.
-pub fn figure(report: &Report) -> Figure {
-    if report.scale.is_empty() { bars(report) } else { scale(report) }
+pub fn figure(figures: &BenchFigures) -> Figure {
+    if figures.scale.is_empty() { bars(figures) } else { scale(figures) }
 }
 
-fn bars(report: &Report) -> Figure {
+fn bars(figures: &BenchFigures) -> Figure {
     let rows = |scene: &SceneFigures| scene.rows.iter().filter(|row| row.paths_per_second.is_some()).count();
-    let most = report.scenes.iter().map(rows).max().unwrap_or(0) as u32;
-    let panels: Vec<Panel> = report.scenes.iter().map(|scene| Panel::Bars(scene_bars(scene))).collect();
+    let most = figures.scenes.iter().map(rows).max().unwrap_or(0) as u32;
+    let panels: Vec<Panel> = figures.scenes.iter().map(|scene| Panel::Bars(scene_bars(scene))).collect();
     Figure {
         title: "Paths per second".to_owned(),
-        about: report.machine.words(),
+        about: figures.machine.words(),
         size: [1000, 64 + panels.len().max(1) as u32 * (FRAME_HEIGHT + ROW_HEIGHT * most)],
         columns: 1,
         panels,
@@ -49,8 +49,8 @@ fn scene_bars(scene: &SceneFigures) -> BarChart {
     }
 }
 
-fn scale(report: &Report) -> Figure {
-    let rows = &report.scale;
+fn scale(figures: &BenchFigures) -> Figure {
+    let rows = &figures.scale;
     let series = |name: &str, value: &dyn Fn(&ScaleFigures) -> Option<f64>| {
         let point = |row| Some(Point { x: row_count(row), y: value(row)?, spread: None });
         Series {
@@ -89,7 +89,7 @@ fn scale(report: &Report) -> Figure {
     };
     Figure {
         title: "Fields of a thousand or more spheres".to_owned(),
-        about: report.machine.words(),
+        about: figures.machine.words(),
         size: [1350, 480],
         columns: 3,
         panels: vec![

@@ -38,7 +38,7 @@ pub fn measure(
     let table_bytes_per_sphere = tables.bytes() as f64 / spheres;
     drop(tables);
 
-    let isa = options.levels.last().copied().unwrap_or(Isa::Baseline);
+    let isa = options.levels.last().copied().unwrap_or(Isa::Portable);
     let mut candidate = Candidate::cpu(isa, isa.native_lanes(), options.threads, Kind::Threads, &job);
     progress.begin(&format!("{name}: tracing"));
     if run(options, &mut candidate, &job, samples, progress, cancel).is_err() {

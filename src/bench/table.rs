@@ -1,29 +1,29 @@
 //! The measurements as text of at most 100 columns.
 
-use super::figures::{Report, Row, ScaleFigures, SceneFigures};
+use super::figures::{BenchFigures, Row, ScaleFigures, SceneFigures};
 use super::machine::counted;
 
 /// Longest name of a row.
 const NAME_WIDTH: usize = 34;
 
 /// All tables and warnings as text.
-pub fn text(report: &Report) -> String {
-    let mut lines = vec![report.machine.words()];
-    for scene in &report.scenes {
+pub fn text(figures: &BenchFigures) -> String {
+    let mut lines = vec![figures.machine.words()];
+    for scene in &figures.scenes {
         lines.push(String::new());
         lines.extend(scene_lines(scene));
     }
-    if !report.scale.is_empty() {
+    if !figures.scale.is_empty() {
         lines.push(String::new());
-        lines.extend(scale_lines(&report.scale));
+        lines.extend(scale_lines(&figures.scale));
     }
-    if report.interrupted {
+    if figures.interrupted {
         lines.push(String::new());
         lines.push("Interrupted: only the runs finished so far are shown.".to_owned());
     }
-    if !report.warnings.is_empty() {
+    if !figures.warnings.is_empty() {
         lines.push(String::new());
-        lines.extend(report.warnings.iter().map(|warning| format!("warning: {warning}")));
+        lines.extend(figures.warnings.iter().map(|warning| format!("warning: {warning}")));
     }
     lines.push(String::new());
     lines.join("\n")

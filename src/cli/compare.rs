@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{self, RawPicture};
-use super::sources::{self, Source};
+use super::sources::{self, ChosenRecipe};
 use super::values::JsonTarget;
 use crate::backends::BackendChoice;
 use crate::output::Encoding;
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 pub(super) struct RawCompare {
     /// A film or picture (.exr, .pfm, .png, .ppm) of any program, or the backend that renders it now: cpu, scalar,
-    /// baseline (multiply and add rounded separately), reference (f64) or gpu
+    /// portable (multiply and add rounded separately), reference (f64) or gpu
     #[arg(value_name = "FIRST")]
     pub first: String,
     /// Like the first; compared with a film, a backend renders the same samples, with a picture, the same size
@@ -135,8 +135,8 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
         CompareSide::File(path) => sources::find(&raw.picture, Some(path)).ok(),
         CompareSide::Backend { .. } => None,
     });
-    let Source { mut recipe, .. } = match told {
-        Some(source) => source,
+    let ChosenRecipe { mut recipe, .. } = match told {
+        Some(chosen) => chosen,
         None => sources::find(&raw.picture, None)?,
     };
     raw::change(&mut recipe, &raw.picture, None);

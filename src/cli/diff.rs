@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{self, RawPicture, RawSwitch};
-use super::sources::{self, Source};
+use super::sources::{self, ChosenRecipe};
 use super::values::{JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance};
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::{CpuOptions, Isa};
@@ -27,7 +27,7 @@ pub(super) struct RawDiff {
           num_args = 0..=1, default_missing_value = "4", help_heading = "Path")]
     pub find: Option<u64>,
 
-    /// The two backends to compare: cpu (at the level --isa), baseline (multiply and add rounded separately),
+    /// The two backends to compare: cpu (at the level --isa), portable (multiply and add rounded separately),
     /// reference (f64) or gpu
     #[arg(long, value_name = "A,B", value_parser = parse_sides, default_value = "cpu,gpu",
           help_heading = "Comparison")]
@@ -39,7 +39,7 @@ pub(super) struct RawDiff {
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
     #[arg(long, value_name = "SUBSTRING", help_heading = "Comparison")]
     pub adapter: Option<String>,
-    /// Instruction level of the side cpu: auto, baseline, sse4.2, avx2, avx512, neon
+    /// Instruction level of the side cpu: auto, portable, sse4.2, avx2, avx512, neon
     #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
           help_heading = "Comparison")]
     pub isa: Level,
@@ -126,7 +126,7 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
         .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
         .write_json(json.as_ref())
         .check(&[])?;
-    let Source { mut recipe, stage } = sources::find(&raw.picture, None)?;
+    let ChosenRecipe { mut recipe, stage } = sources::find(&raw.picture, None)?;
     raw::change(&mut recipe, &raw.picture, raw.estimate_error);
     if raw.find.is_some() {
         sources::narrow(&mut recipe, &raw.picture, FIND_WIDTH);
@@ -144,8 +144,8 @@ pub(super) fn diff(raw: RawDiff) -> Result<DiffOptions, CliError> {
     };
     let sides = raw.sides.map(|side| match side {
         RawSide::Cpu => SideChoice::Cpu(CpuOptions { isa: raw.isa.0, ..CpuOptions::default() }),
-        RawSide::Baseline => {
-            SideChoice::Cpu(CpuOptions { isa: Some(Isa::Baseline), ..CpuOptions::default() })
+        RawSide::Portable => {
+            SideChoice::Cpu(CpuOptions { isa: Some(Isa::Portable), ..CpuOptions::default() })
         }
         RawSide::Reference => SideChoice::Reference,
         RawSide::Gpu => SideChoice::Gpu(GpuOptions::of_adapter(raw.adapter.as_deref())),

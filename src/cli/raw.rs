@@ -81,7 +81,7 @@ pub(super) struct RawRender {
     #[arg(long, value_name = "LANES", value_parser = parse_simd, default_value = "auto",
           help_heading = "Device")]
     pub simd: Simd,
-    /// Instruction level of the CPU, for tests and benchmarks: auto, baseline, sse4.2, avx2, avx512, neon
+    /// Instruction level of the CPU, for tests and benchmarks: auto, portable, sse4.2, avx2, avx512, neon
     #[arg(long, value_name = "LEVEL", value_parser = parse_isa, default_value = "auto",
           help_heading = "Device")]
     pub isa: Level,

@@ -4,7 +4,7 @@ use super::Request;
 use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{self, DrawWith, ProgressChoice, RawDevice, RawRender};
-use super::sources::{self, Source};
+use super::sources::{self, ChosenRecipe};
 use super::values::{JsonTarget, Level, Simd};
 use crate::backends::BackendChoice;
 use crate::output::OutputFormat;
@@ -105,15 +105,15 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
         let renders = Stage::ALL
             .iter()
             .map(|stage| {
-                let source = Source { recipe: stage.recipe(), stage: Some(stage) };
-                render(source, &raw, directory.join(format!("{}.png", stage.id)))
+                let chosen = ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) };
+                render(chosen, &raw, directory.join(format!("{}.png", stage.id)))
             })
             .collect::<Result<_, _>>()?;
         (renders, Some(directory))
     } else {
-        let source = sources::find(&raw.picture, raw.resume.as_deref())?;
-        let out = raw.out.clone().unwrap_or_else(|| default_name(&source));
-        (vec![render(source, &raw, out)?], None)
+        let chosen = sources::find(&raw.picture, raw.resume.as_deref())?;
+        let out = raw.out.clone().unwrap_or_else(|| default_name(&chosen));
+        (vec![render(chosen, &raw, out)?], None)
     };
     let save_scene = match (&raw.save_scene, renders.as_slice()) {
         (Some(path), [only]) => Some(SaveSceneOptions { recipe: only.recipe.clone(), path: path.clone() }),
@@ -154,11 +154,11 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
             return Err(CliError::Needs { flag, other: "--batch", reason });
         }
     }
-    let mut source = sources::find(&raw.picture, raw.resume.as_deref())?;
-    let unchanged = source.recipe.clone();
-    raw::change(&mut source.recipe, &raw.picture, raw.estimate_error);
-    source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
-    let job = source.recipe.job()?;
+    let mut chosen = sources::find(&raw.picture, raw.resume.as_deref())?;
+    let unchanged = chosen.recipe.clone();
+    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
+    chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
+    let job = chosen.recipe.job()?;
     let ends = raw.samples.is_some() || raw.time_limit.is_some() || raw.noise_target.is_some();
     let file = sources::scene_file(raw.picture.scene.as_deref());
     Paths::default()
@@ -170,10 +170,10 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         saved::check_resume(film, &job)?;
     }
     Ok(WindowOptions {
-        stop: ends.then(|| plan(raw, &source.recipe).stop),
-        recipe: source.recipe,
+        stop: ends.then(|| plan(raw, &chosen.recipe).stop),
+        recipe: chosen.recipe,
         unchanged,
-        stage: source.stage,
+        stage: chosen.stage,
         file: file.map(PathBuf::from),
         backend,
         is_device_given: raw.device != RawDevice::Auto
@@ -186,11 +186,11 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
     })
 }
 
-fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
-    raw::change(&mut source.recipe, &raw.picture, raw.estimate_error);
-    source.recipe.samples_per_pixel = raw.samples.unwrap_or(source.recipe.samples_per_pixel);
-    let job = source.recipe.job()?;
-    if raw.noise_target.is_some() && !source.recipe.settings.estimate_error {
+fn render(mut chosen: ChosenRecipe, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
+    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
+    chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
+    let job = chosen.recipe.job()?;
+    if raw.noise_target.is_some() && !chosen.recipe.settings.estimate_error {
         return Err(CliError::Needs {
             flag: "--noise-target",
             other: "--estimate-error on",
@@ -203,10 +203,10 @@ fn render(mut source: Source, raw: &RawRender, out: PathBuf) -> Result<RenderOpt
         return Err(CliError::Needs { flag: "--every", other: "--checkpoint FILE.exr", reason });
     }
     Ok(RenderOptions {
-        plan: plan(raw, &source.recipe),
-        recipe: source.recipe,
+        plan: plan(raw, &chosen.recipe),
+        recipe: chosen.recipe,
         job,
-        stage: source.stage,
+        stage: chosen.stage,
         out,
         checkpoint: raw.checkpoint.clone(),
         every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
@@ -312,7 +312,7 @@ fn directory_of_all(raw: &RawRender) -> Result<PathBuf, CliError> {
 }
 
 /// `SCENE.png` in the current directory.
-fn default_name(source: &Source) -> PathBuf {
-    let name = source.stage.map_or(source.recipe.name.as_str(), |stage| stage.id);
+fn default_name(chosen: &ChosenRecipe) -> PathBuf {
+    let name = chosen.stage.map_or(chosen.recipe.name.as_str(), |stage| stage.id);
     PathBuf::from(format!("{}.png", plain_name(name)))
 }

@@ -34,7 +34,7 @@ pub(super) struct RawReport {
         help_heading = "What is compared"
     )]
     pub scenes: Vec<String>,
-    /// Backends: cpu (the widest packets), scalar (one lane), baseline, reference (f64), gpu,
+    /// Backends: cpu (the widest packets), scalar (one lane), portable, reference (f64), gpu,
     /// c89 (the plain C program) [default: cpu,scalar, gpu if there is one, c89 if there is a C compiler]
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', help_heading = "What is compared")]
     pub backends: Vec<String>,

@@ -12,21 +12,21 @@ const DEFAULT_SCENE: &str = "three-spheres";
 
 /// A recipe and, if it comes from one, its stage.
 #[derive(Clone, Debug)]
-pub(super) struct Source {
+pub(super) struct ChosenRecipe {
     pub recipe: Recipe,
     pub stage: Option<&'static Stage>,
 }
 
 /// The source that the flags name, before the changes of other flags.
-pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<Source, CliError> {
+pub(super) fn find(raw: &RawPicture, resume: Option<&Path>) -> Result<ChosenRecipe, CliError> {
     match (&raw.stage, &raw.scene, resume) {
         (Some(id), _, _) => {
             let stage = Stage::find(id)?;
-            Ok(Source { recipe: stage.recipe(), stage: Some(stage) })
+            Ok(ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) })
         }
-        (None, Some(name), _) => Ok(Source { recipe: scene(name)?, stage: None }),
+        (None, Some(name), _) => Ok(ChosenRecipe { recipe: scene(name)?, stage: None }),
         (None, None, Some(film)) => of_film(film),
-        (None, None, None) => Ok(Source { recipe: scene(DEFAULT_SCENE)?, stage: None }),
+        (None, None, None) => Ok(ChosenRecipe { recipe: scene(DEFAULT_SCENE)?, stage: None }),
     }
 }
 
@@ -78,7 +78,7 @@ pub(super) fn narrow(recipe: &mut Recipe, raw: &RawPicture, width: u32) {
     }
 }
 
-fn of_film(path: &Path) -> Result<Source, CliError> {
+fn of_film(path: &Path) -> Result<ChosenRecipe, CliError> {
     let saved = Saved::describe(path)?;
-    Ok(Source { recipe: saved.recipe()?, stage: saved.stage() })
+    Ok(ChosenRecipe { recipe: saved.recipe()?, stage: saved.stage() })
 }

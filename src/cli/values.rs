@@ -44,10 +44,16 @@ pub(super) fn parse_isa(text: &str) -> Result<Level, String> {
     if text == "auto" {
         return Ok(Level(None));
     }
-    Isa::ALL.into_iter().find(|isa| isa.name() == text).map(|isa| Level(Some(isa))).ok_or_else(|| {
+    level_named(text).map(|isa| Level(Some(isa))).ok_or_else(|| {
         let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
         format!("must be auto or one of {}", names.join(", "))
     })
+}
+
+/// The level of this name; `baseline` is another name of `portable`, which no list shows.
+fn level_named(name: &str) -> Option<Isa> {
+    let name = if name == "baseline" { Isa::Portable.name() } else { name };
+    Isa::ALL.into_iter().find(|isa| isa.name() == name)
 }
 
 /// Instruction levels.
@@ -67,8 +73,7 @@ pub(super) fn parse_levels(text: &str) -> Result<Levels, String> {
         "all" => return Ok(Levels::All),
         _ => {}
     }
-    let level = |name: &str| Isa::ALL.into_iter().find(|isa| isa.name() == name.trim());
-    let named: Option<Vec<Isa>> = text.split(',').map(level).collect();
+    let named: Option<Vec<Isa>> = text.split(',').map(|name| level_named(name.trim())).collect();
     let mut named = named.ok_or_else(|| {
         let names: Vec<&str> = Isa::ALL.into_iter().map(Isa::name).collect();
         format!("must be auto, all, or some of {}, separated by commas", names.join(", "))
@@ -160,7 +165,7 @@ pub(super) fn parse_sample_range(text: &str) -> Result<Range<u64>, String> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RawSide {
     Cpu,
-    Baseline,
+    Portable,
     Reference,
     Gpu,
 }
@@ -168,7 +173,7 @@ pub(super) enum RawSide {
 impl RawSide {
     const ALL: [(&'static str, RawSide); 4] = [
         ("cpu", RawSide::Cpu),
-        ("baseline", RawSide::Baseline),
+        ("portable", RawSide::Portable),
         ("reference", RawSide::Reference),
         ("gpu", RawSide::Gpu),
     ];
@@ -199,6 +204,8 @@ pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
 
+    const PORTABLE: Level = Level(Some(Isa::Portable));
+
     #[test]
     fn values_are_read() {
         assert_eq!(parse_size("800x450"), Ok((800, 450)));
@@ -207,8 +214,9 @@ mod tests {
         assert_eq!(parse_simd("off"), Ok(Simd(Some(1))));
         assert_eq!(parse_simd("16"), Ok(Simd(Some(16))));
         assert_eq!(parse_isa("sse4.2"), Ok(Level(Some(Isa::Sse42))));
+        assert_eq!((parse_isa("portable"), parse_isa("baseline")), (Ok(PORTABLE), Ok(PORTABLE)));
         assert_eq!(parse_pixel("3, 4"), Ok([3, 4]));
-        assert_eq!(parse_sides("baseline,gpu"), Ok([RawSide::Baseline, RawSide::Gpu]));
+        assert_eq!(parse_sides("portable,gpu"), Ok([RawSide::Portable, RawSide::Gpu]));
         assert_eq!(parse_levels("avx2, sse4.2,avx2"), Ok(Levels::Named(vec![Isa::Sse42, Isa::Avx2])));
         assert_eq!(parse_counts("1e3..2e4").as_deref(), Ok(&[1000, 3000, 10_000][..]));
         assert_eq!(parse_counts("7..7").as_deref(), Ok(&[7][..]));
@@ -248,7 +256,7 @@ mod tests {
             assert!(parse_pixel(text).is_err(), "{text}");
         }
         for text in ["", "cpu", "cpu,tpu", "cpu,gpu,reference"] {
-            assert!(parse_sides(text).unwrap_err().contains("baseline"), "{text}");
+            assert!(parse_sides(text).unwrap_err().contains("portable"), "{text}");
         }
         for text in ["", "auto,avx2", "avx2,", "mmx"] {
             assert!(parse_levels(text).unwrap_err().contains("sse4.2"), "{text}");

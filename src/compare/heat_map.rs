@@ -1,21 +1,21 @@
 //! A heat map of the difference between two pictures.
 
+use super::non_finite::differs_in_kind;
 use super::side::Side;
-use super::verdict::differs_in_kind;
 use crate::heat::HeatScale;
 use crate::statistics::blocks::BlockTest;
 use image::{ImageFormat, RgbImage};
 use std::io::{self, Seek, Write};
 
-/// Blocks that are framed.
+/// Number of blocks that are framed.
 const FRAMED: usize = 5;
 
 /// The colour of the frames, which does not occur in the map.
 const FRAME: [u8; 3] = [0, 220, 255];
 
-/// Writes a PNG: each pixel's difference, root of the mean square of its channels, from dark (1e-4) to bright (1),
-/// with frames around the blocks that are farthest off. Pixels that are a number in one picture alone, or
-/// another kind of none, are as bright as any; others that could not be compared are black.
+/// Writes a PNG of each pixel's difference, the root mean square of its channels, from dark (1e-4) to bright (1). Frames
+/// mark the blocks that are farthest off. Pixels that [differ in kind](differs_in_kind) have the brightest colour;
+/// other pixels that could not be compared are black.
 pub(super) fn write(
     a: &Side,
     b: &Side,
@@ -61,7 +61,7 @@ mod tests {
         };
         let black = vec![[0.0; 3]; 48 * 8];
         let mut other = black.clone();
-        // In blocks of 8 columns: those that are farthest off are framed, and their inside is looked at.
+        // Blocks have 8 columns. Those that are farthest off are framed, so the test looks at pixels inside.
         other[3 * 48 + 4] = [0.01, -0.01, 0.01];
         other[3 * 48 + 12] = [0.0, 0.0, 0.01 * 3.0_f64.sqrt()];
         other[3 * 48 + 20] = [1e-4; 3];
@@ -78,7 +78,7 @@ mod tests {
         write(&side(black), &side(other.clone()), &test, &mut png).unwrap();
         let map = image::load_from_memory(png.get_ref()).unwrap().to_rgb8();
         let colours = [4, 12, 20, 28].map(|x| map.get_pixel(x, 3).0);
-        // The middle of the scale, twice, and its dark end.
+        // The middle of the scale twice, and its dark end.
         assert_eq!(colours, [[159, 42, 99], [159, 42, 99], [0, 0, 4], [0, 0, 4]]);
     }
 }

@@ -1,12 +1,17 @@
 //! `weekender compare`: whether two pictures are the same except for noise.
 
 mod heat_map;
+mod non_finite;
+mod paired;
 mod side;
 mod text;
+mod variances;
 mod verdict;
 
+pub use non_finite::NonFinite;
+pub use paired::{PairedSamples, PairedSums};
 pub use side::Side;
-pub use verdict::{Comparison, Evidence, NonFinite, PairedSamples, PairedSums, ROUNDING_BIAS, compare};
+pub use verdict::{Comparison, Evidence, ROUNDING_BIAS, compare};
 
 use crate::cli::{CompareOptions, JsonTarget};
 use crate::failure::Failure;
@@ -16,20 +21,20 @@ use crate::render::RenderSettings;
 use crate::terminal::{print_beside, write_json};
 use anyhow::{Result, bail};
 use serde::Serialize;
-use side::{Opened, Rendering, check_memory, new_film};
+use side::{OpenedSide, Rendering, check_memory, new_film};
 use std::process::ExitCode;
 
-/// Version of the JSON: it grows when a key changes its meaning or goes away.
+/// Version of the JSON. It grows when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
 
-/// Blocks that are named.
+/// Number of blocks that the output names.
 const NAMED_BLOCKS: usize = 5;
 
 #[derive(Serialize)]
-struct Report {
+struct ComparisonJson {
     schema: u32,
     version: &'static str,
-    sides: [ReportedSide; 2],
+    sides: [SideJson; 2],
     width: u32,
     height: u32,
     is_equal: bool,
@@ -48,27 +53,27 @@ struct Report {
     largest_limit: f64,
     left_out: usize,
     non_finite: NonFinite,
-    worst_blocks: Vec<ReportedBlock>,
+    worst_blocks: Vec<BlockJson>,
     paired_samples: Option<PairedSamples>,
     reasons: Vec<String>,
     notes: Vec<String>,
 }
 
 #[derive(Serialize)]
-struct ReportedSide {
+struct SideJson {
     name: String,
     about: String,
 }
 
 #[derive(Serialize)]
-struct ReportedBlock {
+struct BlockJson {
     x: [u32; 2],
     y: [u32; 2],
     z: [f64; 3],
     mean_difference: [f64; 3],
 }
 
-/// Compares two pictures and prints how they differ. The exit code is 0 if the difference is only noise, else 1.
+/// Compares two pictures and prints how they differ. The exit code is 0 if they differ only by noise, else 1.
 ///
 /// # Errors
 /// [`Failure::Input`] if they cannot be compared, because exit code 1 means that they differ.
@@ -88,7 +93,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
     let [a, b] = &sides;
     if (a.width, a.height) != (b.width, b.height) {
         bail!(
-            "{} has {}x{} pixels and {} has {}x{}; render them at one size",
+            "{} has {}x{} pixels and {} has {}x{}; render both at the same size",
             a.name,
             a.width,
             a.height,
@@ -105,26 +110,26 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
         replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
     }
     if let Some(target) = &options.json {
-        write_json(&report(&sides, &comparison), target)?;
+        write_json(&comparison_json(&sides, &comparison), target)?;
     }
     Ok(if comparison.is_equal() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Both sides; where backends render both, compared sample by sample besides.
+/// Both sides. If backends render both, also their comparison sample by sample.
 fn sides(options: &CompareOptions) -> Result<([Side; 2], Option<PairedSamples>)> {
     let [first, second] = &options.sides;
-    let open = |side| Opened::open(side, options.encoding);
+    let open = |side| OpenedSide::open(side, options.encoding);
     Ok(match (open(first)?, open(second)?) {
-        (Opened::Read(a), Opened::Read(b)) => ([*a, *b], None),
-        (Opened::Read(a), Opened::Backend(mut b)) => {
+        (OpenedSide::Read(a), OpenedSide::Read(b)) => ([*a, *b], None),
+        (OpenedSide::Read(a), OpenedSide::Backend(mut b)) => {
             let b = beside(options, &a, &mut b)?;
             ([*a, b], None)
         }
-        (Opened::Backend(mut a), Opened::Read(b)) => {
+        (OpenedSide::Backend(mut a), OpenedSide::Read(b)) => {
             let a = beside(options, &b, &mut a)?;
             ([a, *b], None)
         }
-        (Opened::Backend(mut a), Opened::Backend(mut b)) => {
+        (OpenedSide::Backend(mut a), OpenedSide::Backend(mut b)) => {
             let recipe = options.recipe.clone();
             let (sides, paired) =
                 both(&recipe, options.samples.unwrap_or(recipe.samples_per_pixel), &mut a, &mut b)?;
@@ -133,7 +138,7 @@ fn sides(options: &CompareOptions) -> Result<([Side; 2], Option<PairedSamples>)>
     })
 }
 
-/// Renders what is to be held against `read`, at its size; the same samples if it is a film of the same job.
+/// Renders the counterpart of `read` at its size, and with the same samples if `read` is a film of the same job.
 fn beside(options: &CompareOptions, read: &Side, rendering: &mut Rendering) -> Result<Side> {
     let mut recipe = options.recipe.clone();
     (recipe.settings.width, recipe.settings.height) = (read.width, read.height);
@@ -153,7 +158,7 @@ fn beside(options: &CompareOptions, read: &Side, rendering: &mut Rendering) -> R
     }
 }
 
-/// Renders the same samples with both.
+/// Renders the same samples with both backends.
 fn both(
     recipe: &Recipe,
     samples: u64,
@@ -162,7 +167,7 @@ fn both(
 ) -> Result<([Side; 2], PairedSamples)> {
     let job = recipe.job()?;
     let RenderSettings { width, height, .. } = *job.settings();
-    // Two of all samples, and two of the last.
+    // Two films of all samples, and two of the last sample.
     job.check_memory(4)?;
     check_memory(width, height, 4)?;
     let (mut film_a, mut film_b) = (new_film(&job)?, new_film(&job)?);
@@ -181,14 +186,14 @@ fn both(
     Ok((sides, sums.finish()))
 }
 
-/// What the pictures say of their jobs, where that matters.
+/// A note on the jobs of the pictures, if they explain the result.
 fn note_on_jobs(a: &Side, b: &Side) -> Option<String> {
     let (job_a, job_b) = (a.job.as_ref()?, b.job.as_ref()?);
     let (film_a, film_b) = (a.film.as_ref()?, b.film.as_ref()?);
     if job_a == job_b {
         let is_paired = film_a.samples() == film_b.samples();
         return is_paired
-            .then(|| "both hold the same samples, so that only rounding can tell them apart".to_owned());
+            .then(|| "both hold the same samples, so they can differ only by rounding".to_owned());
     }
     let is_other_picture =
         job_a.scene() != job_b.scene() || job_a.camera() != job_b.camera() || job_a.rules() != job_b.rules();
@@ -197,10 +202,10 @@ fn note_on_jobs(a: &Side, b: &Side) -> Option<String> {
     })
 }
 
-fn report(sides: &[Side; 2], comparison: &Comparison) -> Report {
-    let side = |side: &Side| ReportedSide { name: side.name.clone(), about: side.about.clone() };
+fn comparison_json(sides: &[Side; 2], comparison: &Comparison) -> ComparisonJson {
+    let side = |side: &Side| SideJson { name: side.name.clone(), about: side.about.clone() };
     let test = &comparison.test;
-    Report {
+    ComparisonJson {
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
         sides: [side(&sides[0]), side(&sides[1])],
@@ -225,7 +230,7 @@ fn report(sides: &[Side; 2], comparison: &Comparison) -> Report {
         worst_blocks: test
             .worst(NAMED_BLOCKS)
             .into_iter()
-            .map(|block| ReportedBlock {
+            .map(|block| BlockJson {
                 x: [block.x.start, block.x.end],
                 y: [block.y.start, block.y.end],
                 z: block.z,

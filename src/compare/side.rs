@@ -1,4 +1,4 @@
-//! One of the two pictures: a film, a picture of any program, or what a backend renders now.
+//! One of the two pictures: a film, a picture from any program, or a backend's render.
 
 use crate::backends::{self, BackendChoice};
 use crate::cli::CompareSide;
@@ -12,47 +12,47 @@ use anyhow::{Context, Result};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-/// A picture that is compared.
+/// One of the two pictures.
 #[derive(Debug)]
 pub struct Side {
     /// The file's or backend's name.
     pub name: String,
-    /// What is known of it.
+    /// What is known about the picture, for the reader.
     pub about: String,
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
     pub height: u32,
-    /// Linear RGB, row by row from the top; with `steps`, NaN where it is not known.
+    /// Linear RGB, row by row from the top. With `steps`, NaN means that the value is not known.
     pub pixels: Vec<[f64; 3]>,
     /// See [`crate::output::ReadPicture::steps`].
     pub steps: Option<Vec<[f64; 3]>>,
     /// See [`crate::output::ReadPicture::limit`].
     pub limit: f64,
-    /// The film, where there is one.
+    /// The film, if the picture is one.
     pub film: Option<Film>,
     /// The film's job.
     pub job: Option<RenderJob>,
-    /// What the file says that it was made from.
+    /// The recipe that the file contains.
     pub recipe: Option<Recipe>,
 }
 
 impl Side {
-    /// Reads a file. Whole numbers without a description are taken as `encoding` says.
+    /// Reads a file. `encoding` is that of integer pictures without a description.
     ///
     /// # Errors
-    /// A file that cannot be read, with what to do.
+    /// If the file cannot be read; the message says what to do.
     pub fn read(path: &Path, encoding: Encoding) -> Result<Self> {
         let name = path.display().to_string();
         let saved = match Saved::read(path) {
             Ok(saved) => Some(saved),
-            // Most pictures do not say what they are; the picture itself is read below, with its errors.
+            // Most pictures have no description. The picture itself is read below, which reports its own errors.
             Err(OpenError::Picture(_) | OpenError::NotFilm(_)) => None,
             Err(error) => return Err(error.into()),
         };
-        // Numbers can be compared whatever is said of them.
+        // Pixels can be compared even if the recipe is not valid.
         let recipe = saved.as_ref().and_then(|saved| saved.recipe().ok());
-        let said = said(saved.as_ref());
+        let samples = samples_of(saved.as_ref());
         if let Some(film) = saved.and_then(|saved| saved.film) {
             check_memory(film.width(), film.height(), 0)?;
             let job = recipe.as_ref().and_then(|recipe| recipe.job().ok());
@@ -61,9 +61,9 @@ impl Side {
         }
         let encoding = recipe.as_ref().map_or(encoding, |recipe| Encoding::Book(recipe.rules.transfer));
         let picture = read_picture(path, encoding)?;
-        let kind = if picture.steps.is_some() { "whole numbers" } else { "float" };
+        let kind = if picture.steps.is_some() { "integers" } else { "floats" };
         Ok(Side {
-            about: format!("picture, {}x{}, {kind}{said}", picture.width, picture.height),
+            about: format!("picture, {}x{}, {kind}{samples}", picture.width, picture.height),
             name,
             width: picture.width,
             height: picture.height,
@@ -96,19 +96,19 @@ impl Side {
     }
 }
 
-/// What a pixel takes besides films while pictures are compared: both pictures, their difference, its noise and steps,
-/// and the map of it.
+/// Bytes per pixel during a comparison, without films: both pictures, their difference with its noise and steps, and
+/// the heat map.
 const BYTES_PER_PIXEL: u64 = 5 * 24 + 8;
 
-/// Refuses pictures that do not fit into memory together, with `films` films of two halves that are rendered.
+/// Refuses pictures that do not fit into memory together with `films` films of two halves.
 ///
 /// # Errors
-/// What is needed, what there is and what to do.
+/// If they do not fit; the message says how much is needed, how much there is and what to do.
 pub(super) fn check_memory(width: u32, height: u32, films: u64) -> Result<()> {
     let pixels = u64::from(width) * u64::from(height);
     let bytes = films * Film::bytes(width, height, 2) + pixels * BYTES_PER_PIXEL;
     let what = || format!("comparing pictures of {width}x{height}");
-    Ok(memory::check(what, bytes, "compare smaller pictures (--size for those that are rendered)")?)
+    Ok(memory::check(what, bytes, "compare smaller pictures (--size sets the size of rendered ones)")?)
 }
 
 /// An empty film for a job.
@@ -120,7 +120,7 @@ pub(super) fn new_film(job: &RenderJob) -> Result<Film> {
     Ok(Film::try_new(width, height, job.settings().half_count())?)
 }
 
-fn said(saved: Option<&Saved>) -> String {
+fn samples_of(saved: Option<&Saved>) -> String {
     let samples = saved.and_then(|saved| saved.description.get(key::SAMPLES));
     samples.map_or_else(String::new, |samples| format!(", {samples} samples"))
 }
@@ -135,7 +135,7 @@ fn about_film(film: &Film, recipe: Option<&Recipe>) -> String {
     }
 }
 
-/// A backend that is to render a side.
+/// A backend that renders a side.
 pub struct Rendering {
     name: String,
     renderer: Box<dyn Renderer>,
@@ -145,13 +145,13 @@ impl Rendering {
     /// Starts a backend.
     ///
     /// # Errors
-    /// If it cannot be had.
+    /// If the backend is not available.
     pub fn start(choice: &BackendChoice, name: &str) -> Result<Self> {
-        let renderer = backends::create(choice).with_context(|| format!("{name} cannot be had"))?;
+        let renderer = backends::create(choice).with_context(|| format!("{name} is not available"))?;
         Ok(Rendering { name: name.to_owned(), renderer })
     }
 
-    /// Adds one sample of every pixel.
+    /// Renders one sample of every pixel.
     pub fn sample(&mut self, job: &RenderJob, index: u64) -> Result<Film> {
         self.samples(job, index..index + 1)
     }
@@ -162,7 +162,7 @@ impl Rendering {
         Ok(film)
     }
 
-    /// The side that `film`, which this rendered, is.
+    /// The side of a film that this backend rendered.
     pub fn side(&self, recipe: &Recipe, job: &RenderJob, film: Film) -> Side {
         let info = self.renderer.info();
         let about = format!("{} {}, {}", info.name, info.device, about_film(&film, Some(recipe)));
@@ -173,7 +173,7 @@ impl Rendering {
         }
     }
 
-    /// Renders samples `ranges` as a side.
+    /// Renders the samples of `ranges`.
     ///
     /// # Errors
     /// If the backend fails.
@@ -191,24 +191,24 @@ impl Rendering {
     }
 }
 
-/// A side that is there, or one that waits for what the other says of its scene.
-pub enum Opened {
+/// A side that was read, or a backend that waits for the scene and size of the other side.
+pub enum OpenedSide {
     /// Read from a file.
     Read(Box<Side>),
     /// To be rendered.
     Backend(Box<Rendering>),
 }
 
-impl Opened {
+impl OpenedSide {
     /// Reads the file or starts the backend.
     ///
     /// # Errors
-    /// If that cannot be done.
+    /// If the file cannot be read or the backend is not available.
     pub fn open(side: &CompareSide, encoding: Encoding) -> Result<Self> {
         Ok(match side {
-            CompareSide::File(path) => Opened::Read(Box::new(Side::read(path, encoding)?)),
+            CompareSide::File(path) => OpenedSide::Read(Box::new(Side::read(path, encoding)?)),
             CompareSide::Backend { name, choice } => {
-                Opened::Backend(Box::new(Rendering::start(choice, name)?))
+                OpenedSide::Backend(Box::new(Rendering::start(choice, name)?))
             }
         })
     }

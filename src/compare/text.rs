@@ -1,10 +1,11 @@
 //! A comparison in words.
 
+use super::paired::PARTED;
 use super::side::Side;
-use super::verdict::{Comparison, Evidence, PARTED};
+use super::verdict::{Comparison, Evidence};
 use crate::statistics::blocks::SUM_DEVIATIONS;
 
-/// All that is said of a comparison.
+/// The full text of a comparison.
 pub(super) fn told(sides: &[Side; 2], comparison: &Comparison) -> String {
     let mut text = String::new();
     let mut line = |label: &str, content: &str| text.push_str(&format!("{label:<11} {content}\n"));
@@ -15,7 +16,7 @@ pub(super) fn told(sides: &[Side; 2], comparison: &Comparison) -> String {
         line(
             "samples",
             &format!(
-                "{} of {} ({:.1e}) differ by more than {PARTED:.0e}: another path; the others by {:.1e} RMS, {:+.1e} on average",
+                "{} of {} ({:.1e}) differ by more than {PARTED:.0e}: a different path; the others by {:.1e} RMS, {:+.1e} on average",
                 paired.parted,
                 paired.count,
                 paired.parted_share(),
@@ -71,7 +72,7 @@ fn difference(comparison: &Comparison) -> String {
 fn verdict(comparison: &Comparison) -> &'static str {
     match (comparison.is_equal(), comparison.is_same) {
         (true, true) => "equal to the bit",
-        (true, false) => "equal: nothing but noise and rounding tells them apart",
+        (true, false) => "equal: they differ only by noise and rounding",
         (false, _) => "different",
     }
 }

@@ -103,7 +103,7 @@ pub struct Difference {
 
 /// How two paths differ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct PathComparison {
     /// The first difference above the tolerance.
     pub first: Option<Difference>,
     /// The first bounce at which the paths part. Their numbers may drift apart before that.
@@ -115,8 +115,8 @@ pub struct Comparison {
 }
 
 /// Compares two records of the same path of `job`.
-pub fn compare(job: &RenderJob, [a, b]: [&PathRecord; 2], tolerance: f64) -> Comparison {
-    let mut comparison = Comparison {
+pub fn compare(job: &RenderJob, [a, b]: [&PathRecord; 2], tolerance: f64) -> PathComparison {
+    let mut comparison = PathComparison {
         first: None,
         parting: None,
         largest: 0.0,
@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn a_path_is_like_itself() {
         let comparison = compare(&job(), [&path(), &path()], 0.0);
-        assert_eq!(comparison, Comparison { first: None, parting: None, largest: 0.0, radiance: 0.0 });
+        assert_eq!(comparison, PathComparison { first: None, parting: None, largest: 0.0, radiance: 0.0 });
     }
 
     #[test]

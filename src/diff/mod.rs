@@ -6,7 +6,7 @@ mod side;
 mod text;
 mod words;
 
-pub use compare::{Comparison, Departure, Difference, Quantity, compare};
+pub use compare::{Departure, Difference, PathComparison, Quantity, compare};
 pub use find::{Found, find};
 pub use side::{Side, SideError};
 pub use words::Told;
@@ -26,7 +26,7 @@ use text::{Paint, Tone};
 const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
-struct Report<'a> {
+struct DiffJson<'a> {
     schema: u32,
     version: &'static str,
     scene: &'a str,
@@ -35,14 +35,14 @@ struct Report<'a> {
     pixel: [u32; 2],
     sample: u64,
     tolerance: f64,
-    sides: [ReportedSide<'a>; 2],
+    sides: [SideJson<'a>; 2],
     #[serde(flatten)]
-    comparison: Comparison,
+    comparison: PathComparison,
     verdict: String,
 }
 
 #[derive(Serialize)]
-struct ReportedSide<'a> {
+struct SideJson<'a> {
     name: &'a str,
     about: &'a str,
     path: &'a PathRecord,
@@ -94,7 +94,7 @@ pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
 
     if let Some(target) = json {
         let [about_a, about_b] = [0, 1].map(|side: usize| sides[side].about.as_str());
-        let report = Report {
+        let figures = DiffJson {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION"),
             scene: &options.scene,
@@ -104,13 +104,13 @@ pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
             sample,
             tolerance: options.tolerance,
             sides: [
-                ReportedSide { name: told.names[0], about: about_a, path: paths[0] },
-                ReportedSide { name: told.names[1], about: about_b, path: paths[1] },
+                SideJson { name: told.names[0], about: about_a, path: paths[0] },
+                SideJson { name: told.names[1], about: about_b, path: paths[1] },
             ],
             comparison,
             verdict: told.verdict(&comparison),
         };
-        write_json(&report, target).map_err(Failure::Input)?;
+        write_json(&figures, target).map_err(Failure::Input)?;
     }
     Ok(if comparison.first.is_some() { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }

@@ -32,7 +32,7 @@ pub enum SideError {
     Cpu(#[from] CpuError),
     /// No GPU is available.
     #[error(
-        "the side gpu is not available: {reason}; compare other sides, such as --sides cpu,reference or --sides cpu,baseline"
+        "the side gpu is not available: {reason}; compare other sides, such as --sides cpu,reference or --sides cpu,portable"
     )]
     Gpu {
         /// The reason, with the adapters that exist.
@@ -49,7 +49,7 @@ impl Side {
         Ok(match choice {
             SideChoice::Cpu(options) => {
                 let renderer = CpuRenderer::new(*options)?;
-                let best = Isa::available().last().copied().unwrap_or(Isa::Baseline);
+                let best = Isa::available().last().copied().unwrap_or(Isa::Portable);
                 let isa = options.isa.unwrap_or(best);
                 let rounding = if isa.is_fused() { "rounded once" } else { "rounded separately" };
                 Side {

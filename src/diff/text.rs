@@ -1,6 +1,6 @@
 //! Shows two paths side by side on a terminal.
 
-use super::compare::{Comparison, Quantity, amount, departure};
+use super::compare::{PathComparison, Quantity, amount, departure};
 use super::words::Told;
 use crate::record::PathRecord;
 use std::fmt::Write;
@@ -48,7 +48,7 @@ impl Paint {
 }
 
 /// All bounces of both paths, with the first difference marked.
-pub fn bounces(told: &Told, comparison: &Comparison, paint: Paint) -> String {
+pub fn bounces(told: &Told, comparison: &PathComparison, paint: Paint) -> String {
     let mut text = String::new();
     let [a, b] = told.names.map(|name| cut(name, COLUMN));
     line(&mut text, &paint.paint(Tone::Strong, format!("{:LABEL$}{a:COLUMN$}   {b}", "").trim_end()));
@@ -72,7 +72,7 @@ pub fn bounces(told: &Told, comparison: &Comparison, paint: Paint) -> String {
 fn row(
     text: &mut String,
     told: &Told,
-    comparison: &Comparison,
+    comparison: &PathComparison,
     bounce: usize,
     quantity: Quantity,
     paint: Paint,
@@ -119,7 +119,7 @@ fn row(
 }
 
 /// Both radiances, their difference and the verdict.
-pub fn closing(told: &Told, comparison: &Comparison, paint: Paint) -> String {
+pub fn closing(told: &Told, comparison: &PathComparison, paint: Paint) -> String {
     let mut text = String::new();
     line(&mut text, &paint.paint(Tone::Faint, &"─".repeat(WIDTH)));
     let [a, b] = told.paths.map(|path| vector(path.radiance));

@@ -1,6 +1,6 @@
 //! Describes differences in sentences.
 
-use super::compare::{Comparison, Difference, Quantity, departure};
+use super::compare::{Difference, PathComparison, Quantity, departure};
 use crate::console::printable;
 use crate::record::{PathRecord, RecordedRay};
 use crate::render::RenderJob;
@@ -25,7 +25,7 @@ pub struct Told<'a> {
 
 impl Told<'_> {
     /// The result in one or two sentences.
-    pub fn verdict(&self, comparison: &Comparison) -> String {
+    pub fn verdict(&self, comparison: &PathComparison) -> String {
         match (comparison.first, comparison.parting) {
             (None, _) if comparison.largest == 0.0 && comparison.radiance == 0.0 => {
                 "the paths agree to the bit".to_owned()

@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum MergeError {
     /// No file was given.
-    #[error("no film was named; name the film files that are to be added")]
+    #[error("no film was named; name the film files to merge")]
     NoFiles,
     /// A file cannot be loaded as a film.
     #[error(transparent)]
     File(#[from] CheckpointError),
     /// Two films are of different jobs.
     #[error(
-        "{} and {} are films of different jobs: {difference}; only films that differ in their samples alone can be added",
+        "{} and {} are films of different jobs: {difference}; only films of one job with different samples can be merged",
         first.display(), other.display()
     )]
     OtherJob {
@@ -28,7 +28,7 @@ pub enum MergeError {
     },
     /// Two films have samples in common.
     #[error(
-        "{} and {} both hold the samples {}..{}; each sample may be added once, so leave one of them out",
+        "{} and {} both hold the samples {}..{}; each sample may be added only once, so leave one of the files out",
         first.display(), other.display(), range.start, range.end
     )]
     Overlap {
@@ -40,7 +40,7 @@ pub enum MergeError {
         range: Range<u64>,
     },
     /// The films differ in shape.
-    #[error("{} and {} cannot be added: {reason}", first.display(), other.display())]
+    #[error("{} and {} cannot be merged: {reason}", first.display(), other.display())]
     Film {
         /// The first file.
         first: PathBuf,

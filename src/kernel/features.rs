@@ -4,7 +4,7 @@
 use super::{AnchoredSphere, Roots, Tag, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::render::{RenderJob, SamplerKind};
 use crate::scene::Material;
-use crate::stages::{DielectricLaws, Diffuse, Shading, Surface};
+use crate::stages::{DielectricLaws, Diffuse, Shading, SurfaceRule};
 
 /// Parts of the CPU's kernels that are compiled in or left out, as bits of their constant parameter. Every combination
 /// must be compiled, so there are fewer parts than features.
@@ -238,7 +238,7 @@ features! {
     /// Any rays are traced.
     rays: bool [off true] = job.rules().shading != Shading::ImageGradient;
     /// How rays leave the surface that they start on.
-    surface: Surface [off Surface::Exact, cpu RULES, says "acne" "the book's arithmetic"] = job.rules().surface;
+    surface: SurfaceRule [off SurfaceRule::Exact, cpu RULES, says "acne" "the book's arithmetic"] = job.rules().surface;
     /// Lambertian surfaces scatter uniformly over the hemisphere.
     hemisphere: bool [off false, cpu RULES, says "hemisphere"] = job.rules().diffuse == Diffuse::Hemisphere;
     /// The reflectance depends on the picture strip.
@@ -281,7 +281,7 @@ fn are_few<R>(spheres: &SortedSpheres<R>) -> bool {
 fn has_steep_glass(job: &RenderJob) -> bool {
     let many_rays = job.settings().max_depth > GENTLE_DEPTH;
     let [least, most] = GENTLE_INDICES;
-    job.rules().surface == Surface::Exact
+    job.rules().surface == SurfaceRule::Exact
         && job.scene().materials.iter().any(|named| match named.material {
             Material::Dielectric { refraction_index } => {
                 many_rays || !(least..=most).contains(&refraction_index)
@@ -313,7 +313,7 @@ mod tests {
         assert_eq!(Features { antialiasing: false, ..none }.parts(), parts::RULES);
         assert_eq!(Features { two_root: true, ..none }.parts(), parts::GLASS);
         assert_eq!(Features { specks: true, lens: true, ..none }.parts(), parts::EXTREMES | parts::LENS);
-        assert_eq!(Features { surface: Surface::Book, ..none }.parts(), parts::RULES);
+        assert_eq!(Features { surface: SurfaceRule::Book, ..none }.parts(), parts::RULES);
         assert_eq!(Features { shading: Shading::Normals, hierarchy: true, ..none }.parts(), 8 | 16);
     }
 
@@ -325,7 +325,7 @@ mod tests {
             features.describe(),
             "lambertian, metal, fuzz, glass, lens, two roots, anchored, eye on a surface, cavity, 5 spheres in constants"
         );
-        let boxed = Features { hierarchy: true, surface: Surface::Acne, ..Features::default() };
+        let boxed = Features { hierarchy: true, surface: SurfaceRule::Acne, ..Features::default() };
         assert!(boxed.describe().ends_with("cavity, hierarchy, acne"), "{}", boxed.describe());
         let compressed = Features { cwbvh: true, ..boxed };
         assert!(compressed.describe().ends_with("cavity, compressed hierarchy, acne"));

@@ -2,7 +2,7 @@
 
 use super::ROOTS_MASK;
 use crate::render::SamplerKind;
-use crate::stages::{DielectricLaws, Shading, Surface, Transfer};
+use crate::stages::{DielectricLaws, Shading, SurfaceRule, Transfer};
 use std::fmt::Write;
 
 /// An enumeration whose values are numbers in the shaders.
@@ -74,7 +74,7 @@ tags!(DielectricLaws {
     Schlick = "LAWS_SCHLICK",
 });
 
-tags!(Surface { Exact = "SURFACE_EXACT", Acne = "SURFACE_ACNE", Book = "SURFACE_BOOK" });
+tags!(SurfaceRule { Exact = "SURFACE_EXACT", Acne = "SURFACE_ACNE", Book = "SURFACE_BOOK" });
 
 tags!(Transfer {
     Linear = "TRANSFER_LINEAR",
@@ -99,7 +99,7 @@ pub(super) fn wgsl() -> String {
         values::<Roots>(),
         values::<Shading>(),
         values::<DielectricLaws>(),
-        values::<Surface>(),
+        values::<SurfaceRule>(),
         values::<Transfer>(),
         values::<SamplerKind>(),
     ]

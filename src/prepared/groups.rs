@@ -5,7 +5,7 @@ use super::facts::Facts;
 use crate::kernel::{HALF_EPSILON, Roots};
 use crate::render::RenderJob;
 use crate::scene::{Camera, Material, Sphere};
-use crate::stages::Surface;
+use crate::stages::SurfaceRule;
 use glam::DVec3;
 
 /// A sphere is anchored when rounding at its radius exceeds this share of the smallest length near its surface. At this
@@ -103,7 +103,7 @@ impl Eye {
 impl Groups {
     pub fn of(job: &RenderJob, facts: &Facts) -> Self {
         let (scene, eye) = (job.scene(), Eye::of(job.camera()));
-        let is_exact = job.rules().surface == Surface::Exact;
+        let is_exact = job.rules().surface == SurfaceRule::Exact;
         let is_opaque = |s: &Sphere| !matches!(scene.material_of(s), Material::Dielectric { .. });
         let uncovered = || {
             let listed = scene.spheres.iter().enumerate();

@@ -16,7 +16,7 @@ use crate::kernel::{
 };
 use crate::render::{RenderJob, RenderSettings};
 use crate::scene::{Material, Scene, Sphere};
-use crate::stages::Surface;
+use crate::stages::SurfaceRule;
 use facts::Facts;
 use glam::DVec3;
 use groups::{Anchored, Groups};
@@ -81,7 +81,7 @@ impl<R: Real> PreparedScene<R> {
     fn with_hierarchy_from(job: &RenderJob, least_spheres: usize) -> Self {
         let facts = Arc::new(Facts::of(job.scene()));
         let groups = Groups::of(job, &facts);
-        let has_hierarchy = job.rules().surface == Surface::Exact
+        let has_hierarchy = job.rules().surface == SurfaceRule::Exact
             && groups.opaque.len() + groups.two_root.len() >= least_spheres;
         let begin = Instant::now();
         let (mut listed, mut hierarchy) = (groups.in_list_order(), None);
@@ -174,7 +174,7 @@ impl<R: Real> PreparedScene<R> {
             // A ray without a hit reads row 0 and ignores it.
             self.records.push(RecordColumns::default());
         }
-        self.warnings = if job.rules().surface == Surface::Exact {
+        self.warnings = if job.rules().surface == SurfaceRule::Exact {
             self.facts.warnings(job, groups.origin)
         } else {
             Vec::new()

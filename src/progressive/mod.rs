@@ -19,7 +19,7 @@ pub use passes::PassSizer;
 pub use plan::{EndReason, NOISE_TARGET_FIRST_SAMPLES, Plan, Stop};
 pub use shared::Picture;
 pub use status::{Contribution, HistoryPoint, Phase, Status};
-pub use view::{Reference, View, standard_error};
+pub use view::{ReferenceMeans, View, standard_error};
 
 use crate::backends::{self, BackendChoice, BackendError};
 use crate::film::Film;
@@ -31,13 +31,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
-use worker::{Command, Worker};
+use worker::{RenderCommand, Worker};
 
 /// Makes renderers, on the render thread or, while another renderer works, on a separate thread.
 pub type Factory = Box<dyn FnMut(&BackendChoice) -> Result<Box<dyn Renderer>, BackendError> + Send>;
 
-/// A job to render, with its backend and plan.
-pub struct Work {
+/// What a render thread is asked to render.
+pub struct RenderRequest {
     /// The picture.
     pub job: RenderJob,
     /// The backend that renders it.
@@ -50,16 +50,16 @@ pub struct Work {
     pub film: Option<Film>,
 }
 
-impl Work {
+impl RenderRequest {
     /// A render from the beginning.
     pub fn new(job: RenderJob, backend: BackendChoice, plan: Plan) -> Self {
-        Work { job, backend, renderer: None, plan, film: None }
+        RenderRequest { job, backend, renderer: None, plan, film: None }
     }
 }
 
 /// The handle of a render thread.
 pub struct Progressive {
-    commands: Sender<Command>,
+    commands: Sender<RenderCommand>,
     shared: Arc<Shared>,
     run: u64,
     cancel: Arc<AtomicBool>,
@@ -93,44 +93,48 @@ impl Progressive {
         })
     }
 
-    /// Starts `work`. A render in progress is abandoned in the middle of its pass.
-    pub fn start(&mut self, work: Work) {
+    /// Starts what `request` asks for. A render in progress is abandoned in the middle of its pass.
+    pub fn start(&mut self, request: RenderRequest) {
         self.cancel.store(true, Ordering::Relaxed);
         self.cancel = Arc::new(AtomicBool::new(false));
         self.run += 1;
         self.shared.publish(&Status { run: self.run, phase: Phase::Preparing, ..Status::default() });
-        self.send(Command::Start { run: self.run, work: Box::new(work), cancel: Arc::clone(&self.cancel) });
+        self.send(RenderCommand::Start {
+            run: self.run,
+            request: Box::new(request),
+            cancel: Arc::clone(&self.cancel),
+        });
     }
 
     /// Abandons the render in progress.
     pub fn abandon(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);
-        self.send(Command::Abandon);
+        self.send(RenderCommand::Abandon);
     }
 
     /// Pauses at the end of the pass. The backend and the film are kept.
     pub fn pause(&self) {
-        self.send(Command::Pause);
+        self.send(RenderCommand::Pause);
     }
 
     /// Continues after a pause or a stop.
     pub fn resume(&self) {
-        self.send(Command::Resume);
+        self.send(RenderCommand::Resume);
     }
 
     /// Ends the render at the end of the pass.
     pub fn stop(&self) {
-        self.send(Command::Stop);
+        self.send(RenderCommand::Stop);
     }
 
     /// Continues the same film with another backend. If that backend is not available, the old one continues.
     pub fn switch_backend(&self, backend: BackendChoice) {
-        self.send(Command::Switch(backend));
+        self.send(RenderCommand::Switch(backend));
     }
 
     /// Changes when the render ends. A finished render continues if the new plan has work left.
     pub fn set_plan(&self, plan: Plan) {
-        self.send(Command::SetPlan(plan));
+        self.send(RenderCommand::SetPlan(plan));
     }
 
     /// The status after the last pass.
@@ -155,13 +159,13 @@ impl Progressive {
     /// no picture is resolved.
     pub fn ask_for_picture(&self) {
         if self.shared.want_picture() {
-            self.send(Command::Look);
+            self.send(RenderCommand::Look);
         }
     }
 
     /// Sets what later pictures show.
     pub fn set_view(&self, view: View) {
-        self.send(Command::SetView(view));
+        self.send(RenderCommand::SetView(view));
     }
 
     /// Sets a callback that the render thread calls when a picture is ready or the phase has changed. It must be quick.
@@ -171,7 +175,7 @@ impl Progressive {
 
     /// Runs `look` with the film on the render thread, at the end of a pass. Without a film, `look` is dropped.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
-        self.send(Command::Inspect(Box::new(look)));
+        self.send(RenderCommand::Inspect(Box::new(look)));
     }
 
     /// Waits until the status changes, at most `timeout`, and returns it.
@@ -192,7 +196,7 @@ impl Progressive {
     /// Ends the render after the current pass and returns the film; `None` if there is no film.
     pub fn take_film(&self) -> Option<Film> {
         let (sender, receiver) = mpsc::channel();
-        self.send(Command::Take(sender));
+        self.send(RenderCommand::Take(sender));
         receiver.recv().ok().flatten()
     }
 
@@ -202,7 +206,7 @@ impl Progressive {
     }
 
     /// Sends a command. A dead thread has reported its end in the status, so a failed send can be ignored.
-    fn send(&self, command: Command) {
+    fn send(&self, command: RenderCommand) {
         let _ = self.commands.send(command);
     }
 }
@@ -211,7 +215,7 @@ impl Drop for Progressive {
     fn drop(&mut self) {
         if let Some(thread) = self.thread.take() {
             self.cancel.store(true, Ordering::Relaxed);
-            self.send(Command::Finish);
+            self.send(RenderCommand::Finish);
             let _ = thread.join();
         }
     }

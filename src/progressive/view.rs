@@ -15,14 +15,14 @@ pub enum View {
     /// The standard error of each pixel's mean, estimated from the halves; black with only one half.
     StandardError,
     /// The difference of each pixel from a reference. A film of another size is shown as a picture.
-    Difference(Arc<Reference>),
+    Difference(Arc<ReferenceMeans>),
     /// How full the packets were, per tile; dark where this is not known.
     Occupancy,
 }
 
 /// A picture to compare with, linear RGB.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Reference {
+pub struct ReferenceMeans {
     /// Pixels across.
     pub width: u32,
     /// Pixels down.
@@ -31,10 +31,10 @@ pub struct Reference {
     pub means: Vec<[f32; 3]>,
 }
 
-impl Reference {
+impl ReferenceMeans {
     /// A reference with the film's current means.
     pub fn of(film: &Film) -> Self {
-        Reference { width: film.width(), height: film.height(), means: film.means() }
+        ReferenceMeans { width: film.width(), height: film.height(), means: film.means() }
     }
 }
 
@@ -138,7 +138,7 @@ mod tests {
         let film = film(1, 1);
         let off = |by: [f32; 3]| {
             let means = vec![by.map(|x| 1.0 + x)];
-            let view = View::Difference(Arc::new(Reference { means, ..Reference::of(&film) }));
+            let view = View::Difference(Arc::new(ReferenceMeans { means, ..ReferenceMeans::of(&film) }));
             view.resolve(&film, Transfer::Linear, None)
         };
         assert_eq!(off([0.01, -0.01, 0.01]), middle);
@@ -157,11 +157,11 @@ mod tests {
         let film = film(1, 1);
         let shown = |view: View, tiles| view.resolve(&film, Transfer::Linear, tiles);
         assert_eq!(shown(View::StandardError, None), HeatScale::ERROR.colour(0.0));
-        let same = View::Difference(Arc::new(Reference::of(&film)));
+        let same = View::Difference(Arc::new(ReferenceMeans::of(&film)));
         assert_eq!(shown(same, None), HeatScale::ERROR.colour(0.0));
-        let far = Reference { means: vec![[0.0; 3]], ..Reference::of(&film) };
+        let far = ReferenceMeans { means: vec![[0.0; 3]], ..ReferenceMeans::of(&film) };
         assert_eq!(shown(View::Difference(Arc::new(far)), None), HeatScale::ERROR.colour(1.0));
-        let other_size = Reference { width: 2, height: 1, means: vec![[0.0; 3]; 2] };
+        let other_size = ReferenceMeans { width: 2, height: 1, means: vec![[0.0; 3]; 2] };
         let picture = film.to_rgb8(Transfer::Linear);
         assert_eq!(shown(View::Difference(Arc::new(other_size)), None), picture);
         assert_eq!(shown(View::Picture, None), picture);

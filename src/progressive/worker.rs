@@ -4,7 +4,7 @@ use super::guard::Backend;
 use super::guard::{dismiss, guarded};
 use super::render::Render;
 use super::shared::Shared;
-use super::{EndReason, Factory, Phase, Plan, Status, View, Work};
+use super::{EndReason, Factory, Phase, Plan, RenderRequest, Status, View};
 use crate::backends::BackendChoice;
 use crate::film::Film;
 use crate::render::RenderError;
@@ -14,8 +14,9 @@ use std::sync::mpsc::{Receiver, Sender, TryRecvError};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 
-pub(super) enum Command {
-    Start { run: u64, work: Box<Work>, cancel: Arc<AtomicBool> },
+/// What [`super::Progressive`] can ask of the render thread.
+pub(super) enum RenderCommand {
+    Start { run: u64, request: Box<RenderRequest>, cancel: Arc<AtomicBool> },
     Abandon,
     Pause,
     Resume,
@@ -30,7 +31,7 @@ pub(super) enum Command {
 }
 
 pub(super) struct Worker {
-    commands: Receiver<Command>,
+    commands: Receiver<RenderCommand>,
     shared: Arc<Shared>,
     factory: Arc<Mutex<Factory>>,
     backend: Option<Backend>,
@@ -50,7 +51,7 @@ impl Drop for DeathNote {
 }
 
 impl Worker {
-    pub(super) fn new(commands: Receiver<Command>, shared: Arc<Shared>, factory: Factory) -> Self {
+    pub(super) fn new(commands: Receiver<RenderCommand>, shared: Arc<Shared>, factory: Factory) -> Self {
         Worker {
             commands,
             shared,
@@ -82,14 +83,14 @@ impl Worker {
             match self.commands.try_recv() {
                 Ok(command) => Some(command),
                 Err(TryRecvError::Empty) => None,
-                Err(TryRecvError::Disconnected) => Some(Command::Finish),
+                Err(TryRecvError::Disconnected) => Some(RenderCommand::Finish),
             }
         } else {
-            Some(self.commands.recv().unwrap_or(Command::Finish))
+            Some(self.commands.recv().unwrap_or(RenderCommand::Finish))
         };
         match command {
-            Some(Command::Finish) => return false,
-            Some(Command::Take(taker)) => {
+            Some(RenderCommand::Finish) => return false,
+            Some(RenderCommand::Take(taker)) => {
                 // If the receiver is gone, nobody needs the film.
                 let _ = taker.send(self.take_film());
                 return true;
@@ -110,34 +111,34 @@ impl Worker {
         true
     }
 
-    fn obey(&mut self, command: Command) {
-        if let Command::Start { run, work, cancel } = command {
-            self.start(run, *work, cancel);
+    fn obey(&mut self, command: RenderCommand) {
+        if let RenderCommand::Start { run, request, cancel } = command {
+            self.start(run, *request, cancel);
             return;
         }
-        if let Command::SetView(view) = command {
+        if let RenderCommand::SetView(view) = command {
             self.view = view;
             if let Some(render) = &mut self.render {
                 render.forget_picture();
             }
             return;
         }
-        if !matches!(command, Command::Abandon | Command::Look | Command::SetPlan(_)) {
+        if !matches!(command, RenderCommand::Abandon | RenderCommand::Look | RenderCommand::SetPlan(_)) {
             self.collect();
         }
         let Some(render) = &mut self.render else { return };
         let is_stopped = render.status.phase == Phase::Done(EndReason::Stopped);
         match command {
-            Command::Abandon => {
+            RenderCommand::Abandon => {
                 self.abandon();
                 return;
             }
-            Command::Pause if render.is_working() => render.status.phase = Phase::Paused,
-            Command::Resume if is_stopped || render.status.phase == Phase::Paused => render.go_on(),
-            Command::Stop if !render.status.phase.is_over() => render.end(EndReason::Stopped),
-            Command::Switch(choice) => render.switch(choice, &self.factory),
-            Command::SetPlan(plan) => render.set_plan(plan),
-            Command::Inspect(look) => {
+            RenderCommand::Pause if render.is_working() => render.status.phase = Phase::Paused,
+            RenderCommand::Resume if is_stopped || render.status.phase == Phase::Paused => render.go_on(),
+            RenderCommand::Stop if !render.status.phase.is_over() => render.end(EndReason::Stopped),
+            RenderCommand::Switch(choice) => render.switch(choice, &self.factory),
+            RenderCommand::SetPlan(plan) => render.set_plan(plan),
+            RenderCommand::Inspect(look) => {
                 let looked = guarded("whoever looked at the film", || {
                     look(render.film());
                     Ok(())
@@ -151,10 +152,10 @@ impl Worker {
         self.shared.publish(&render.status);
     }
 
-    fn start(&mut self, run: u64, work: Work, cancel: Arc<AtomicBool>) {
+    fn start(&mut self, run: u64, request: RenderRequest, cancel: Arc<AtomicBool>) {
         // Drop the old film before the new one is made, so that both need not fit into memory.
         self.render = None;
-        let Work { job, backend: choice, renderer, plan, film } = work;
+        let RenderRequest { job, backend: choice, renderer, plan, film } = request;
         if let Some(renderer) = renderer {
             self.backend = Some((choice.clone(), renderer));
         }

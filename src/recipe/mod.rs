@@ -12,15 +12,15 @@ use crate::suggest::{or_nearest, similar_names};
 use std::sync::Arc;
 use thiserror::Error;
 
-/// Samples per pixel where a scene file does not say.
+/// Samples per pixel of a scene file that does not set them.
 pub const DEFAULT_SAMPLES_PER_PIXEL: u64 = 200;
 
-/// Scene, camera, settings and rules, not checked yet, and how many samples are wanted.
+/// Scene, camera, settings, rules and the wanted number of samples, not checked yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recipe {
-    /// What the user calls it: a built-in scene's name, a stage's id or a file's stem.
+    /// The name of a built-in scene, the id of a stage, or the stem of a file name.
     pub name: String,
-    /// Spheres, materials and sky; the jobs made from it share it.
+    /// Spheres, materials and sky. All jobs of the recipe share it.
     pub scene: Arc<Scene>,
     /// The camera.
     pub camera: Camera,
@@ -28,8 +28,7 @@ pub struct Recipe {
     pub settings: RenderSettings,
     /// The rules in force.
     pub rules: Rules,
-    /// Samples per pixel that the picture should have, `1..=2^32`. It is no part of the job: a film can have
-    /// any number.
+    /// Samples per pixel that the picture should have, `1..=2^32`. Not part of the job: a film can have any number.
     pub samples_per_pixel: u64,
 }
 
@@ -42,7 +41,7 @@ impl Recipe {
     /// The built-in scene of this name; `field:N` is a field of `N` spheres.
     ///
     /// # Errors
-    /// Says which scenes have a name like it, or how many spheres a field may have.
+    /// [`SceneNameError`], with similar names or the limits of a field.
     pub fn find(name: &str) -> Result<Recipe, SceneNameError> {
         if let Some(builtin) = BuiltinScene::find(name) {
             let (scene, camera) = (builtin.build)();
@@ -96,7 +95,7 @@ impl Recipe {
     }
 }
 
-/// A name as every file system takes it: other signs become dashes.
+/// A name that every file system accepts: other characters become dashes.
 pub fn plain_name(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_. ".contains(c) { c } else { '-' }).collect()
 }
@@ -119,34 +118,32 @@ impl Stage {
 /// No built-in scene has this name.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum SceneNameError {
-    /// None is called so.
+    /// There is no such scene.
     #[error("there is no scene {name:?}; {}", or_nearest(near))]
     Unknown {
-        /// What was asked for.
+        /// The name that was given.
         name: String,
-        /// Names like it, the likeliest first.
+        /// Similar names, best match first.
         near: Vec<&'static str>,
     },
-    /// `field:N` with an `N` that cannot be.
+    /// `field:N` with an `N` out of range.
     #[error(
         "field:{count} has {count:?} for its number of spheres, which must be within {} and {}; try field:10000",
         FIELD_COUNT_LIMITS.start(),
         FIELD_COUNT_LIMITS.end()
     )]
     FieldCount {
-        /// What stands after the colon.
+        /// The text after the colon.
         count: String,
     },
-    /// There is no memory for so many spheres.
+    /// There is not enough memory for so many spheres.
     #[error(transparent)]
     Memory(#[from] MemoryError),
 }
 
-/// A number of samples per pixel that cannot be had.
+/// The number of samples per pixel is out of range.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-#[error(
-    "samples_per_pixel is {samples}, but must be within 1 and {SAMPLE_LIMIT}; 100 give a first impression"
-)]
+#[error("samples_per_pixel is {samples}, but must be within 1 and {SAMPLE_LIMIT}; try 100")]
 pub struct SamplesError {
     /// Samples per pixel.
     pub samples: u64,
@@ -170,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_scenes_are_answered_with_a_guess() {
+    fn an_unknown_scene_gives_similar_names() {
         let message = |name: &str| Recipe::find(name).expect_err("unknown").to_string();
         assert_eq!(
             message("three-sphere"),

@@ -8,7 +8,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Isa {
     /// Scalar code that runs on every processor of the target.
-    Baseline,
+    Portable,
     /// x86-64 with SSE4.2: 4 lanes; multiply and add round separately.
     Sse42,
     /// x86-64 with AVX2 and FMA: 8 lanes.
@@ -21,12 +21,12 @@ pub enum Isa {
 
 impl Isa {
     /// Every level of every processor family.
-    pub const ALL: [Isa; 5] = [Isa::Baseline, Isa::Sse42, Isa::Avx2, Isa::Avx512, Isa::Neon];
+    pub const ALL: [Isa; 5] = [Isa::Portable, Isa::Sse42, Isa::Avx2, Isa::Avx512, Isa::Neon];
 
     /// The level's name on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Isa::Baseline => "baseline",
+            Isa::Portable => "portable",
             Isa::Sse42 => "sse4.2",
             Isa::Avx2 => "avx2",
             Isa::Avx512 => "avx512",
@@ -36,7 +36,7 @@ impl Isa {
 
     /// The levels that this processor supports, from least to most capable.
     pub fn available() -> Vec<Isa> {
-        let mut levels = vec![Isa::Baseline];
+        let mut levels = vec![Isa::Portable];
         let level = Level::new();
         #[cfg(target_arch = "x86_64")]
         {
@@ -58,7 +58,7 @@ impl Isa {
     /// Lane counts that have kernels at this level: 1, those that fit a register, and twice those.
     pub fn lane_counts(self) -> &'static [usize] {
         match self {
-            Isa::Baseline => &[1],
+            Isa::Portable => &[1],
             Isa::Sse42 | Isa::Neon => &[1, 4, 8],
             Isa::Avx2 | Isa::Avx512 => &[1, 4, 8, 16],
         }
@@ -67,7 +67,7 @@ impl Isa {
     /// The number of lanes in one register, which is the fastest count.
     pub fn native_lanes(self) -> usize {
         match self {
-            Isa::Baseline => 1,
+            Isa::Portable => 1,
             Isa::Sse42 | Isa::Neon => 4,
             Isa::Avx2 => 8,
             Isa::Avx512 => 16,

@@ -41,7 +41,7 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     let level = Level::new();
     let offered = offered(isa, lanes, needed);
     match (isa, lanes) {
-        (Isa::Baseline, 1) => {
+        (Isa::Portable, 1) => {
             Some(Box::new(|prepared, work| trace::<_, GENERAL>(Scalar::<false>, prepared, work)))
         }
         #[cfg(target_arch = "x86_64")]

@@ -136,7 +136,7 @@ impl CpuRenderer {
     /// [`CpuError`], with what is available instead.
     pub fn new(options: CpuOptions) -> Result<Self, CpuError> {
         let available = Isa::available();
-        let best = available.iter().copied().max().unwrap_or(Isa::Baseline);
+        let best = available.iter().copied().max().unwrap_or(Isa::Portable);
         let isa = options.isa.unwrap_or(best);
         if !available.contains(&isa) {
             return Err(CpuError::Isa { isa, available });

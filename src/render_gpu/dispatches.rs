@@ -1,22 +1,17 @@
-//! Dispatches. They are cut from a range of samples, queued ahead of the device, resumed until all their samples are
-//! finished, timed, and sized by the measured time.
+//! Dispatches in flight: queued ahead of the device, resumed until all their samples are finished, and timed.
 
 use super::device::Gpu;
-use super::layout::{ASIDE_STRIDE, GpuBlock, GpuDispatch, WORKGROUP_SIZE, tile_size};
-use super::loaded::Loaded;
-use super::options::InjectionPoint;
-use super::readback::{Receipt, Told};
-use super::schedule::{Blocks, Budget};
+use super::failed;
+use super::layout::{ASIDE_STRIDE, GpuBlock, GpuDispatch, WORKGROUP_SIZE};
+use super::readback::{DispatchResult, Receipt};
+use super::schedule::Budget;
 use super::turns::{TURN_LIMIT, turns_over_lists};
-use super::{Fault, GpuRenderer, failed};
-use crate::film::Film;
 use crate::kernel::Features;
 use crate::prepared::PreparedScene;
-use crate::render::{RenderError, Stats};
+use crate::render::RenderError;
 use std::collections::{HashMap, VecDeque};
-use std::ops::Range;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 /// Number of dispatches in flight across passes: while the host processes one, the device runs the other.
@@ -32,7 +27,7 @@ const THREAD_LIMIT: u64 = 1 << 20;
 const ASIDE_SIZE: u64 = 4 * ASIDE_STRIDE as u64;
 
 /// Each time samples are missing, dispatches shrink by this many bits.
-const CAUTION_SHIFT: u32 = 3;
+pub(super) const CAUTION_SHIFT: u32 = 3;
 
 /// How often missing samples are traced again.
 pub(super) const CAUTION_LIMIT: u32 = 3;
@@ -52,20 +47,20 @@ impl From<RenderError> for Broken {
 }
 
 /// A dispatch with everything that it binds.
-struct Work {
-    kernel: Features,
-    pipeline: wgpu::ComputePipeline,
-    scene: wgpu::BindGroup,
-    film: wgpu::BindGroup,
-    order_buffer: wgpu::Buffer,
-    blocks_buffer: wgpu::Buffer,
-    counters: wgpu::Buffer,
-    blocks: Arc<[GpuBlock]>,
-    order: GpuDispatch,
+pub(super) struct BoundDispatch {
+    pub kernel: Features,
+    pub pipeline: wgpu::ComputePipeline,
+    pub scene: wgpu::BindGroup,
+    pub film: wgpu::BindGroup,
+    pub order_buffer: wgpu::Buffer,
+    pub blocks_buffer: wgpu::Buffer,
+    pub counters: wgpu::Buffer,
+    pub blocks: Arc<[GpuBlock]>,
+    pub order: GpuDispatch,
     /// Threads times samples, the unit of the budget.
-    paths: u64,
+    pub paths: u64,
     /// Samples in the dispatch, over all pixels.
-    samples: u64,
+    pub samples: u64,
 }
 
 /// A submission that may not be done yet.
@@ -73,7 +68,7 @@ struct UnderWay {
     slot: usize,
     submission: wgpu::SubmissionIndex,
     submitted: Instant,
-    work: Work,
+    dispatch: BoundDispatch,
     /// Samples finished by earlier rounds of this dispatch.
     finished: u64,
     /// Whether its film is still needed.
@@ -152,12 +147,12 @@ impl Dispatches {
         !self.budgets.contains_key(kernel)
     }
 
-    fn budget(&mut self, kernel: &Features) -> &mut Budget {
+    pub(super) fn budget(&mut self, kernel: &Features) -> &mut Budget {
         self.budgets.entry(*kernel).or_insert_with(|| Budget::new(self.target))
     }
 
     /// Limit on a thread's loop turns in one dispatch.
-    fn turn_limit(&self, kernel: &Features) -> u32 {
+    pub(super) fn turn_limit(&self, kernel: &Features) -> u32 {
         let shift = if kernel.aside { CAUTION_SHIFT * self.caution } else { 0 };
         (self.turn_limit >> shift).max(1)
     }
@@ -188,7 +183,7 @@ impl Dispatches {
     }
 
     /// Most tiles in a dispatch.
-    fn tile_limit(&self) -> u64 {
+    pub(super) fn tile_limit(&self) -> u64 {
         let sizes = self.slots.iter().map(|slot| slot.aside.size());
         (sizes.min().unwrap_or_default() / (ASIDE_SIZE * u64::from(WORKGROUP_SIZE))).max(1)
     }
@@ -200,33 +195,46 @@ impl Dispatches {
     }
 
     /// Submits a dispatch, using a free slot.
-    fn submit(&mut self, gpu: &Gpu, slot: usize, work: Work, finished: u64) -> Result<(), String> {
+    pub(super) fn submit(
+        &mut self,
+        gpu: &Gpu,
+        slot: usize,
+        dispatch: BoundDispatch,
+        finished: u64,
+    ) -> Result<(), String> {
         let Slot { receipt, aside, group, is_littered } = &mut self.slots[slot];
-        gpu.queue.write_buffer(&work.blocks_buffer, 0, bytemuck::cast_slice(&work.blocks));
-        gpu.queue.write_buffer(&work.order_buffer, 0, bytemuck::bytes_of(&work.order));
+        gpu.queue.write_buffer(&dispatch.blocks_buffer, 0, bytemuck::cast_slice(&dispatch.blocks));
+        gpu.queue.write_buffer(&dispatch.order_buffer, 0, bytemuck::bytes_of(&dispatch.order));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         if *is_littered {
             encoder.clear_buffer(aside, 0, None);
             *is_littered = false;
         }
-        receipt.begin(&mut encoder, &work.counters);
+        receipt.begin(&mut encoder, &dispatch.counters);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
                 label: Some("path_trace"),
                 timestamp_writes: receipt.writes(),
             });
-            pass.set_pipeline(&work.pipeline);
-            pass.set_bind_group(0, &work.scene, &[]);
-            pass.set_bind_group(1, &work.film, &[]);
+            pass.set_pipeline(&dispatch.pipeline);
+            pass.set_bind_group(0, &dispatch.scene, &[]);
+            pass.set_bind_group(1, &dispatch.film, &[]);
             pass.set_bind_group(2, &*group, &[]);
-            let [x, y] = groups(work.order.tile_count);
+            let [x, y] = groups(dispatch.order.tile_count);
             pass.dispatch_workgroups(x, y, 1);
         }
-        receipt.end(&mut encoder, &work.counters);
+        receipt.end(&mut encoder, &dispatch.counters);
         let submitted = Instant::now();
         let submission = gpu.queue.submit([encoder.finish()]);
         receipt.ask();
-        self.under_way.push_back(UnderWay { slot, submission, submitted, work, finished, is_wanted: true });
+        self.under_way.push_back(UnderWay {
+            slot,
+            submission,
+            submitted,
+            dispatch,
+            finished,
+            is_wanted: true,
+        });
         self.count += 1;
         gpu.faults.check()
     }
@@ -238,40 +246,40 @@ impl Dispatches {
             return Err(RenderError::Cancelled.into());
         }
         let Some(mut done) = self.under_way.pop_front() else { return Ok(()) };
-        let told = self.slots[done.slot].receipt.read().map_err(failed)?;
-        let took = told.took.unwrap_or_else(|| {
+        let result = self.slots[done.slot].receipt.read().map_err(failed)?;
+        let took = result.took.unwrap_or_else(|| {
             let begun = self.last_done.max(done.submitted);
             self.last_done = Instant::now();
             self.last_done - begun
         });
         self.time += took;
         if !done.is_wanted {
-            self.slots[done.slot].is_littered |= told.counters.unfinished > 0;
+            self.slots[done.slot].is_littered |= result.counters.unfinished > 0;
             return Ok(());
         }
-        self.learn(&done.work, &told, took);
-        done.finished += told.finished();
-        if told.counters.stuck > 0 {
-            return Err(failed(stuck(told.counters.stuck)).into());
+        self.learn(&done.dispatch, &result, took);
+        done.finished += result.finished();
+        if result.counters.stuck > 0 {
+            return Err(failed(stuck(result.counters.stuck)).into());
         }
-        if told.counters.unfinished > 0 && done.work.kernel.aside {
-            done.work.order.resumes = 1;
-            self.submit(gpu, done.slot, done.work, done.finished).map_err(failed)?;
-        } else if done.finished != done.work.samples {
-            self.shortfall = Some(done.work.shortfall(done.finished));
+        if result.counters.unfinished > 0 && done.dispatch.kernel.aside {
+            done.dispatch.order.resumes = 1;
+            self.submit(gpu, done.slot, done.dispatch, done.finished).map_err(failed)?;
+        } else if done.finished != done.dispatch.samples {
+            self.shortfall = Some(done.dispatch.shortfall(done.finished));
         }
         self.check_whole()
     }
 
     /// Returns `Err` while needed samples are missing.
-    fn check_whole(&self) -> Result<(), Broken> {
+    pub(super) fn check_whole(&self) -> Result<(), Broken> {
         self.shortfall.clone().map_or(Ok(()), |shortfall| Err(Broken::Short(shortfall)))
     }
 
-    fn learn(&mut self, work: &Work, told: &Told, took: Duration) {
-        let share = told.finished() as f64 / work.samples.max(1) as f64;
-        let paths = ((work.paths as f64 * share) as u64).max(1);
-        self.budget(&work.kernel).learn(paths, took);
+    fn learn(&mut self, dispatch: &BoundDispatch, result: &DispatchResult, took: Duration) {
+        let share = result.finished() as f64 / dispatch.samples.max(1) as f64;
+        let paths = ((dispatch.paths as f64 * share) as u64).max(1);
+        self.budget(&dispatch.kernel).learn(paths, took);
     }
 
     /// Waits for all dispatches in flight.
@@ -283,7 +291,7 @@ impl Dispatches {
     }
 
     /// Returns a slot without a dispatch in flight; waits for one if necessary.
-    fn free_slot(&mut self, gpu: &Gpu, cancel: &AtomicBool) -> Result<usize, Broken> {
+    pub(super) fn free_slot(&mut self, gpu: &Gpu, cancel: &AtomicBool) -> Result<usize, Broken> {
         loop {
             let is_free = |slot: &usize| self.under_way.iter().all(|under_way| under_way.slot != *slot);
             if let Some(slot) = (0..self.slots.len()).find(is_free) {
@@ -294,14 +302,14 @@ impl Dispatches {
     }
 }
 
-impl Work {
+impl BoundDispatch {
     fn shortfall(&self, finished: u64) -> String {
         let GpuDispatch { first_tile, tile_count, first_row, .. } = self.order;
         let block_count = self.blocks.len();
         let last_tile = first_tile + tile_count.saturating_sub(1);
         format!(
-            "of {} samples the device added {finished}, in {block_count} blocks of the tiles {first_tile} to \
-             {last_tile} below row {first_row}",
+            "the device added only {finished} of {} samples, in {block_count} blocks of tiles {first_tile} to \
+             {last_tile} from row {first_row} on",
             self.samples
         )
     }
@@ -310,196 +318,12 @@ impl Work {
 /// The error message for rays that cannot be traced to their end.
 pub(super) fn stuck(pixels: u32) -> String {
     format!(
-        "{pixels} pixels have a ray that meets more of the scene than a loop of this driver can go through \
+        "{pixels} pixels have a ray that is tested against more of the scene than a loop of this driver allows \
          (llvmpipe: 65,535 turns); render this scene on the CPU"
     )
-}
-
-impl GpuRenderer {
-    /// Submits the dispatches of `range`; the last may still be in flight on return. A film that was sent for is added
-    /// to `film` as soon as the device has other work.
-    pub(super) fn trace_range(
-        &mut self,
-        loaded: &mut Loaded,
-        range: &Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, Broken> {
-        loaded.film.check_new(range, film)?;
-        self.dispatches.check_whole()?;
-        let settings = *loaded.job.settings();
-        let tile = tile_size(settings.width, settings.height);
-        let tile_pixels = u64::from(tile[0]) * u64::from(tile[1]);
-        let mut stats = Stats::default();
-        for slab in 0..loaded.film.slabs.len() {
-            let (first_row, row_count) = {
-                let slab = &loaded.film.slabs[slab];
-                (slab.first_row, slab.row_count)
-            };
-            let area = [settings.width, row_count];
-            let most = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
-            let most = most.filter(|_| !loaded.features.aside).unwrap_or(u64::MAX);
-            let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
-            let mut left = Blocks::of_range(range.clone(), &settings, loaded.scene.prepared.block_limit);
-            loop {
-                let affordable = self.dispatches.budget(&loaded.features).paths();
-                let threads = (u64::from(tiles) * tile_pixels).min(self.gpu.adapter.busy_threads());
-                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / threads).min(most);
-                let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
-                if blocks.is_empty() {
-                    break;
-                }
-                let blocks: Arc<[GpuBlock]> = blocks.into();
-                let mut first_tile = 0;
-                while first_tile < tiles {
-                    if cancel.load(Ordering::Relaxed) {
-                        return Err(RenderError::Cancelled.into());
-                    }
-                    let slot = self.dispatches.free_slot(&self.gpu, cancel)?;
-                    let affordable = self.dispatches.budget(&loaded.features).paths();
-                    let tile_limit =
-                        (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
-                    let tile_count = evenly(tiles - first_tile, tile_limit);
-                    let order = GpuDispatch {
-                        first_tile,
-                        tile_count,
-                        block_count: blocks.len() as u32,
-                        turn_limit: self.dispatches.turn_limit(&loaded.features),
-                        first_row,
-                        row_count,
-                        ..GpuDispatch::default()
-                    };
-                    let work = Work {
-                        kernel: loaded.features,
-                        pipeline: loaded.kernel.pipeline.clone(),
-                        scene: loaded.scene.group.clone(),
-                        film: loaded.film.slabs[slab].group.clone(),
-                        order_buffer: loaded.film.order.clone(),
-                        blocks_buffer: loaded.film.blocks.clone(),
-                        counters: loaded.film.counters().clone(),
-                        blocks: Arc::clone(&blocks),
-                        order,
-                        paths: u64::from(tile_count) * tile_pixels * samples,
-                        samples: pixels_within(area, tile, first_tile..first_tile + tile_count) * samples,
-                    };
-                    self.send_off(slot, work).map_err(failed)?;
-                    first_tile += tile_count;
-                    if loaded.film.is_leaving() {
-                        stats.add(&loaded.film.arrive(&self.gpu, film)?);
-                    }
-                }
-            }
-        }
-        stats.add(&loaded.film.arrive(&self.gpu, film)?);
-        Ok(stats)
-    }
-
-    /// Submits a new dispatch, unless an injected fault is due.
-    fn send_off(&mut self, slot: usize, mut work: Work) -> Result<(), String> {
-        let fault = self.inject(InjectionPoint::Dispatch, self.dispatches.count);
-        if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
-            work.order.block_count = 0;
-        }
-        self.dispatches.submit(&self.gpu, slot, work, 0)
-    }
-
-    /// Sends for the film once it is complete.
-    pub(super) fn send_for_film(&mut self, loaded: &mut Loaded) -> Result<(), Broken> {
-        if !loaded.film.is_leaving() {
-            self.inject(InjectionPoint::Fetch, self.fetches);
-            self.fetches += 1;
-            self.dispatches.drain(&self.gpu, None)?;
-            loaded.film.leave(&self.gpu);
-        }
-        Ok(self.gpu.faults.check().map_err(failed)?)
-    }
-
-    /// Adds everything traced so far to the film.
-    pub(super) fn collect_all(&mut self, loaded: &mut Loaded, film: &mut Film) -> Result<Stats, Broken> {
-        let mut stats = Stats::default();
-        // A film already on its way comes first.
-        while loaded.film.holds_samples() {
-            self.send_for_film(loaded)?;
-            stats.add(&loaded.film.arrive(&self.gpu, film)?);
-        }
-        Ok(stats)
-    }
-
-    /// Traces the samples on the device and `range` again because samples were missing, in smaller dispatches.
-    ///
-    /// # Errors
-    /// If samples are still missing; the film is then unchanged.
-    pub(super) fn trace_again(
-        &mut self,
-        loaded: &mut Loaded,
-        mut shortfall: String,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        let mut missing = loaded.film.held();
-        // The range may have been recorded before.
-        if missing.overlap(&range).is_none() {
-            missing.insert(range)?;
-        }
-        while self.dispatches.caution < CAUTION_LIMIT {
-            self.dispatches.caution += 1;
-            self.messages.push(format!("{shortfall}; they are traced again in smaller pieces"));
-            self.forget(loaded);
-            let begin = Instant::now();
-            let mut stats = Stats::default();
-            let outcome = missing.iter().try_for_each(|range| {
-                stats.add(&self.trace_range(loaded, &range, film, cancel)?);
-                self.dispatches.drain(&self.gpu, Some(cancel))?;
-                loaded.film.note(range, begin.elapsed()).map_err(Broken::from)
-            });
-            match outcome.and_then(|()| self.collect_all(loaded, film)) {
-                Ok(collected) => {
-                    stats.add(&collected);
-                    return Ok(stats);
-                }
-                Err(Broken::Ended(error)) => return Err(error),
-                Err(Broken::Short(reason)) => shortfall = reason,
-            }
-        }
-        Err(failed(format!("{shortfall}; update the graphics driver or render on the CPU")))
-    }
-}
-
-/// Number of pixels in `tiles`, which are numbered row by row in a picture of the given size.
-fn pixels_within([width, height]: [u32; 2], tile: [u32; 2], tiles: Range<u32>) -> u64 {
-    let across = width.div_ceil(tile[0]);
-    let pixels = |number: u32| {
-        let corner = [number % across * tile[0], number / across * tile[1]];
-        u64::from((width - corner[0]).min(tile[0])) * u64::from((height - corner[1]).min(tile[1]))
-    };
-    tiles.map(pixels).sum()
-}
-
-/// Splits what is left into equal parts of at most `affordable` and at least one, so that no small dispatch remains.
-fn evenly(left: u32, affordable: u64) -> u32 {
-    let left = u64::from(left);
-    left.div_ceil(left.div_ceil(affordable.max(1))) as u32
 }
 
 /// Workgroups along x and y whose product is at least `count`.
 pub(super) fn groups(count: u32) -> [u32; 2] {
     if count <= GROUPS_ACROSS { [count, 1] } else { [GROUPS_ACROSS, count.div_ceil(GROUPS_ACROSS)] }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn tiles_have_all_pixels_once() {
-        for (area, tile) in
-            [([50_u32, 43_u32], [8, 8]), ([1, 2000], [1, 64]), ([4, 4], [4, 16]), ([64, 64], [8, 8])]
-        {
-            let tiles = area[0].div_ceil(tile[0]) * area[1].div_ceil(tile[1]);
-            assert_eq!(pixels_within(area, tile, 0..tiles), u64::from(area[0]) * u64::from(area[1]));
-            assert_eq!(pixels_within(area, tile, 0..0), 0);
-        }
-        assert_eq!(pixels_within([50, 43], [8, 8], 6..7), 2 * 8);
-    }
 }

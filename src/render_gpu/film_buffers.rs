@@ -233,7 +233,10 @@ impl FilmBuffers {
         let Some(leaving) = self.leaving.take() else { return Ok(Stats::default()) };
         gpu.wait(&leaving.submission).map_err(failed)?;
         for _ in self.stagings() {
-            let mapped = leaving.mapped.try_recv().map_err(|_| failed("results stayed away".to_owned()))?;
+            let mapped = leaving
+                .mapped
+                .try_recv()
+                .map_err(|_| failed("the device did not return its results".to_owned()))?;
             mapped.map_err(|error| failed(format!("reading results: {error}")))?;
         }
         if let Some(range) = leaving.samples.iter().find_map(|range| film.samples().overlap(&range)) {
@@ -249,7 +252,7 @@ impl FilmBuffers {
 
         let words = |rows: u32| film.width() as usize * rows as usize * film.halves().len() * PIXEL_WORDS;
         if self.slabs.iter().zip(&sums).any(|(slab, sums)| sums.len() < words(slab.row_count)) {
-            return Err(failed("reading results: there are fewer than pixels".to_owned()));
+            return Err(failed("reading results: there are fewer sums than pixels".to_owned()));
         }
 
         // All data has arrived: nothing can fail from here on.
@@ -392,7 +395,7 @@ mod tests {
         let (stats, film) = traced(&mut gpu, &sky, 0..2);
         assert_eq!(film.rejected(), seen);
         assert_eq!(stats.rejected, film.rejected());
-        assert!((0..40 * 24).all(|pixel| film.pixel_sum(pixel).0 == [0; 3]), "nothing of them is added");
+        assert!((0..40 * 24).all(|pixel| film.pixel_sum(pixel).0 == [0; 3]), "none of them is added");
         // The same beyond 32 bits.
         set(&gpu, offset_of!(GpuCounters, rejected), [u32::MAX, 0]);
         let (again, _) = traced(&mut gpu, &sky, 0..2);

@@ -74,7 +74,7 @@ impl Kernels {
                 Slot::Compiling(kernel) => match kernel.recv_timeout(LOOK) {
                     Ok(kernel) => *slot = Slot::Done(kernel),
                     Err(RecvTimeoutError::Disconnected) => {
-                        *slot = Slot::Done(Err("its compiler broke off".to_owned()));
+                        *slot = Slot::Done(Err("the kernel's compiler ended unexpectedly".to_owned()));
                     }
                     Err(RecvTimeoutError::Timeout) if cancel.load(Ordering::Relaxed) => {
                         return Err(RenderError::Cancelled);

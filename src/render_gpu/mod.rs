@@ -4,6 +4,7 @@
 //! adapter, specialises the kernel to the job, sizes dispatches by measured time and adds the resulting sums to the
 //! film. Sample indices, random numbers and fixed-point sums match the CPU's to the bit.
 
+mod adapter;
 mod device;
 mod dispatches;
 mod film_buffers;
@@ -17,9 +18,10 @@ mod scene;
 mod schedule;
 pub mod shader_source;
 mod small_programs;
+mod trace;
 mod turns;
 
-pub use device::{AdapterInfo, adapters};
+pub use adapter::{AdapterInfo, adapters};
 pub use options::{
     BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, HierarchyKind, INTERACTIVE_TARGET,
     InjectionPoint,
@@ -68,7 +70,7 @@ impl GpuRenderer {
         let messages = if gpu.adapter.is_software {
             let adapter = &gpu.adapter;
             vec![format!(
-                "{adapter} is no GPU: the processor does its work, slower than the CPU backend would"
+                "{adapter} is not a GPU: it runs on the processor and is slower than the CPU backend"
             )]
         } else {
             Vec::new()

@@ -125,7 +125,7 @@ pub enum GpuError {
     #[error("no graphics adapter was found; install its Vulkan driver, or render on the CPU")]
     None,
     /// No adapter matches the name.
-    #[error("no adapter matches \"{wanted}\"; there are: {}", available.join("; "))]
+    #[error("no adapter matches \"{wanted}\"; available adapters: {}", available.join("; "))]
     NoMatch {
         /// The requested name.
         wanted: String,
@@ -133,7 +133,7 @@ pub enum GpuError {
         available: Vec<String>,
     },
     /// Only software adapters were found.
-    #[error("there is no GPU, only software adapters: {}; ask for one by name, or render on the CPU, which is faster", available.join("; "))]
+    #[error("there is no GPU, only software adapters: {}; choose one by name, or render on the CPU, which is faster", available.join("; "))]
     Software {
         /// The available adapters.
         available: Vec<String>,

@@ -45,7 +45,7 @@ fn shown(
 ) -> Result<(), String> {
     mapping
         .try_recv()
-        .map_err(|_| "the device did not hand its results over".to_owned())?
+        .map_err(|_| "the device did not return its results".to_owned())?
         .map_err(|error| format!("reading results: {error}"))?;
     {
         let view = staging.get_mapped_range(0..length).map_err(|error| format!("reading: {error}"))?;
@@ -75,14 +75,14 @@ struct Clock {
 
 /// The time of a dispatch by the device's clock, and its counters.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Told {
+pub struct DispatchResult {
     /// Time on the device; `None` without a clock.
     pub took: Option<Duration>,
     /// The dispatch's counters.
     pub counters: GpuDispatchCounters,
 }
 
-impl Told {
+impl DispatchResult {
     /// Samples whose sums are in the film.
     pub fn finished(&self) -> u64 {
         u64::from(self.counters.finished) | u64::from(self.counters.finished_high) << 32
@@ -146,19 +146,19 @@ impl Receipt {
     ///
     /// # Errors
     /// The device's error.
-    pub fn read(&mut self) -> Result<Told, String> {
+    pub fn read(&mut self) -> Result<DispatchResult, String> {
         let mapping = self.mapping.take().ok_or("nothing was submitted")?;
-        let mut told = Told::default();
+        let mut result = DispatchResult::default();
         shown(&self.staging, TIMES_SIZE + COUNTERS_SIZE, &mapping, |bytes| {
             let (times, counters) = bytes.split_at(TIMES_SIZE as usize);
             let mut ticks = times.chunks_exact(8).map(|time| time.try_into().map_or(0, u64::from_le_bytes));
             let (begin, end) = (ticks.next().unwrap_or(0), ticks.next().unwrap_or(0));
             let seconds =
                 |clock: &Clock| end.saturating_sub(begin) as f64 * f64::from(clock.period_ns) * 1e-9;
-            told.took = self.clock.as_ref().map(|clock| Duration::from_secs_f64(seconds(clock)));
-            told.counters = bytemuck::pod_read_unaligned(counters);
+            result.took = self.clock.as_ref().map(|clock| Duration::from_secs_f64(seconds(clock)));
+            result.counters = bytemuck::pod_read_unaligned(counters);
         })?;
-        Ok(told)
+        Ok(result)
     }
 }
 

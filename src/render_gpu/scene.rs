@@ -46,7 +46,7 @@ impl SceneData {
         };
         if depth > room {
             return Err(format!(
-                "the hierarchy has {depth} levels, the kernel room for {room}; render this scene on the CPU"
+                "the hierarchy has {depth} levels, but the kernel has room for {room}; render this scene on the CPU"
             ));
         }
         Ok(data)

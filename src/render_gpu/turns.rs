@@ -2,7 +2,7 @@
 
 use crate::kernel::Features;
 use crate::prepared::PreparedScene;
-use crate::stages::Surface;
+use crate::stages::SurfaceRule;
 
 /// Loop turns that a thread of a dispatch may take over all its loops, not counting its last ray. After that, the
 /// thread puts its path aside, and the next dispatch continues it.
@@ -13,7 +13,7 @@ pub const TURN_LIMIT: u32 = 1 << 15;
 
 /// Loop turns over lists for one ray. Twin: `turns_over_lists` in shaders/path.wgsl.
 pub(super) fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32>) -> u64 {
-    let is_in_hierarchy = features.hierarchy && features.surface == Surface::Exact;
+    let is_in_hierarchy = features.hierarchy && features.surface == SurfaceRule::Exact;
     let listed = if is_in_hierarchy { 0 } else { prepared.opaque.len() + prepared.two_root.len() };
     (prepared.anchored.len() + listed) as u64
 }

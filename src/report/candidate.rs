@@ -1,7 +1,7 @@
 //! The candidate that renders a curve: a backend, or the plain C89 baseline.
 
 use super::data::{Curve, Measured, Run};
-use super::reference::{Reference, film_means};
+use super::reference::{ReferencePicture, film_means};
 use crate::backends;
 use crate::baseline::{Baseline, BaselineError};
 use crate::cli::ReportBackend;
@@ -63,7 +63,7 @@ impl Candidate {
         &mut self,
         curve: &Curve,
         job: &RenderJob,
-        reference: &Reference,
+        reference: &ReferencePicture,
         limits: Limits,
         go_on: &dyn Fn() -> bool,
     ) -> Result<Option<Run>> {
@@ -83,7 +83,7 @@ impl Candidate {
                     let measured = by_baseline(baseline, &scene, job, samples, reference, go_on);
                     measured.context("the C89 program")
                 })?;
-                (format!("C89, {} -O2, 1 thread", baseline.compiler), prepared, points)
+                (baseline.about(), prepared, points)
             }
         };
         Ok(points.map(|points| Run {
@@ -156,7 +156,7 @@ impl<'a> Growing<'a> {
         format!("{} {}, {} lanes, {} threads", info.name, info.device, info.lanes, info.threads)
     }
 
-    fn grow(&mut self, samples: u64, reference: &Reference) -> Result<Option<Measured>> {
+    fn grow(&mut self, samples: u64, reference: &ReferencePicture) -> Result<Option<Measured>> {
         let range = self.film.sample_count()..samples;
         let begin = Instant::now();
         let stats = self.renderer.accumulate(self.job, range, &mut self.film, &AtomicBool::new(false))?;
@@ -185,7 +185,7 @@ fn by_baseline(
     scene: &Path,
     job: &RenderJob,
     samples: u64,
-    reference: &Reference,
+    reference: &ReferencePicture,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Option<Measured>> {
     let out = baseline.scratch("report.pfm");

@@ -28,7 +28,7 @@ use candidate::{Candidate, Limits};
 pub use data::Data;
 use data::{Curve, SCHEMA, Settings};
 use progress::Progress;
-use reference::Reference;
+use reference::ReferencePicture;
 use serde::Serialize;
 use std::path::Path;
 use std::process::ExitCode;
@@ -132,7 +132,7 @@ impl<'a> Report<'a> {
         Ok(())
     }
 
-    fn reference(&mut self, recipe: &Recipe) -> Result<Option<Reference>> {
+    fn reference(&mut self, recipe: &Recipe) -> Result<Option<ReferencePicture>> {
         let (interrupt, progress) = (&self.interrupt, &mut self.progress);
         let reference = match &self.options.reference {
             ReferenceChoice::File(path) => Some(reference::read(path, recipe)?),
@@ -152,7 +152,7 @@ impl<'a> Report<'a> {
     fn run(
         &mut self,
         recipe: &Recipe,
-        reference: &Reference,
+        reference: &ReferencePicture,
         candidate: usize,
         sampler: SamplerKind,
         seed: u32,

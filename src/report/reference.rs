@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 const SEED: u32 = 0x5EED_0000;
 
 /// A picture relative to which errors are measured.
-pub struct Reference {
+pub struct ReferencePicture {
     /// Its entry in the report.
     pub used: ReferenceUsed,
     means: Vec<[f64; 3]>,
@@ -39,7 +39,7 @@ pub struct Errors {
     pub flip: f64,
 }
 
-impl Reference {
+impl ReferencePicture {
     /// Uses a film as the reference of the scene `scene`.
     ///
     /// # Errors
@@ -52,7 +52,7 @@ impl Reference {
         };
         let means = film_means(film);
         let (width, height) = (film.width(), film.height());
-        Ok(Reference {
+        Ok(ReferencePicture {
             appearance: appearance(&means, transfer, width, height),
             means,
             transfer,
@@ -115,7 +115,7 @@ pub fn recipe_of(recipe: &Recipe) -> Recipe {
 ///
 /// # Errors
 /// If it is the film of another picture.
-pub fn read(path: &Path, recipe: &Recipe) -> Result<Reference> {
+pub fn read(path: &Path, recipe: &Recipe) -> Result<ReferencePicture> {
     let (theirs, read) = saved::open_film(path)?;
     let mine = recipe_of(recipe).job()?;
     let is_same = theirs.scene() == mine.scene()
@@ -133,7 +133,7 @@ pub fn read(path: &Path, recipe: &Recipe) -> Result<Reference> {
         );
     }
     let about = read.backend.as_deref().unwrap_or("unknown");
-    Reference::of_film(&recipe.name, about, &read.film, recipe.rules.transfer)
+    ReferencePicture::of_film(&recipe.name, about, &read.film, recipe.rules.transfer)
 }
 
 /// Duration of a pass of a reference; progress is shown and Ctrl-C is noticed between passes.
@@ -150,7 +150,7 @@ pub fn make(
     choice: &BackendChoice,
     samples: u64,
     mut go_on: impl FnMut(f64) -> bool,
-) -> Result<Option<Reference>> {
+) -> Result<Option<ReferencePicture>> {
     let recipe = recipe_of(recipe);
     let job = recipe.job()?;
     let mut renderer = backends::create(choice)?;
@@ -183,7 +183,7 @@ pub fn make(
     if film.sample_count() < samples {
         return Ok(None);
     }
-    Reference::of_film(&recipe.name, &about, &film, recipe.rules.transfer).map(Some)
+    ReferencePicture::of_film(&recipe.name, &about, &film, recipe.rules.transfer).map(Some)
 }
 
 /// The film in `path`, if it is of this job and backend.

@@ -6,7 +6,7 @@
 mod rules;
 mod table;
 
-pub use rules::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading, Surface, Transfer};
+pub use rules::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading, SurfaceRule, Transfer};
 
 use crate::scene::{Camera, Scene};
 use crate::suggest::{or_nearest, similar_names};

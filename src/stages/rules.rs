@@ -16,7 +16,7 @@ pub struct Rules {
     /// The laws that glass obeys.
     pub dielectric: DielectricLaws,
     /// How rays leave the surface that they start on.
-    pub surface: Surface,
+    pub surface: SurfaceRule,
     /// Whether the reflectance of every material is replaced by that of the picture strip: five vertical strips of 10,
     /// 30, 50, 70 and 90 %. (Section 9.5.)
     pub reflectance_strips: bool,
@@ -39,7 +39,7 @@ impl Rules {
         shading: Shading::Path,
         diffuse: Diffuse::Lambertian,
         dielectric: DielectricLaws::Schlick,
-        surface: Surface::Exact,
+        surface: SurfaceRule::Exact,
         reflectance_strips: false,
         antialiasing: true,
         transfer: Transfer::Gamma2,
@@ -92,7 +92,7 @@ pub enum DielectricLaws {
 /// How rays leave the surface that they start on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Surface {
+pub enum SurfaceRule {
     /// The ray knows its surface: there is no threshold, and no acne at any scale.
     Exact,
     /// The book's quadratic with 0 as the smallest distance, which rounding makes find the same surface again. (Section
@@ -105,14 +105,14 @@ pub enum Surface {
 /// The distance below which the book ignores hits, scene units. (Section 9.3.)
 pub const BOOK_T_MIN: f64 = 0.001;
 
-impl Surface {
-    /// The distance below which the book's arithmetic ignores hits, scene units; `None` for [`Surface::Exact`], which
-    /// needs no threshold.
+impl SurfaceRule {
+    /// The distance below which the book's arithmetic ignores hits, scene units; `None` for [`SurfaceRule::Exact`],
+    /// which needs no threshold.
     pub fn smallest_distance(self) -> Option<f64> {
         match self {
-            Surface::Exact => None,
-            Surface::Acne => Some(0.0),
-            Surface::Book => Some(BOOK_T_MIN),
+            SurfaceRule::Exact => None,
+            SurfaceRule::Acne => Some(0.0),
+            SurfaceRule::Book => Some(BOOK_T_MIN),
         }
     }
 }

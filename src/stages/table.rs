@@ -1,6 +1,6 @@
 //! The stages in the book's order. Section numbers and scene values are those of v4.0.2.
 
-use super::{DielectricLaws, Diffuse, Rules, Setup, Shading, Stage, Surface, Transfer};
+use super::{DielectricLaws, Diffuse, Rules, Setup, Shading, Stage, SurfaceRule, Transfer};
 use crate::scene::Camera;
 use crate::scene::builtin::{
     BOOK_CAMERA, LeftSphere, book, empty, matte_on_ground, metals, one_sphere, three_spheres,
@@ -65,8 +65,8 @@ pub(super) const STAGES: &[Stage] = &[
         section_title: "The PPM Image Format",
         chapter_title: OUTPUT_AN_IMAGE,
         title: "A picture small enough to read",
-        what_is_new: "A file of 16 by 9 pixels: a short header, then three numbers a pixel.",
-        why: "Before any light is simulated, the way from a number to a coloured dot has to be trusted. \
+        what_is_new: "A file of 16 by 9 pixels: a short header, then three numbers per pixel.",
+        why: "Before any light is simulated, the way from a number to a coloured dot must be trusted. \
               At this size every value can be checked by eye.",
         look_for: "Rows come from the top, pixels from the left: red grows to the right, green grows downwards, \
                    and the first pixel is black.",
@@ -82,7 +82,7 @@ pub(super) const STAGES: &[Stage] = &[
         what_is_new: "The gradient in the size that all further pictures have.",
         why: "A picture that is known in advance shows at once if rows are swapped, channels mixed up or the \
               last column is missing.",
-        look_for: "The corners: black and red above, green and yellow below. In between no seam and no border.",
+        look_for: "The corners: black and red above, green and yellow below. Between them is no seam and no border.",
         pair: None,
         setup: Setup { rules: IMAGE_GRADIENT, ..ONE_RAY },
     },
@@ -152,7 +152,7 @@ pub(super) const STAGES: &[Stage] = &[
         section_title: "Generating Pixels with Multiple Samples",
         chapter_title: ANTIALIASING,
         title: "Edges made of steps",
-        what_is_new: "Nothing yet: one ray a pixel, the starting point of the comparison.",
+        what_is_new: "Nothing yet: one ray per pixel, the starting point of the comparison.",
         why: "A pixel is an area, but one ray asks about a single point of it. A yes-or-no answer cannot say \
               that the edge runs through the middle.",
         look_for: "The outline of the ball and the horizon are staircases. Zoom in on where they are almost \
@@ -166,7 +166,7 @@ pub(super) const STAGES: &[Stage] = &[
         section_title: "Generating Pixels with Multiple Samples",
         chapter_title: ANTIALIASING,
         title: "Averages over a pixel",
-        what_is_new: "Many rays a pixel, each through another point of it, and their mean.",
+        what_is_new: "Many rays per pixel, each through a different point of it, and their mean.",
         why: "The mean estimates how much of the pixel each surface covers. The same averaging will later \
               gather light, lens and blur for nothing extra.",
         look_for: "Edge pixels take shades between the two sides, and the steps are gone without the inside \
@@ -216,7 +216,7 @@ pub(super) const STAGES: &[Stage] = &[
         look_for: "Dark speckles and rings on both surfaces, which are real rounding and not added noise. Their \
                    pattern follows the spacing of the numbers.",
         pair: Some("diffuse-limited"),
-        setup: Setup { rules: Rules { surface: Surface::Acne, ..HEMISPHERE }, ..HALF_ENERGY_LIMITED },
+        setup: Setup { rules: Rules { surface: SurfaceRule::Acne, ..HEMISPHERE }, ..HALF_ENERGY_LIMITED },
     },
     Stage {
         id: "lambertian-linear",
@@ -255,8 +255,8 @@ pub(super) const STAGES: &[Stage] = &[
         title: "Five greys, twice",
         what_is_new: "Five strips in which every surface reflects 10, 30, 50, 70 and 90 %; the upper half is \
                       shown linear, the lower half with gamma.",
-        why: "Reflectances at equal distances should look like equal steps. Which encoding achieves that can \
-              simply be seen.",
+        why: "Reflectances at equal distances should look like equal steps. The picture shows which encoding \
+              achieves that.",
         look_for: "In the upper half the dark strips run together and the last step is huge. In the lower half \
                    the strips climb evenly.",
         pair: None,
@@ -305,7 +305,7 @@ pub(super) const STAGES: &[Stage] = &[
         chapter_title: DIELECTRICS,
         title: "Glass that only refracts",
         what_is_new: "A ray that enters or leaves glass is bent by Snell's law. It is never reflected.",
-        why: "One law at a time makes it plain what each contributes. This one alone is not glass yet.",
+        why: "One law at a time shows what each contributes. This one alone is not glass yet.",
         look_for: "The left ball turns the scene behind it upside down, which is right. Its rim is wrong: there, \
                    real glass would mirror its surroundings.",
         pair: Some("glass-schlick"),
@@ -323,8 +323,8 @@ pub(super) const STAGES: &[Stage] = &[
         title: "Where refraction has no answer",
         what_is_new: "If Snell's law asks for a sine above 1, the ray is reflected. The ball is a bubble of air \
                       in water, index 1/1.33, where this happens from outside.",
-        why: "Towards a thinner medium there is an angle beyond which no light gets through. Glass fibres work \
-              by it.",
+        why: "Towards a thinner medium there is an angle beyond which no light gets through. Glass fibres rely \
+              on this.",
         look_for: "A bright ring: the bubble's rim mirrors the sky and the ground, while its middle can be seen \
                    through.",
         pair: None,
@@ -368,8 +368,8 @@ pub(super) const STAGES: &[Stage] = &[
         section_title: "Modeling a Hollow Glass Sphere",
         chapter_title: DIELECTRICS,
         title: "The measured scene",
-        what_is_new: "The same scene, larger and with more samples: what the finished renderer shows when it is \
-                      asked for nothing else.",
+        what_is_new: "The same scene, larger and with more samples: what the finished renderer shows unless it is \
+                      asked for something else.",
         why: "It has every material and a path of every kind in four small balls and a ground, so it is the \
               picture that speed and error are measured on.",
         look_for: "The remaining noise: in the bright caustic under the glass, and least in the sky, where no \
@@ -400,7 +400,7 @@ pub(super) const STAGES: &[Stage] = &[
         what_is_new: "The same scene from the same place, 30 degrees high.",
         why: "Only the angle changes: the rays of this picture are those from the middle of the wide one.",
         look_for: "The middle of the wide picture, enlarged. The perspective between the balls is unchanged, \
-                   for the eye has not moved.",
+                   because the eye has not moved.",
         pair: Some("fov-wide"),
         setup: Setup {
             scene: touching_spheres,
@@ -457,7 +457,7 @@ pub(super) const STAGES: &[Stage] = &[
         section_title: "A Final Render",
         chapter_title: WHERE_NEXT,
         title: "The final render",
-        what_is_new: "Nothing but scale: 485 spheres, every material, a lens, and 500 samples a pixel.",
+        what_is_new: "Nothing but scale: 485 spheres, every material, a lens, and 500 samples per pixel.",
         why: "All the rules together, each as it was shown alone. It is also the first scene where it pays not \
               to test every sphere.",
         look_for: "The glass ball inverts the crowd behind it, the golden one mirrors it, and the small balls \

@@ -21,7 +21,7 @@ pub use backend::Backend;
 pub use case::{Case, Expected, Family, Form, Watch};
 pub use exact::first_hit;
 pub use families::{cases, shown_cases};
-pub use report::{BookMeasured, CaseReport, FirstHits, Measured, Report};
+pub use report::{BookMeasured, CaseReport, FirstHits, Measured, StressReport};
 pub use suite::{Suite, by_the_book};
 pub use verdict::Verdict;
 
@@ -96,7 +96,7 @@ fn suite(
     chosen: &[&Case],
     backends: Vec<Backend>,
     interrupt: &AtomicBool,
-) -> Result<Report> {
+) -> Result<StressReport> {
     let begin = Instant::now();
     let template = "[{bar:24}] {pos} of {len} cases, {wide_msg}";
     let mut display = Display::new(options.progress, chosen.len() as u64, template, "", Duration::ZERO);
@@ -106,7 +106,7 @@ fn suite(
         Backend::new("pictures", BackendChoice::Cpu(cpu))
     });
     let mut suite = Suite::new(backends, reference);
-    let mut report = Report {
+    let mut report = StressReport {
         schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION"),
         backends: suite.names(),

@@ -3,7 +3,7 @@
 use super::backend::Backend;
 use super::case::Case;
 use super::families::build::sized;
-use super::report::{CaseReport, Report};
+use super::report::{CaseReport, StressReport};
 use super::suite::by_the_book;
 use super::table;
 use crate::files::write_text;
@@ -66,7 +66,7 @@ fn file_name(id: &str, kind: &str) -> String {
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write_pages(directory: &Path, report: &Report) -> Result<()> {
+pub fn write_pages(directory: &Path, report: &StressReport) -> Result<()> {
     write_text(&directory.join("table.md"), &table::markdown(report)).context("cannot write the table")?;
     write_text(&directory.join("index.html"), &page(directory, report)).context("cannot write the page")
 }
@@ -77,7 +77,7 @@ td { vertical-align: top; padding: .4em .8em .4em 0 }\n\
 img { width: 240px; image-rendering: pixelated; background: #ddd }\n\
 .wrong { color: #b00020; font-weight: bold }\n</style>\n<h1>weekender stress</h1>\n";
 
-fn page(directory: &Path, report: &Report) -> String {
+fn page(directory: &Path, report: &StressReport) -> String {
     let mut text = PAGE_HEAD.to_owned();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "<p>{}</p>", escaped(table::summary(report).trim()));
@@ -129,7 +129,7 @@ mod tests {
         let case = cases().iter().find(|case| case.id == "scaled/1e-3").unwrap();
         let mut backend = Backend::new("cpu", BackendChoice::Cpu(crate::render_cpu::CpuOptions::default()));
         write_pictures(directory.path(), case, &mut backend, &AtomicBool::new(false)).unwrap();
-        let report = Report {
+        let report = StressReport {
             schema: 1,
             version: "",
             backends: vec!["cpu".into()],

@@ -9,7 +9,7 @@ pub const SCHEMA: u32 = 1;
 
 /// The results of a run.
 #[derive(Debug, Serialize)]
-pub struct Report {
+pub struct StressReport {
     /// See [`SCHEMA`].
     pub schema: u32,
     /// Version of the program.
@@ -129,7 +129,7 @@ impl CaseReport {
     }
 }
 
-impl Report {
+impl StressReport {
     /// Whether every case is right on every backend.
     pub fn is_right(&self) -> bool {
         self.cases.iter().all(CaseReport::is_right)

@@ -10,7 +10,7 @@ use crate::film::Film;
 use crate::recipe::Recipe;
 use crate::render_cpu::{Isa, PathRecorder};
 use crate::scene::Scene;
-use crate::stages::{Rules, Surface};
+use crate::stages::{Rules, SurfaceRule};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -18,7 +18,7 @@ use std::sync::atomic::AtomicBool;
 
 /// The recipe with the book's own arithmetic.
 pub fn by_the_book(recipe: &Recipe) -> Recipe {
-    Recipe { rules: Rules { surface: Surface::Book, ..recipe.rules }, ..recipe.clone() }
+    Recipe { rules: Rules { surface: SurfaceRule::Book, ..recipe.rules }, ..recipe.clone() }
 }
 
 /// How often a case and its tame twin are timed; the fastest of each counts.

@@ -2,7 +2,7 @@
 
 use super::families::build::counted;
 use super::figures::Paired;
-use super::report::{CaseReport, Report};
+use super::report::{CaseReport, StressReport};
 use super::verdict::Verdict;
 use std::fmt::Write;
 
@@ -77,7 +77,7 @@ fn line<S: AsRef<str>>(cells: [S; 8]) -> String {
 }
 
 /// One line that sums up the run.
-pub fn summary(report: &Report) -> String {
+pub fn summary(report: &StressReport) -> String {
     let count = report.cases.len();
     let wrong: Vec<&CaseReport> = report.cases.iter().filter(|case| !case.is_right()).collect();
     let failures = |precision: &str| {
@@ -102,7 +102,7 @@ pub fn summary(report: &Report) -> String {
 }
 
 /// The table as Markdown, one section per family.
-pub fn markdown(report: &Report) -> String {
+pub fn markdown(report: &StressReport) -> String {
     let mut text = String::new();
     let mut family = "";
     for case in &report.cases {
@@ -183,7 +183,7 @@ mod tests {
 
     #[test]
     fn documents_have_a_table_for_each_family() {
-        let report = Report {
+        let report = StressReport {
             schema: 1,
             version: "",
             backends: vec!["avx2".into()],

@@ -1,6 +1,5 @@
 //! Dependencies between rooms: each room may use only the rooms listed for it, and within the window each file only
-//! those
-//! listed for it. Lower layers come first, and an unused permission is an error. ARCHITECTURE.md describes the layers.
+//! those listed for it. Lower layers come first, and an unused permission is an error. ARCHITECTURE.md describes the layers.
 
 #![allow(clippy::expect_used, reason = "a test that cannot read the sources has failed")]
 
@@ -8,7 +7,7 @@ mod lists;
 mod sources;
 
 use lists::{CRATES, ROOMS, TOP, WINDOW};
-use sources::{Source, file_of, sources};
+use sources::{SourceFile, file_of, sources};
 use std::collections::BTreeSet;
 
 /// Compares actual uses with the permissions. Reports uses that are not allowed, unused permissions, and uses of
@@ -61,7 +60,7 @@ fn files_of_the_window_use_only_those_below_them() {
     for source in sources.iter().filter(|source| source.room() == "app") {
         let part = source.window_part();
         for path in source.used.iter().chain(&source.handed_on).filter(|path| path[0] == "app") {
-            let used = file_of(&sources, path).map_or("mod", Source::window_part);
+            let used = file_of(&sources, path).map_or("mod", SourceFile::window_part);
             if used != part {
                 uses.insert((part.to_owned(), used.to_owned(), source.name.clone()));
             }
@@ -88,16 +87,17 @@ fn only_the_top_knows_the_whole_window_and_the_model_no_drawing() {
 #[test]
 fn files_import_each_other_in_no_circle() {
     let sources = sources();
-    let place = |source: &Source| sources.iter().position(|other| other.name == source.name);
+    let place = |source: &SourceFile| sources.iter().position(|other| other.name == source.name);
     let mut reached: Vec<BTreeSet<usize>> = Vec::new();
     for source in &sources {
         let used = source.used.iter().filter_map(|path| place(file_of(&sources, path)?));
         // A folder's main file and the other files in it may use each other, except in the window.
-        let is_inside = |other: &Source| {
+        let is_inside = |other: &SourceFile| {
             if source.room() == "app" {
                 return false;
             }
-            let folder = |a: &Source, b: &Source| a.name.ends_with("mod") && b.module.starts_with(&a.module);
+            let folder =
+                |a: &SourceFile, b: &SourceFile| a.name.ends_with("mod") && b.module.starts_with(&a.module);
             folder(source, other) || folder(other, source)
         };
         let others = used.filter(|used| sources[*used].name != source.name);
@@ -131,7 +131,7 @@ fn crates_stay_in_their_rooms() {
         let users: BTreeSet<&str> = sources
             .iter()
             .filter(|source| source.code.contains(&format!("{name}::")))
-            .map(Source::room)
+            .map(SourceFile::room)
             .collect();
         let listed: BTreeSet<&str> = rooms.iter().copied().collect();
         faults.extend(users.difference(&listed).map(|room| format!("{room} uses {name}")));

@@ -18,7 +18,7 @@ fn rust_files(at: &Path, into: &mut Vec<PathBuf>) {
 }
 
 /// A source file.
-pub struct Source {
+pub struct SourceFile {
     /// Path below `src`, without the extension.
     pub name: String,
     /// The names of its module path.
@@ -31,8 +31,8 @@ pub struct Source {
     pub handed_on: Vec<Vec<String>>,
 }
 
-impl Source {
-    fn read(file: &Path) -> Source {
+impl SourceFile {
+    fn read(file: &Path) -> SourceFile {
         let name = file.strip_prefix(source_root()).expect("below src").with_extension("");
         let mut module: Vec<String> =
             name.components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
@@ -67,7 +67,7 @@ impl Source {
             }
         }
         let name = name.to_string_lossy().replace('\\', "/");
-        Source { name, module, code, used, handed_on }
+        SourceFile { name, module, code, used, handed_on }
     }
 
     /// The room that the file belongs to: the first part of its path.
@@ -143,16 +143,16 @@ fn absolute(module: &[String], path: &[String], is_child: &dyn Fn(&str) -> bool)
 }
 
 /// All source files.
-pub fn sources() -> Vec<Source> {
+pub fn sources() -> Vec<SourceFile> {
     let mut files = Vec::new();
     rust_files(&source_root(), &mut files);
     assert!(files.len() > 30, "the sources were not found");
     files.sort();
-    files.iter().map(|file| Source::read(file)).collect()
+    files.iter().map(|file| SourceFile::read(file)).collect()
 }
 
 /// The file that a path leads to, through folders that export names of their files.
-pub fn file_of<'a>(sources: &'a [Source], path: &[String]) -> Option<&'a Source> {
+pub fn file_of<'a>(sources: &'a [SourceFile], path: &[String]) -> Option<&'a SourceFile> {
     let module = sources.iter().filter(|source| path.starts_with(&source.module));
     let module = module.max_by_key(|source| source.module.len())?;
     let item = path.get(module.module.len());

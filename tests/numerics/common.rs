@@ -163,7 +163,7 @@ pub fn packets(isa: Isa, lanes: usize) -> CpuRenderer {
 
 /// Scalar `f32` without fused multiply and add: every processor has it.
 pub fn baseline() -> CpuRenderer {
-    packets(Isa::Baseline, 1)
+    packets(Isa::Portable, 1)
 }
 
 /// `f64`.

@@ -421,7 +421,7 @@ fn case_19_a_thousand_internal_reflections() {
 #[test]
 fn the_acne_stage_alone_anchors_nothing() {
     let job = ground_job(1e5);
-    let acne = Rules { surface: weekender::stages::Surface::Acne, ..Rules::FINISHED };
+    let acne = Rules { surface: weekender::stages::SurfaceRule::Acne, ..Rules::FINISHED };
     let acne = RenderJob::new(job.scene().clone(), *job.camera(), *job.settings(), acne).unwrap();
     assert!(PreparedScene::<f32>::new(&acne).anchored.is_empty());
     assert_eq!(PreparedScene::<f32>::new(&job).anchored.len(), 1);

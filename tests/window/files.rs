@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use weekender::app::Command;
 use weekender::output::{OutputFormat, read_description};
-use weekender::progressive::{Plan, Progressive, Work};
+use weekender::progressive::{Plan, Progressive, RenderRequest};
 use weekender::recipe::file;
 use weekender::stages::Stage;
 
@@ -19,7 +19,7 @@ fn rendered_again(path: &Path) -> Vec<u8> {
     let mut progressive = Progressive::spawn().unwrap();
     let job = recipe.job().unwrap();
     let backend = weekender::backends::BackendChoice::Cpu(weekender::render_cpu::CpuOptions::default());
-    progressive.start(Work::new(job, backend, Plan::samples(samples)));
+    progressive.start(RenderRequest::new(job, backend, Plan::samples(samples)));
     progressive.wait_until_over();
     progressive.finish().unwrap().to_rgb8(recipe.rules.transfer)
 }
@@ -79,7 +79,7 @@ fn failures_are_told_in_words() {
         ("missing.png", None, "cannot read"),
         ("broken.png", Some("nothing of the kind"), "does not say how it was made"),
         ("broken.toml", Some("[camera"), "broken.toml"),
-        ("broken.exr", Some("nothing"), "is no EXR file"),
+        ("broken.exr", Some("nothing"), "is not an EXR file"),
     ] {
         let path = directory.path().join(name);
         if let Some(content) = content {

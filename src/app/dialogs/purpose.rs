@@ -15,7 +15,7 @@ pub enum Purpose {
     /// To save the plot's points.
     SavePlot,
     /// To load it as a film to compare with.
-    Reference,
+    ReferenceFilm,
 }
 
 impl Purpose {
@@ -28,14 +28,14 @@ impl Purpose {
             Purpose::Save(OutputFormat::Exr) => "Save film as EXR",
             Purpose::SaveScene => "Save scene file",
             Purpose::SavePlot => "Save error against time as CSV",
-            Purpose::Reference => "Load reference film",
+            Purpose::ReferenceFilm => "Load reference film",
         }
     }
 
     /// The label of the dialog's button.
     pub fn button(self) -> &'static str {
         match self {
-            Purpose::Open | Purpose::Reference => "Open",
+            Purpose::Open | Purpose::ReferenceFilm => "Open",
             _ => "Save",
         }
     }
@@ -51,7 +51,7 @@ impl Purpose {
             Purpose::Open => &["png", "ppm", "exr", "toml"],
             Purpose::Save(OutputFormat::Png) => &["png"],
             Purpose::Save(OutputFormat::P6) => &["ppm"],
-            Purpose::Save(OutputFormat::Exr) | Purpose::Reference => &["exr"],
+            Purpose::Save(OutputFormat::Exr) | Purpose::ReferenceFilm => &["exr"],
             Purpose::SaveScene => &["toml"],
             Purpose::SavePlot => &["csv"],
         }

@@ -4,7 +4,7 @@ use crate::progressive::Stop;
 use crate::recipe::Recipe;
 use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::Camera;
-use crate::stages::{Shading, Stage, Surface};
+use crate::stages::{Shading, Stage, SurfaceRule};
 use crate::stress::{Case, by_the_book};
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -62,7 +62,7 @@ impl Origin {
     /// Whether the book's own arithmetic would give a picture that differs from this one.
     pub fn is_other_by_the_book(&self) -> bool {
         let rules = &self.recipe.rules;
-        rules.surface == Surface::Exact && rules.shading != Shading::ImageGradient
+        rules.surface == SurfaceRule::Exact && rules.shading != Shading::ImageGradient
     }
 
     /// The origin of a recipe that may have been changed elsewhere. If a stage or a built-in scene has the same spheres

@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::origin::Origin;
 use super::show::Show;
-use crate::progressive::{Reference, View};
+use crate::progressive::{ReferenceMeans, View};
 use crate::recipe::Recipe;
 use crate::stages::Stage;
 use std::sync::Arc;
@@ -58,7 +58,7 @@ pub struct ViewState {
     /// Position of the wipe's divider, `0..=1` of the picture's width.
     pub divider: f32,
     /// A loaded film to compare with.
-    pub reference: Option<Arc<Reference>>,
+    pub reference: Option<Arc<ReferenceMeans>>,
 }
 
 impl Default for ViewState {
@@ -115,7 +115,7 @@ impl ViewState {
     }
 
     /// The view for resolving the film; `other` is the film of the second picture, once there is one.
-    pub fn of_film(&self, other: Option<&Arc<Reference>>) -> View {
+    pub fn of_film(&self, other: Option<&Arc<ReferenceMeans>>) -> View {
         match (self.mode, other, self.show, &self.reference) {
             (Some(Mode::Difference), Some(other), ..) => View::Difference(Arc::clone(other)),
             (_, _, Show::Error, _) => View::StandardError,
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn one_thing_at_a_time_is_looked_at() {
-        let film = Arc::new(Reference { width: 1, height: 1, means: vec![[0.0; 3]] });
+        let film = Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.0; 3]] });
         let mut view = ViewState { reference: Some(Arc::clone(&film)), ..ViewState::default() };
         view.choose(Show::Error);
         assert_eq!((view.show(), view.of_film(None)), (Show::Error, View::StandardError));

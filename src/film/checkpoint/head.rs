@@ -67,7 +67,7 @@ impl Head {
             HeadError::Damaged(format!("its head cannot be read: {}", error.message()))
         })?;
         if !(1..=2).contains(&head.halves) {
-            return Err(HeadError::Damaged(format!("{} halves, where there are 1 or 2", head.halves)));
+            return Err(HeadError::Damaged(format!("it has {} halves, but a film has 1 or 2", head.halves)));
         }
         Ok(head)
     }

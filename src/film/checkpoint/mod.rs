@@ -6,10 +6,10 @@
 //! attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
 //! `weekenderFilm` the [`Head`].
 //!
-//! No data that is read can change unnoticed: one checksum covers the texts and all numbers of the head, another one
-//! covers these and the sums, and the mean is checked against the sums. Only flipped bits that do not affect the film
-//! can stay unnoticed: in standard attributes for other programs (the program's name, the window's position, the
-//! pixel aspect ratio), and in white space.
+//! No data that is read can change unnoticed: one checksum covers the texts and all numbers of the head, another covers
+//! these and the sums, and the mean is compared with the sums. A flipped bit can go unnoticed only where it does not
+//! affect the film: in standard attributes for other programs (the program's name, the window's position, the pixel
+//! aspect ratio), and in white space.
 
 mod head;
 mod read;
@@ -52,14 +52,14 @@ pub enum CheckpointError {
     #[error(transparent)]
     Input(#[from] InputError),
     /// The file is not an EXR file.
-    #[error("{} is no EXR file; a film is kept in a file that ends in .exr", path.display())]
+    #[error("{} is not an EXR file; films are stored in .exr files", path.display())]
     NotExr {
         /// The file.
         path: PathBuf,
     },
     /// The file is an EXR picture without a film.
     #[error(
-        "{} is a picture without the sums of its samples, so nothing can be added to it; only an .exr file that Weekender wrote has them",
+        "{} is a picture without a film's sums, so no samples can be added to it; only .exr files written by Weekender have them",
         path.display()
     )]
     NotFilm {
@@ -68,7 +68,7 @@ pub enum CheckpointError {
     },
     /// The film was written by another version.
     #[error(
-        "{} holds a film of version {version}, but this program reads version {VERSION}; go on with the program that wrote it, or render it again",
+        "{} holds a film of version {version}, but this program reads version {VERSION}; continue with the program that wrote it, or render it again",
         path.display()
     )]
     Version {
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_head_that_was_made_up_is_refused_whatever_its_checksum() {
+    fn an_invalid_head_is_refused_even_with_a_correct_checksum() {
         assert_eq!(opened(&file(|_| {})).unwrap().film, film());
         let refused = |change: fn(&mut Head), part: &str| {
             let told = opened(&file(change)).unwrap_err().to_string();
@@ -178,16 +178,16 @@ mod tests {
         refused(|head| head.samples = vec![[7, 7]], "7..7");
         refused(|head| head.samples = vec![[9, 3]], "9..3");
         refused(|head| head.samples = vec![[0, 6], [4, 10]], "samples 4..6 are already");
-        refused(|head| head.samples = vec![[0, 20]], "the picture is not that of the sums");
+        refused(|head| head.samples = vec![[0, 20]], "the picture does not match the sums");
         refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
         refused(|head| head.rejected = 121, "121 samples rejected");
         refused(|head| head.halves = 3, "3 halves");
-        refused(|head| head.halves = 1, "is of no film");
+        refused(|head| head.halves = 1, "a film has no channel");
         refused(|head| head.width = 5, "4x3 pixels, but its head says 5x3");
     }
 
     #[test]
-    fn ranges_may_stand_in_any_order_and_touch() {
+    fn ranges_may_be_in_any_order_and_adjacent() {
         let bytes = file(|head| head.samples = vec![[5, 10], [0, 3], [3, 5]]);
         assert_eq!(opened(&bytes).unwrap().film, film());
     }
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_too_short_for_its_size_is_refused_before_memory_is_taken() {
+    fn a_file_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
         let claim = |side: u32| {
             let bytes = file(|head| (head.width, head.height) = (side, side));
             let bytes = with_attribute(bytes, b"chunkCount\0int\0", 0, side as i32);
@@ -209,8 +209,8 @@ mod tests {
             opened(&with_attribute(bytes, b"dataWindow\0box2i\0", 12, last)).unwrap_err().to_string()
         };
         let told = claim(SIZE_LIMIT);
-        assert!(told.contains("bytes, but 16384x16384 pixels of 60 bytes take at least"), "{told}");
+        assert!(told.contains("bytes, but 16384x16384 pixels of 60 bytes need at least"), "{told}");
         let told = claim(20_000);
-        assert!(told.contains("a size of 20000x20000, where each side has 1 to 16384"), "{told}");
+        assert!(told.contains("its size is 20000x20000, but each side must have 1 to 16384"), "{told}");
     }
 }

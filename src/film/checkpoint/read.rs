@@ -29,36 +29,36 @@ pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
 /// # Errors
 /// [`CheckpointError`]; each message says what to do.
 pub fn read(mut reader: impl Read + Seek, length: u64, path: &Path) -> Result<FilmFile, CheckpointError> {
-    let source = Source { path };
-    source.check_magic(&mut reader)?;
-    let reader = Reader::read_from_buffered(reader, true).map_err(|error| source.damaged(error))?;
-    let [header] = reader.headers() else { return Err(source.not_film()) };
-    let head = source.head(header)?.ok_or_else(|| source.not_film())?;
-    let planes = find_planes(header, &head).map_err(|what| source.damaged(what))?;
-    check_length(header, length).map_err(|what| source.damaged(what))?;
-    let description = source.description(header, &head)?;
-    let samples = head.ranges().map_err(|error| source.damaged(error))?;
+    let file = NamedFile { path };
+    file.check_magic(&mut reader)?;
+    let reader = Reader::read_from_buffered(reader, true).map_err(|error| file.damaged(error))?;
+    let [header] = reader.headers() else { return Err(file.not_film()) };
+    let head = file.head(header)?.ok_or_else(|| file.not_film())?;
+    let planes = find_planes(header, &head).map_err(|what| file.damaged(what))?;
+    check_length(header, length).map_err(|what| file.damaged(what))?;
+    let description = file.description(header, &head)?;
+    let samples = head.ranges().map_err(|error| file.damaged(error))?;
     let texts = texts(header).map(|texts| (texts.recipe.to_vec(), texts.comments.to_vec()));
-    let (recipe, comments) = texts.ok_or_else(|| source.not_film())?;
+    let (recipe, comments) = texts.ok_or_else(|| file.not_film())?;
 
     let film = Film::try_new(head.width, head.height, head.halves);
     let mut rows = Rows {
         planes,
         width: head.width as usize,
-        halves: film.map_err(|error| source.no_film(error))?.halves,
+        halves: film.map_err(|error| file.no_film(error))?.halves,
         unit: Film::fixed_point(samples.count()),
         words: vec![0; head.width as usize],
         means: vec![[0; 3]; head.width as usize],
     };
-    let chunks = reader.filter_chunks(true, |_, _, _| true).map_err(|error| source.damaged(error))?;
+    let chunks = reader.filter_chunks(true, |_, _, _| true).map_err(|error| file.damaged(error))?;
     chunks
         .decompress_sequential(true, |meta, block| rows.take(&meta.headers[0], &block))
-        .map_err(|error| source.damaged(error))?;
+        .map_err(|error| file.damaged(error))?;
     if !head.has_sums(Texts { recipe: &recipe, comments: &comments }, &rows.halves) {
-        return Err(source.damaged("the sums are not those that were written"));
+        return Err(file.damaged("the sums do not match their checksum"));
     }
     let film = Film::from_parts(head.width, head.height, rows.halves, samples, head.rejected);
-    Ok(FilmFile { film: film.map_err(|error| source.no_film(error))?, description })
+    Ok(FilmFile { film: film.map_err(|error| file.no_film(error))?, description })
 }
 
 /// Reads the description of an EXR file; `None` if Weekender did not write one.
@@ -69,20 +69,20 @@ pub(crate) fn read_description(
     mut reader: impl Read + Seek,
     path: &Path,
 ) -> Result<Option<Description>, CheckpointError> {
-    let source = Source { path };
-    source.check_magic(&mut reader)?;
-    let meta = MetaData::read_from_buffered(reader, true).map_err(|error| source.damaged(error))?;
+    let file = NamedFile { path };
+    file.check_magic(&mut reader)?;
+    let meta = MetaData::read_from_buffered(reader, true).map_err(|error| file.damaged(error))?;
     let [header] = meta.headers.as_slice() else { return Ok(None) };
-    let Some(head) = source.head(header)? else { return Ok(None) };
-    source.description(header, &head).map(Some)
+    let Some(head) = file.head(header)? else { return Ok(None) };
+    file.description(header, &head).map(Some)
 }
 
 /// A file that is being read, with the path that messages name.
-struct Source<'a> {
+struct NamedFile<'a> {
     path: &'a Path,
 }
 
-impl Source<'_> {
+impl NamedFile<'_> {
     fn path(&self) -> PathBuf {
         self.path.to_owned()
     }
@@ -124,13 +124,13 @@ impl Source<'_> {
         })
     }
 
-    /// The description of the picture, once it is certain that it is unchanged.
+    /// The description of the picture, checked against its checksum.
     fn description(&self, header: &Header, head: &Head) -> Result<Description, CheckpointError> {
         let texts = texts(header).ok_or_else(|| self.damaged("its recipe is missing"))?;
         if !head.is_whole(texts) {
-            return Err(self.damaged("its head or its recipe is not what was written"));
+            return Err(self.damaged("its head or texts do not match their checksum"));
         }
-        let no_text = |_| self.damaged("its recipe or what it says of the picture is not text");
+        let no_text = |_| self.damaged("its recipe or description is not text");
         let mut description = Description::new(std::str::from_utf8(texts.recipe).map_err(no_text)?);
         for line in std::str::from_utf8(texts.comments).map_err(no_text)?.lines() {
             description.set_line(line);
@@ -162,10 +162,12 @@ fn find_planes(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
         ));
     }
     if !(1..=SIZE_LIMIT).contains(&head.width) || !(1..=SIZE_LIMIT).contains(&head.height) {
-        return Err(format!("a size of {columns}x{rows}, where each side has 1 to {SIZE_LIMIT} pixels"));
+        return Err(format!(
+            "its size is {columns}x{rows}, but each side must have 1 to {SIZE_LIMIT} pixels"
+        ));
     }
     if header.deep || header.blocks != BlockDescription::ScanLines || header.compression != Compression::RLE {
-        return Err("its pixels are not laid out as those of a film".to_owned());
+        return Err("its pixels are not stored as those of a film".to_owned());
     }
     let known = Plane::all(head.halves);
     let channels = &header.channels.list;
@@ -173,24 +175,24 @@ fn find_planes(header: &Header, head: &Head) -> Result<Vec<Plane>, String> {
         let channel = channels.iter().find(|channel| channel.name.as_slice() == name.as_bytes());
         let channel = channel.ok_or_else(|| format!("the channel {name} is missing"))?;
         if channel.sample_type != plane.sample_type() || channel.sampling.area() != 1 {
-            return Err(format!("the channel {name} is of another type"));
+            return Err(format!("the channel {name} has the wrong type"));
         }
     }
     let found = channels.iter().map(|channel| {
         let plane = known.iter().find(|(name, _)| channel.name.as_slice() == name.as_bytes());
-        plane.map(|(_, plane)| *plane).ok_or_else(|| format!("the channel {} is of no film", channel.name))
+        plane.map(|(_, plane)| *plane).ok_or_else(|| format!("a film has no channel {}", channel.name))
     });
     let planes = found.collect::<Result<Vec<_>, _>>()?;
     if planes.len() != known.len() {
-        return Err(format!("{} channels, where a film has {}", planes.len(), known.len()));
+        return Err(format!("it has {} channels, but a film has {}", planes.len(), known.len()));
     }
     Ok(planes)
 }
 
-/// The fewest bytes that a chunk takes: its entry in the offset table, its row number and its length.
+/// Fewest bytes of a chunk: its entry in the offset table, its row number and its length.
 const CHUNK_BYTES: u64 = 16;
 
-/// A chunk may always be this large, whatever the file's length: tiles may be larger than the picture.
+/// A chunk may always have this many bytes, whatever the file's length, because tiles may be larger than the picture.
 const SMALL_CHUNK_BYTES: u64 = 16 << 20;
 
 /// Refuses a file that is too short for what it claims to hold, and files that no reader can handle.
@@ -213,7 +215,7 @@ pub(crate) fn check_length(header: &Header, length: u64) -> Result<(), String> {
     let least = (header.chunk_count as u64).saturating_mul(CHUNK_BYTES).saturating_add(bytes / ratio);
     if length < least {
         return Err(format!(
-            "it has {length} bytes, but {columns}x{rows} pixels of {} bytes take at least {least}",
+            "it has {length} bytes, but {columns}x{rows} pixels of {} bytes need at least {least}",
             header.channels.bytes_per_pixel
         ));
     }
@@ -242,7 +244,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// Takes a block, which is a row, and holds its picture against its sums.
+    /// Takes a block, which is one row, and compares its picture with its sums.
     fn take(&mut self, header: &Header, block: &UncompressedBlock) -> Result<(), exr::error::Error> {
         let start = block.index.pixel_position.y() * self.width;
         let pixels = start..start + self.width;
@@ -265,7 +267,7 @@ impl Rows {
                 let sum =
                     self.halves.iter().try_fold(0_u64, |sum, half| sum.checked_add(half[pixel].0[colour]));
                 if sum.map(|sum| mean(sum, self.unit).to_bits()) != Some(*bits) {
-                    return Err(exr::error::Error::Invalid("the picture is not that of the sums".into()));
+                    return Err(exr::error::Error::Invalid("the picture does not match the sums".into()));
                 }
             }
         }

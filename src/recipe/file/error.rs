@@ -1,33 +1,32 @@
 //! What can be wrong with a scene file, with the line where it is.
 
+use super::place::Step;
 use crate::files::InputError;
 use crate::memory::MemoryError;
 use crate::recipe::{SamplesError, SceneNameError};
 use crate::render::JobError;
-use std::ops::Range;
 use thiserror::Error;
-use toml::de::{DeTable, DeValue};
 
-/// A scene file that cannot be used. The message names the file, the line and what to do.
+/// Why a scene file cannot be used. The message names the file and the line, and says what to do.
 #[derive(Debug, Error)]
 pub enum FileError {
-    /// The system would not hand it over, or it is no scene file.
+    /// The file cannot be read, or it is too long for a scene file.
     #[error(transparent)]
     Input(#[from] InputError),
-    /// There is no memory to read it.
+    /// There is not enough memory to read the file.
     #[error(transparent)]
     Memory(#[from] MemoryError),
-    /// Not UTF-8.
+    /// The file is not UTF-8 text.
     #[error(
-        "{name}:{line}: this is no text in UTF-8, as a scene file must be; save it as such, or give a .toml file"
+        "{name}:{line}: this is not UTF-8 text, but a scene file must be; save it as UTF-8, or name a .toml file"
     )]
     NotText {
         /// The file.
         name: String,
-        /// Line of the first byte that is no text, from 1.
+        /// Line of the first byte that is not UTF-8, from 1.
         line: usize,
     },
-    /// No TOML, or keys that are unknown, missing or of another type.
+    /// The file is not TOML, or a key is unknown, missing or of the wrong type.
     #[error("{name}:{line}:{column}: {message}")]
     Malformed {
         /// The file.
@@ -39,7 +38,7 @@ pub enum FileError {
         /// What is wrong.
         message: String,
     },
-    /// Well written, but no picture can be made of it.
+    /// The file is well-formed, but no picture can be made from it.
     #[error("{name}:{line}:{column}: {reason}")]
     Refused {
         /// The file.
@@ -56,44 +55,44 @@ pub enum FileError {
 /// Why a well-formed file was refused.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum Reason {
-    /// A value out of its range.
+    /// A value is out of range.
     #[error(transparent)]
     Job(#[from] JobError),
-    /// Samples per pixel.
+    /// The number of samples per pixel is out of range.
     #[error(transparent)]
     Samples(#[from] SamplesError),
-    /// A built-in scene that there is not.
+    /// There is no built-in scene of this name.
     #[error(transparent)]
     SceneName(#[from] SceneNameError),
-    /// A part of a scene beside the name of a built-in one.
-    #[error("{part} cannot stand beside scene, which has its own; remove one of them")]
+    /// The file names a built-in scene and also has a part of a scene.
+    #[error("{part} cannot be combined with scene, which has its own; remove one of them")]
     BesideScene {
         /// The part.
         part: &'static str,
     },
-    /// A built-in scene that was another when the file was made.
+    /// The built-in scene has changed since the file was made.
     #[error(
-        "the built-in scene {name:?} of this version is another than the one that this was made with; use that version, or remove scene_mark to take this one's"
+        "the built-in scene {name:?} has changed since this file was made; use the version that made it, or remove scene_mark to take the present scene"
     )]
     OtherScene {
-        /// Its name.
+        /// The scene's name.
         name: String,
     },
-    /// A whole number out of its range.
+    /// An integer is out of range.
     #[error("{what} is {value}, but must be within {lowest} and {highest}; {remedy}")]
     Whole {
-        /// Where it stands.
+        /// The key.
         what: &'static str,
         /// The value.
         value: i64,
-        /// The least it may be.
+        /// The smallest allowed value.
         lowest: u64,
-        /// The most it may be.
+        /// The largest allowed value.
         highest: u64,
         /// What to do.
         remedy: &'static str,
     },
-    /// A kind of material that there is not.
+    /// There is no such kind of material.
     #[error("{what}.kind is {kind:?}, but must be \"lambertian\", \"metal\" or \"dielectric\"")]
     UnknownKind {
         /// The material.
@@ -108,13 +107,13 @@ pub enum Reason {
         what: String,
         /// Its kind.
         kind: &'static str,
-        /// What is missing.
+        /// The missing key.
         key: &'static str,
-        /// A line that would do.
+        /// A line that has the key.
         example: &'static str,
     },
-    /// A material has a key that means nothing to its kind.
-    #[error("{what}.{key} means nothing to {kind}, which has only {keys}; remove it or change the kind")]
+    /// A material has a key that its kind does not have.
+    #[error("{what}.{key} has no meaning for {kind}, which has only {keys}; remove it or change the kind")]
     ForeignKey {
         /// The material.
         what: String,
@@ -122,55 +121,18 @@ pub enum Reason {
         kind: &'static str,
         /// The key.
         key: &'static str,
-        /// What the kind has.
+        /// The keys that the kind has.
         keys: &'static str,
     },
 }
 
-/// Line and column, both from 1, of a byte. Columns count characters.
-pub(super) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
-    let before = text.get(..byte).unwrap_or(text);
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    (1 + before.matches('\n').count(), 1 + before[line_start..].chars().count())
+/// Why a recipe was refused, and the path to the value in the file.
+pub(super) struct Refusal {
+    pub path: Vec<Step>,
+    pub reason: Reason,
 }
 
-/// One step from a table or array to something in it.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Step {
-    Key(String),
-    Index(usize),
-}
-
-/// Where in the text a value stands, or else the innermost of what surrounds it.
-///
-/// The text is parsed once more for this, so that reading without errors need not keep places.
-pub(super) fn find_place(text: &str, path: &[Step]) -> Range<usize> {
-    let Ok(document) = DeTable::parse(text) else { return 0..0 };
-    let mut place = 0..0;
-    let Some((Step::Key(first), rest)) = path.split_first() else { return place };
-    let Some((key, value)) = document.get_ref().get_key_value(first.as_str()) else { return place };
-    place = narrower(key.span(), value.span());
-    let mut value = value.get_ref();
-    for step in rest {
-        match (step, value) {
-            (Step::Key(name), DeValue::Table(table)) => {
-                let Some((key, inner)) = table.get_key_value(name.as_str()) else { return place };
-                place = narrower(key.span(), inner.span());
-                value = inner.get_ref();
-            }
-            (Step::Index(index), DeValue::Array(array)) => {
-                let Some(inner) = array.get(*index) else { return place };
-                place = inner.span();
-                value = inner.get_ref();
-            }
-            _ => return place,
-        }
-    }
-    place
-}
-
-/// The key's place: a reader looks for the key. But the parts of a table written as `[a.b]` have no key of
-/// their own on that line.
-fn narrower(key: Range<usize>, value: Range<usize>) -> Range<usize> {
-    if key.is_empty() { value } else { key }
+/// A refusal of the value at `path`.
+pub(super) fn refuse(path: &[&str], reason: impl Into<Reason>) -> Refusal {
+    Refusal { path: path.iter().map(|key| Step::Key((*key).to_owned())).collect(), reason: reason.into() }
 }

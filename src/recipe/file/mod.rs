@@ -16,15 +16,19 @@
 //! material = "ground"
 //! ```
 //!
-//! Besides there are `[render]`, `[sky]` and, for stages, `[rules]`. A sphere may hold its material as an inline
-//! table. In place of `[sky]`, `[materials]` and `[[spheres]]` a file may name a built-in scene, as pictures of many
-//! spheres do: `scene = "field:1000000"`, and with it `scene_mark`, which tells whether it is still the same.
+//! A file can also have `[render]`, `[sky]` and, for stages, `[rules]`. A sphere may have its material as an inline
+//! table. Instead of `[sky]`, `[materials]` and `[[spheres]]`, a file may name a built-in scene, as pictures of many
+//! spheres do: `scene = "field:1000000"`. With it comes `scene_mark`, a checksum that shows whether the scene has changed.
 //!
-//! What is written and read back is the same recipe to the bit; its name is the file's and stands not in it.
+//! A recipe that is written and read back is the same to the bit, except for its name, which is that of the file.
 
 mod error;
+mod materials;
 mod named;
+mod place;
 mod read;
+mod settings;
+mod triple;
 mod write;
 
 pub use error::{FileError, Reason};

@@ -1,21 +1,22 @@
-//! Built-in scenes that a file names in place of their spheres.
+//! Built-in scenes that a file names instead of listing their spheres.
 
 use crate::film::Checksum;
 use crate::scene::builtin::is_field;
 use crate::scene::{Material, Parameter, Scene};
 use glam::DVec3;
 
-/// Fields of so many spheres are named where a recipe stands in a picture: listing a million takes seconds and a
-/// hundred megabytes. Smaller ones are listed, so that the picture can be made again whatever becomes of the field.
+/// In pictures, fields of at least so many spheres are named: listing a million takes seconds and a hundred megabytes.
+/// Smaller fields are listed, so that the picture can be rendered again even if the built-in field changes.
 const NAMED_FROM: usize = 10_000;
 
-/// The name of the built-in field that the scene is, to the bit, if it is so large that it is named.
+/// The name of the built-in field that equals the scene to the bit; `None` if there is none, or if it is small enough to be
+/// listed.
 pub(super) fn name_of(scene: &Scene) -> Option<String> {
     let count = scene.spheres.len().checked_sub(1).filter(|count| *count >= NAMED_FROM)? as u64;
     is_field(scene, count).then(|| format!("field:{count}"))
 }
 
-/// A mark of all that a scene holds, by which another is told from it: of names and the bits of numbers.
+/// A checksum of a scene: of all names and the bits of all numbers.
 pub(super) fn mark(scene: &Scene) -> String {
     let mut sum = Checksum::default();
     let vector = |v: DVec3| v.to_array().map(f64::to_bits);
@@ -50,7 +51,7 @@ mod tests {
     use crate::stages::Stage;
 
     #[test]
-    fn only_large_fields_that_nobody_changed_are_named() {
+    fn only_large_unchanged_fields_are_named() {
         let mut scene = field(20_000).0;
         assert_eq!(name_of(&scene).as_deref(), Some("field:20000"));
         scene.spheres[19_999].radius += 1e-4;
@@ -61,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_is_changed_changes_the_mark() {
+    fn any_change_changes_the_mark() {
         let scene = field(50).0;
         let changed = |change: fn(&mut Scene)| {
             let mut other = scene.clone();

@@ -8,12 +8,12 @@ use crate::stages::Rules;
 use glam::DVec3;
 use std::fmt::Write;
 
-/// With more spheres than this each takes one line, and all stand first in the file.
+/// With more spheres than this, each takes one line, and they come first in the file.
 const LONG_FORM_LIMIT: usize = 40;
 
-/// The recipe as a scene file, apart from its name. Numbers have as few digits as give the same bits again.
+/// The recipe as a scene file, without its name. Numbers have the fewest digits that give the same bits again.
 ///
-/// A recipe that is not valid is written as it is; reading it back says what is wrong.
+/// A recipe that is not valid is written as it is; reading it back reports what is wrong.
 pub fn to_toml(recipe: &Recipe) -> String {
     let mut text = String::with_capacity(1000 + 100 * recipe.scene.spheres.len());
     // Writing to a string cannot fail.
@@ -21,7 +21,7 @@ pub fn to_toml(recipe: &Recipe) -> String {
     text
 }
 
-/// The same for a picture to hold: a large field that is built in and unchanged is named, not listed.
+/// Like [`to_toml`], for the description of a picture: a large, unchanged built-in field is named, not listed.
 pub fn to_picture_toml(recipe: &Recipe) -> String {
     let Some(name) = name_of(&recipe.scene) else { return to_toml(recipe) };
     let mut text = String::new();
@@ -95,7 +95,7 @@ fn write_render(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
     Ok(())
 }
 
-/// Only the rules that differ from the finished renderer's.
+/// Writes only the rules that differ from the finished renderer's.
 fn write_rules(out: &mut String, rules: &Rules) -> std::fmt::Result {
     let table = |rules: &Rules| toml::Table::try_from(rules).unwrap_or_default();
     let finished = table(&Rules::FINISHED);
@@ -142,7 +142,7 @@ fn vector(v: DVec3) -> String {
     format!("[{}, {}, {}]", number(v.x), number(v.y), number(v.z))
 }
 
-/// As short as Rust's own shortest form, which TOML reads too, but for NaN.
+/// Rust's shortest form, which TOML can read, except for NaN.
 fn number(x: f64) -> String {
     if x.is_nan() { "nan".to_owned() } else { format!("{x:?}") }
 }
@@ -152,7 +152,7 @@ fn key(name: &str) -> String {
     if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { quoted(name) }
 }
 
-/// A basic string of TOML.
+/// A TOML basic string.
 fn quoted(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 2);
     out.push('"');

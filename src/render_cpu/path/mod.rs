@@ -24,7 +24,7 @@ use super::sphere::{
 };
 use super::work::{LaneBlocks, TileStats, Work};
 use crate::kernel::{LoadShading, parts};
-use crate::stages::Surface;
+use crate::stages::SurfaceRule;
 use collect::collect;
 use draw::Draw;
 use records::HitRecords;
@@ -184,7 +184,7 @@ fn hit_point<L: Lanes, const PARTS: u32>(
     let (rays, features) = (&packet.rays, &broadcast.prepared.features);
     let t = packet.nearest.distance();
     let (reference, curvature) = (record.reference(), record.curvature());
-    if PARTS & parts::RULES != 0 && features.surface != Surface::Exact {
+    if PARTS & parts::RULES != 0 && features.surface != SurfaceRule::Exact {
         return book_point(rays, t, reference, curvature);
     }
     let radius = record.radius();

@@ -11,7 +11,7 @@ use crate::render_cpu::material::{
     Incidence, Scatter, Surface, hemisphere, incidence_of, incidence_of_sine2, refracted, scatter, surface_of,
 };
 use crate::render_cpu::sphere::Rays;
-use crate::stages::{DielectricLaws, Surface as SurfaceRule};
+use crate::stages::{DielectricLaws, SurfaceRule};
 
 /// Continues paths from their hits, and starts new ones at the camera where a path has ended.
 #[inline(always)]

@@ -1,19 +1,18 @@
 //! The current render: its film, its backends and its status.
 
-use super::guard::{Backend, dismiss, guarded};
+mod backends;
+mod notes;
+
+use super::guard::{Backend, guarded};
 use super::pending::Pending;
 use super::shared::{Picture, Shared};
-use super::{EndReason, Factory, HistoryPoint, PassSizer, Phase, Plan, Status, View};
+use super::{EndReason, Factory, PassSizer, Phase, Plan, Status, View};
 use crate::backends::BackendChoice;
 use crate::film::{Film, SampleRanges};
-use crate::render::{RenderError, RenderJob, Renderer, Stats};
+use crate::render::{RenderError, RenderJob, Renderer};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::TryRecvError;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
-
-/// Estimating the error may take at most one part in this many of the time.
-const ERROR_ESTIMATE_SHARE: u32 = 20;
 
 /// The current render.
 pub(super) struct Render {
@@ -123,23 +122,6 @@ impl Render {
         self.end(if is_whole { EndReason::Samples } else { EndReason::TimeLimit });
     }
 
-    /// Switches to another backend once it is ready. Until then the current one continues.
-    pub fn switch(&mut self, choice: BackendChoice, factory: &Arc<Mutex<Factory>>) {
-        if self.pending.as_ref().is_some_and(|pending| pending.choice == choice) {
-            return;
-        }
-        self.pending = None;
-        if choice == self.choice {
-            return;
-        }
-        if self.is_prepared {
-            self.pending = Pending::start(choice.clone(), &self.job, factory, &self.cancel);
-        }
-        if self.pending.is_none() {
-            self.change_backend(choice);
-        }
-    }
-
     /// Prepares the job if necessary; otherwise renders a pass.
     pub fn step(
         &mut self,
@@ -158,113 +140,9 @@ impl Render {
         outcome
     }
 
-    /// Hands over to a backend that has become ready.
-    fn welcome_pending(&mut self, backend: &mut Option<Backend>) {
-        let Some(pending) = self.pending.take() else { return };
-        let outcome = match pending.outcome.try_recv() {
-            Ok(outcome) => outcome,
-            Err(TryRecvError::Empty) => {
-                self.pending = Some(pending);
-                return;
-            }
-            Err(TryRecvError::Disconnected) => Err("its preparation ended by a panic".to_owned()),
-        };
-        match outcome {
-            Ok(mut ready) => {
-                if let Some((_, old)) = backend
-                    && let Err(error) = self.collect(old.as_mut())
-                {
-                    self.status.say(vec![error.to_string()]);
-                    self.requested = self.film.samples().clone();
-                }
-                self.status.backend = Some(ready.renderer.info());
-                self.status.say(ready.renderer.take_messages());
-                self.status.kernel = ready.renderer.kernel();
-                self.status.hierarchy += ready.renderer.hierarchy_time();
-                self.status.prepare += ready.took;
-                self.choice = pending.choice;
-                dismiss(backend.replace((self.choice.clone(), ready.renderer)));
-                self.sizer.restart();
-            }
-            Err(reason) => {
-                self.status.say(vec![format!("{reason}; the {} goes on", self.choice.name())]);
-            }
-        }
-    }
-
-    fn change_backend(&mut self, choice: BackendChoice) {
-        self.pending = None;
-        if choice != self.choice {
-            self.choice = choice;
-            self.is_prepared = false;
-            self.sizer.restart();
-            if self.is_working() {
-                self.status.phase = Phase::Preparing;
-            }
-        }
-    }
-
-    /// Continues the film with the next backend that has not failed, or ends the render if there is none.
-    pub fn fail(&mut self, error: &RenderError) {
-        if matches!(error, RenderError::FilmLost { .. }) {
-            self.film = self.job.new_film();
-            self.note_film();
-        }
-        // What was not in the film is lost, and is rendered again.
-        self.requested = self.film.samples().clone();
-        self.failed.push(self.choice.clone());
-        match BackendChoice::fallback(&self.failed) {
-            Some(fallback) => {
-                let name = fallback.words();
-                self.status.say(vec![format!("{error}; {name} goes on with the same picture")]);
-                self.change_backend(fallback);
-            }
-            None => self.status.phase = Phase::Failed(error.to_string()),
-        }
-    }
-
     /// Reports a problem that does not affect the film.
     pub fn complain(&mut self, error: &RenderError) {
         self.status.say(vec![error.to_string()]);
-    }
-
-    fn prepare(
-        &mut self,
-        backend: &mut Option<Backend>,
-        factory: &Mutex<Factory>,
-        begin: Instant,
-    ) -> Result<(), RenderError> {
-        // A complete film needs no renderer.
-        if self.next_pass().is_none() {
-            self.end_of_plan();
-            return Ok(());
-        }
-        if backend.as_ref().is_none_or(|(choice, _)| *choice != self.choice) {
-            let choice = &self.choice;
-            let make = || Ok(factory.lock().unwrap_or_else(PoisonError::into_inner)(choice));
-            match (guarded(choice.name(), make)?, &backend) {
-                (Ok(renderer), _) => dismiss(backend.replace((self.choice.clone(), renderer))),
-                (Err(error), Some((old, _))) => {
-                    self.status.messages.push(format!("{error}; the {} goes on", old.name()));
-                    self.choice = old.clone();
-                }
-                (Err(error), None) => {
-                    let (backend, reason) = (self.choice.name(), error.to_string());
-                    return Err(RenderError::Backend { backend, reason });
-                }
-            }
-        }
-        if let Some((_, renderer)) = backend {
-            guarded(self.choice.name(), || renderer.prepare(&self.job, &self.cancel))?;
-            self.status.backend = Some(renderer.info());
-            self.status.say(renderer.take_messages());
-            self.status.kernel = renderer.kernel();
-            self.status.hierarchy += renderer.hierarchy_time();
-            self.is_prepared = true;
-            self.status.phase = Phase::Tracing;
-            self.status.prepare += begin.elapsed();
-        }
-        Ok(())
     }
 
     /// The next samples; `None` if none are missing or no time is left for them.
@@ -336,56 +214,6 @@ impl Render {
             return Err(RenderError::Backend { backend: self.choice.name(), reason });
         }
         Ok(())
-    }
-
-    /// Notes which backends added samples to a film that held `held` samples. Some can have arrived before a failure.
-    fn note_added(&mut self, renderer: &dyn Renderer, held: u64, outcome: &Result<Stats, RenderError>) {
-        let added = self.film.sample_count().saturating_sub(held);
-        if added > 0 {
-            if let Ok(stats) = outcome {
-                self.status.stats.add(stats);
-            }
-            for (info, samples) in renderer.credits(added) {
-                self.status.credit(&info, samples);
-            }
-            self.note_film();
-        }
-    }
-
-    /// Updates the status from the film.
-    fn note_film(&mut self) {
-        let samples = self.film.sample_count();
-        self.status.samples_per_pixel = samples;
-        self.status.rejected_samples = self.film.rejected();
-        let is_history = samples >= self.next_history_samples;
-        let is_due = self.estimated_at.elapsed() >= self.estimate_took * ERROR_ESTIMATE_SHARE;
-        if is_history || is_due {
-            self.estimate_error();
-        }
-        if is_history {
-            self.next_history_samples = (samples + 1).next_power_of_two();
-            if let Some(error) = self.status.error {
-                let backend = self.status.backend.as_ref().map_or("", |backend| backend.name);
-                self.status.history.push(HistoryPoint {
-                    backend,
-                    samples_per_pixel: samples,
-                    trace_seconds: self.status.trace.as_secs_f64(),
-                    rmse_estimate: error.rmse,
-                    rel_mse_estimate: error.rel_mse,
-                });
-            }
-        }
-    }
-
-    fn estimate_error(&mut self) {
-        if self.estimated_samples != self.film.sample_count() {
-            let begin = Instant::now();
-            self.status.error = self.film.error();
-            self.status.doubt = self.status.error.and_then(|error| self.film.doubt(&error));
-            self.estimated_samples = self.film.sample_count();
-            self.estimate_took = begin.elapsed();
-            self.estimated_at = Instant::now();
-        }
     }
 
     /// Resolves a picture if one was requested and there is something new to show.

@@ -1,0 +1,99 @@
+//! The error of a film, estimated from its halves.
+
+use super::{FIXED_POINT_SCALE, Film};
+
+/// An estimate of the picture's error from its two halves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ErrorEstimate {
+    /// Root of the mean squared error over pixels and channels, linear radiance.
+    pub rmse: f64,
+    /// One standard deviation of `rmse`, from the spread of the squared errors over the pixels. Neither number includes
+    /// features that no sample has hit yet.
+    pub rmse_deviation: f64,
+    /// `mean(error^2 / (mean^2 + 0.01))`, which gives errors in dark regions more weight.
+    pub rel_mse: f64,
+}
+
+/// The error estimate is doubtful if it effectively rests on fewer pixels than this.
+const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
+
+/// It is doubtful only if these are also less than this share of all pixels: small pictures have few pixels.
+const DOMINANT_SHARE: f64 = 0.2;
+
+impl ErrorEstimate {
+    /// The effective number of pixels behind the estimate, `(sum e^2)^2 / sum e^4` with `e` the errors. It is small if
+    /// a few pixels dominate, and infinite without any error.
+    pub fn pixels_in_effect(&self) -> f64 {
+        // For n pixels, the variance of the mean square is (mean e^4 - (mean e^2)^2) / n.
+        let share = 2.0 * self.rmse_deviation / self.rmse;
+        if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
+    }
+
+    /// The relative uncertainty of the estimate, one standard deviation, such as "± 0.2 %".
+    pub fn uncertainty(&self) -> String {
+        let share = if self.rmse > 0.0 { self.rmse_deviation / self.rmse } else { 0.0 };
+        format!("± {:.1} %", (100.0 * share).max(0.1))
+    }
+}
+
+impl Film {
+    /// The error estimated from the halves. With `A` and `B` the means of `a` and `b` samples,
+    /// `MSE = mean((A - B)^2) a b / (a + b)^2`. This is a quarter of the squared difference when `a = b`, as after
+    /// every even number of samples. `None` with one half, or while a half has no samples.
+    pub fn error(&self) -> Option<ErrorEstimate> {
+        let [half_a, half_b] = self.halves.as_slice() else { return None };
+        let (count_a, count_b) = (self.half_sample_count(0) as f64, self.half_sample_count(1) as f64);
+        if count_a == 0.0 || count_b == 0.0 || half_a.is_empty() {
+            return None;
+        }
+        let count = count_a + count_b;
+        let (scale_a, scale_b) = (1.0 / (count_a * FIXED_POINT_SCALE), 1.0 / (count_b * FIXED_POINT_SCALE));
+        let scale = 1.0 / (count * FIXED_POINT_SCALE);
+        let weight = (count_a / count) * (count_b / count);
+        let (mut square_sum, mut relative_sum, mut fourth_power_sum) = (0.0, 0.0, 0.0);
+        for (a, b) in half_a.iter().zip(half_b) {
+            let (mut squares, mut relative) = ([0.0; 3], [0.0; 3]);
+            for channel in 0..3 {
+                let (a, b) = (a.0[channel], b.0[channel]);
+                let mean = (a + b) as f64 * scale;
+                let difference = a as f64 * scale_a - b as f64 * scale_b;
+                let square = difference * difference * weight;
+                squares[channel] = square;
+                relative[channel] = square / (mean * mean + 1e-2);
+            }
+            // The channels of a pixel share their noise.
+            let of_pixel = squares.iter().sum::<f64>();
+            square_sum += of_pixel;
+            fourth_power_sum += of_pixel * of_pixel;
+            relative_sum += relative.iter().sum::<f64>();
+        }
+        let pixels = half_a.len() as f64;
+        let [square, fourth_power] = [square_sum / (3.0 * pixels), fourth_power_sum / (9.0 * pixels)];
+        let deviation_of_square = ((fourth_power - square * square).max(0.0) / pixels).sqrt();
+        let rmse = square.sqrt();
+        Some(ErrorEstimate {
+            rmse,
+            rmse_deviation: if rmse > 0.0 { 0.5 * deviation_of_square / rmse } else { 0.0 },
+            rel_mse: relative_sum / (3.0 * pixels),
+        })
+    }
+
+    /// Why an estimate of this film's error is doubtful, in words: few pixels dominate it, or no path has found any
+    /// light. The estimate and its deviation are then most likely too low.
+    pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
+        if estimate.rmse == 0.0 && self.halves.iter().flatten().all(|sum| sum.0 == [0; 3]) {
+            let count = self.sample_count();
+            return Some(format!(
+                "no path has found any light in {count} samples per pixel, so the error cannot be estimated; more \
+                 samples may find some"
+            ));
+        }
+        let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
+        (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64).then(|| {
+            format!(
+                "few pixels dominate the error estimate: in effect it rests on {pixels:.0} of {all} pixels, but needs \
+                 {PIXELS_IN_EFFECT_MIN:.0}; it may be wrong by a factor until there are more samples"
+            )
+        })
+    }
+}

@@ -1,0 +1,145 @@
+//! Adapters: what they are, what they can do, and which comes first.
+
+use std::fmt;
+
+/// Number of storage buffers that the path tracer binds.
+pub const STORAGE_BUFFERS: u32 = 8;
+
+/// Number of threads that keep a software adapter busy. 1024 threads and 4096 were equally fast; a dispatch of the
+/// whole picture was a seventh slower.
+const BUSY_THREADS_OF_SOFTWARE: u64 = 4096;
+
+/// A description of an adapter, for lists and reports.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterInfo {
+    /// The adapter's name, as the driver reports it.
+    pub name: String,
+    /// "discrete GPU", "integrated GPU", "virtual GPU", "software" or "other".
+    pub kind: &'static str,
+    /// "Vulkan", "Metal", "DX12" or "GL".
+    pub backend: String,
+    /// The driver's name and version.
+    pub driver: String,
+    /// Whether the adapter is a software implementation that runs on the CPU.
+    pub is_software: bool,
+    /// Size limit of a storage buffer binding, in bytes.
+    pub storage_binding_limit: u64,
+    /// Size limit of a buffer, in bytes.
+    pub buffer_limit: u64,
+    /// Whether the adapter supports timestamp queries, which time a dispatch.
+    pub has_timestamps: bool,
+    /// Largest number of threads that run in step.
+    pub subgroup_size: u32,
+    /// The reason why the path tracer cannot run on this adapter, if it cannot.
+    pub lacks: Option<String>,
+}
+
+impl AdapterInfo {
+    fn of(adapter: &wgpu::Adapter) -> Self {
+        let (info, limits) = (adapter.get_info(), adapter.limits());
+        let compute = wgpu::DownlevelFlags::COMPUTE_SHADERS;
+        let lacks = if !adapter.get_downlevel_capabilities().flags.contains(compute) {
+            Some("no compute shaders".to_owned())
+        } else if limits.max_storage_buffers_per_shader_stage < STORAGE_BUFFERS {
+            let count = limits.max_storage_buffers_per_shader_stage;
+            Some(format!("only {count} storage buffers per shader, but needs {STORAGE_BUFFERS}"))
+        } else {
+            None
+        };
+        AdapterInfo {
+            name: info.name.trim().to_owned(),
+            kind: match info.device_type {
+                wgpu::DeviceType::DiscreteGpu => "discrete GPU",
+                wgpu::DeviceType::IntegratedGpu => "integrated GPU",
+                wgpu::DeviceType::VirtualGpu => "virtual GPU",
+                wgpu::DeviceType::Cpu => "software",
+                wgpu::DeviceType::Other => "other",
+            },
+            backend: match info.backend {
+                wgpu::Backend::Vulkan => "Vulkan".to_owned(),
+                wgpu::Backend::Metal => "Metal".to_owned(),
+                wgpu::Backend::Dx12 => "DX12".to_owned(),
+                wgpu::Backend::Gl => "GL".to_owned(),
+                other => format!("{other:?}"),
+            },
+            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+            // GL reports the type "other" for every device, software included.
+            is_software: info.device_type == wgpu::DeviceType::Cpu || names_software(&info.name),
+            storage_binding_limit: limits.max_storage_buffer_binding_size,
+            buffer_limit: limits.max_buffer_size,
+            has_timestamps: adapter.features().contains(wgpu::Features::TIMESTAMP_QUERY),
+            subgroup_size: info.subgroup_max_size,
+            lacks,
+        }
+    }
+
+    /// Number of threads that share a limit on loop turns: software counts the turns of all threads that run in step.
+    /// GPUs have no known limit.
+    pub fn threads_in_step(&self) -> u32 {
+        // Some adapters do not report a subgroup size; 8 threads fit a processor's registers.
+        if self.is_software { self.subgroup_size.clamp(8, 64) } else { 1 }
+    }
+
+    /// Number of threads that keep the adapter busy. A dispatch uses this many if it can, and then as many samples as
+    /// fit its time. More threads with fewer samples each are slower, because threads that run in step wait for the
+    /// longest.
+    pub fn busy_threads(&self) -> u64 {
+        if self.is_software { BUSY_THREADS_OF_SOFTWARE } else { u64::MAX }
+    }
+
+    /// Whether the adapter may be chosen by default: a GPU that the path tracer can run on.
+    pub fn is_fit(&self) -> bool {
+        !self.is_software && self.lacks.is_none()
+    }
+
+    /// The sort key for adapters: the smallest comes first.
+    fn rank(&self) -> (bool, bool, u8, u8) {
+        let kind = match self.kind {
+            "discrete GPU" => 0,
+            "integrated GPU" => 1,
+            "virtual GPU" => 2,
+            _ => 3,
+        };
+        (self.lacks.is_some(), self.is_software, kind, u8::from(self.backend == "GL"))
+    }
+}
+
+/// Formats the adapter like `NVIDIA H200 (discrete GPU, Vulkan, driver 580.1)`.
+impl fmt::Display for AdapterInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = if self.is_software { "software" } else { self.kind };
+        write!(f, "{} ({kind}, {}, {})", self.name, self.backend, self.driver)
+    }
+}
+
+fn names_software(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["llvmpipe", "softpipe", "swiftshader", "swrast", "basic render"].iter().any(|s| name.contains(s))
+}
+
+/// All adapters, best first. GL is enumerated only if no other backend has a usable adapter that is `wanted`: it would
+/// list the same hardware again, and its libraries print warnings of their own.
+pub fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, wgpu::Adapter)> {
+    let mut adapters = adapters_of(wgpu::Backends::PRIMARY);
+    if !adapters.iter().any(|(info, _)| info.lacks.is_none() && wanted(info)) {
+        adapters.extend(adapters_of(wgpu::Backends::GL));
+    }
+    adapters.sort_by_key(|(info, _)| info.rank());
+    adapters
+}
+
+fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends,
+        // Without this, debug builds would load the driver's validation layers, which slow everything down.
+        flags: wgpu::InstanceFlags::empty(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let found = pollster::block_on(instance.enumerate_adapters(backends));
+    found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect()
+}
+
+/// All adapters of this machine, the default one first. Software adapters come after hardware.
+pub fn adapters() -> Vec<AdapterInfo> {
+    all_adapters(|_| true).into_iter().map(|(info, _)| info).collect()
+}

@@ -1,0 +1,199 @@
+//! Tracing a range of samples: splits it into dispatches, sends for the film, and traces missing samples again.
+
+use super::dispatches::{BoundDispatch, Broken, CAUTION_LIMIT, CAUTION_SHIFT};
+use super::layout::{GpuBlock, GpuDispatch, tile_size};
+use super::loaded::Loaded;
+use super::options::InjectionPoint;
+use super::schedule::Blocks;
+use super::{Fault, GpuRenderer, failed};
+use crate::film::Film;
+use crate::render::{RenderError, Stats};
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+impl GpuRenderer {
+    /// Submits the dispatches of `range`; the last may still be in flight on return. A film that was sent for is added
+    /// to `film` as soon as the device has other work.
+    pub(super) fn trace_range(
+        &mut self,
+        loaded: &mut Loaded,
+        range: &Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, Broken> {
+        loaded.film.check_new(range, film)?;
+        self.dispatches.check_whole()?;
+        let settings = *loaded.job.settings();
+        let tile = tile_size(settings.width, settings.height);
+        let tile_pixels = u64::from(tile[0]) * u64::from(tile[1]);
+        let mut stats = Stats::default();
+        for slab in 0..loaded.film.slabs.len() {
+            let (first_row, row_count) = {
+                let slab = &loaded.film.slabs[slab];
+                (slab.first_row, slab.row_count)
+            };
+            let area = [settings.width, row_count];
+            let most = self.dispatches.whole_samples(&loaded.features, &loaded.scene.prepared);
+            let most = most.filter(|_| !loaded.features.aside).unwrap_or(u64::MAX);
+            let tiles = settings.width.div_ceil(tile[0]) * row_count.div_ceil(tile[1]);
+            let mut left = Blocks::of_range(range.clone(), &settings, loaded.scene.prepared.block_limit);
+            loop {
+                let affordable = self.dispatches.budget(&loaded.features).paths();
+                let threads = (u64::from(tiles) * tile_pixels).min(self.gpu.adapter.busy_threads());
+                let samples = self.options.samples_per_dispatch.unwrap_or(affordable / threads).min(most);
+                let (blocks, samples) = left.take(samples >> (CAUTION_SHIFT * self.dispatches.caution));
+                if blocks.is_empty() {
+                    break;
+                }
+                let blocks: Arc<[GpuBlock]> = blocks.into();
+                let mut first_tile = 0;
+                while first_tile < tiles {
+                    if cancel.load(Ordering::Relaxed) {
+                        return Err(RenderError::Cancelled.into());
+                    }
+                    let slot = self.dispatches.free_slot(&self.gpu, cancel)?;
+                    let affordable = self.dispatches.budget(&loaded.features).paths();
+                    let tile_limit =
+                        (affordable / (tile_pixels * samples).max(1)).min(self.dispatches.tile_limit());
+                    let tile_count = evenly(tiles - first_tile, tile_limit);
+                    let order = GpuDispatch {
+                        first_tile,
+                        tile_count,
+                        block_count: blocks.len() as u32,
+                        turn_limit: self.dispatches.turn_limit(&loaded.features),
+                        first_row,
+                        row_count,
+                        ..GpuDispatch::default()
+                    };
+                    let dispatch = BoundDispatch {
+                        kernel: loaded.features,
+                        pipeline: loaded.kernel.pipeline.clone(),
+                        scene: loaded.scene.group.clone(),
+                        film: loaded.film.slabs[slab].group.clone(),
+                        order_buffer: loaded.film.order.clone(),
+                        blocks_buffer: loaded.film.blocks.clone(),
+                        counters: loaded.film.counters().clone(),
+                        blocks: Arc::clone(&blocks),
+                        order,
+                        paths: u64::from(tile_count) * tile_pixels * samples,
+                        samples: pixels_within(area, tile, first_tile..first_tile + tile_count) * samples,
+                    };
+                    self.send_off(slot, dispatch).map_err(failed)?;
+                    first_tile += tile_count;
+                    if loaded.film.is_leaving() {
+                        stats.add(&loaded.film.arrive(&self.gpu, film)?);
+                    }
+                }
+            }
+        }
+        stats.add(&loaded.film.arrive(&self.gpu, film)?);
+        Ok(stats)
+    }
+
+    /// Submits a new dispatch, unless an injected fault is due.
+    fn send_off(&mut self, slot: usize, mut dispatch: BoundDispatch) -> Result<(), String> {
+        let fault = self.inject(InjectionPoint::Dispatch, self.dispatches.count);
+        if matches!(fault, Some(Fault::Short | Fault::AlwaysShort)) {
+            dispatch.order.block_count = 0;
+        }
+        self.dispatches.submit(&self.gpu, slot, dispatch, 0)
+    }
+
+    /// Sends for the film once it is complete.
+    pub(super) fn send_for_film(&mut self, loaded: &mut Loaded) -> Result<(), Broken> {
+        if !loaded.film.is_leaving() {
+            self.inject(InjectionPoint::Fetch, self.fetches);
+            self.fetches += 1;
+            self.dispatches.drain(&self.gpu, None)?;
+            loaded.film.leave(&self.gpu);
+        }
+        Ok(self.gpu.faults.check().map_err(failed)?)
+    }
+
+    /// Adds everything traced so far to the film.
+    pub(super) fn collect_all(&mut self, loaded: &mut Loaded, film: &mut Film) -> Result<Stats, Broken> {
+        let mut stats = Stats::default();
+        // A film already on its way comes first.
+        while loaded.film.holds_samples() {
+            self.send_for_film(loaded)?;
+            stats.add(&loaded.film.arrive(&self.gpu, film)?);
+        }
+        Ok(stats)
+    }
+
+    /// Traces the samples on the device and `range` again because samples were missing, in smaller dispatches.
+    ///
+    /// # Errors
+    /// If samples are still missing; the film is then unchanged.
+    pub(super) fn trace_again(
+        &mut self,
+        loaded: &mut Loaded,
+        mut shortfall: String,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        let mut missing = loaded.film.held();
+        // The range may have been recorded before.
+        if missing.overlap(&range).is_none() {
+            missing.insert(range)?;
+        }
+        while self.dispatches.caution < CAUTION_LIMIT {
+            self.dispatches.caution += 1;
+            self.messages
+                .push(format!("{shortfall}; the missing samples are traced again in smaller pieces"));
+            self.forget(loaded);
+            let begin = Instant::now();
+            let mut stats = Stats::default();
+            let outcome = missing.iter().try_for_each(|range| {
+                stats.add(&self.trace_range(loaded, &range, film, cancel)?);
+                self.dispatches.drain(&self.gpu, Some(cancel))?;
+                loaded.film.note(range, begin.elapsed()).map_err(Broken::from)
+            });
+            match outcome.and_then(|()| self.collect_all(loaded, film)) {
+                Ok(collected) => {
+                    stats.add(&collected);
+                    return Ok(stats);
+                }
+                Err(Broken::Ended(error)) => return Err(error),
+                Err(Broken::Short(reason)) => shortfall = reason,
+            }
+        }
+        Err(failed(format!("{shortfall}; update the graphics driver or render on the CPU")))
+    }
+}
+
+/// Number of pixels in `tiles`, which are numbered row by row in a picture of the given size.
+fn pixels_within([width, height]: [u32; 2], tile: [u32; 2], tiles: Range<u32>) -> u64 {
+    let across = width.div_ceil(tile[0]);
+    let pixels = |number: u32| {
+        let corner = [number % across * tile[0], number / across * tile[1]];
+        u64::from((width - corner[0]).min(tile[0])) * u64::from((height - corner[1]).min(tile[1]))
+    };
+    tiles.map(pixels).sum()
+}
+
+/// Splits what is left into equal parts of at most `affordable` and at least one, so that no small dispatch remains.
+fn evenly(left: u32, affordable: u64) -> u32 {
+    let left = u64::from(left);
+    left.div_ceil(left.div_ceil(affordable.max(1))) as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_have_all_pixels_once() {
+        for (area, tile) in
+            [([50_u32, 43_u32], [8, 8]), ([1, 2000], [1, 64]), ([4, 4], [4, 16]), ([64, 64], [8, 8])]
+        {
+            let tiles = area[0].div_ceil(tile[0]) * area[1].div_ceil(tile[1]);
+            assert_eq!(pixels_within(area, tile, 0..tiles), u64::from(area[0]) * u64::from(area[1]));
+            assert_eq!(pixels_within(area, tile, 0..0), 0);
+        }
+        assert_eq!(pixels_within([50, 43], [8, 8], 6..7), 2 * 8);
+    }
+}

@@ -1,0 +1,121 @@
+//! Film files: saved, resumed, merged.
+
+use super::common::{film, refused_in, render, run, temp, text};
+use serde_json::Value;
+
+#[test]
+fn a_saved_scene_renders_the_same_film() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    for from in [["--scene", "book"], ["--stage", "gamut"], ["--stage", "shadow-acne"]] {
+        let saved =
+            run(directory.path(), &[&from[..], &["--save-scene", "s.toml", "--size", "32x18"]].concat());
+        assert!(saved.status.success(), "{}", text(&saved.stderr));
+        render(directory.path(), &[&from[..], &["--samples", "4", "--checkpoint", "a.exr"]].concat());
+        render(directory.path(), &["--scene", "s.toml", "--samples", "4", "--checkpoint", "b.exr"]);
+        assert_eq!(film(at("a.exr")), film(at("b.exr")), "{from:?}");
+    }
+}
+
+#[test]
+fn a_resumed_film_equals_an_uninterrupted_one() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    render(directory.path(), &["--samples", "37", "--checkpoint", "whole.exr"]);
+    render(directory.path(), &["--samples", "10", "--checkpoint", "part.exr"]);
+    // The film contains its scene and size, so the command need not repeat them.
+    let output = run(
+        directory.path(),
+        &["--batch", "--resume", "part.exr", "--samples", "37", "--checkpoint", "part.exr", "--json", "-"],
+    );
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert_eq!(film(at("part.exr")), film(at("whole.exr")));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(json["scene"], "three-spheres");
+    assert_eq!(json["samples_per_pixel"], 37);
+    assert_eq!(json["added_samples_per_pixel"], 27);
+}
+
+#[test]
+fn seconds_add_up_over_runs() {
+    use weekender::film::{checkpoint, key};
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    let seconds = |name: &str| -> Option<f64> {
+        let description = checkpoint::load(&at(name)).unwrap().description;
+        description.get(key::SECONDS).map(|seconds| seconds.parse().unwrap())
+    };
+    render(directory.path(), &["--samples", "4", "--out", "film.exr"]);
+    let first = seconds("film.exr").unwrap();
+    assert!(first > 0.0 && first < 500.0, "{first}");
+    // As if the earlier run had taken long.
+    let mut kept = checkpoint::load(&at("film.exr")).unwrap();
+    kept.description.set(key::SECONDS, 1000.0);
+    checkpoint::save(&at("film.exr"), &kept.film, &kept.description).unwrap();
+    let resume = ["--resume", "film.exr", "--samples", "64"];
+    render(
+        directory.path(),
+        &[&resume[..], &["--checkpoint", "more.exr", "--out", "more.png", "--json", "more.json"]].concat(),
+    );
+    let both = seconds("more.exr").unwrap();
+    let json: Value = serde_json::from_slice(&std::fs::read(at("more.json")).unwrap()).unwrap();
+    let of_run = json["trace_seconds"].as_f64().unwrap();
+    assert!(of_run > 1e-5 && (both - 1000.0 - of_run).abs() < 1e-6, "{both} of 1000 and {of_run}");
+    // If the time of the first run is not known, neither is the sum.
+    let mut silent = weekender::film::Description::new(kept.description.recipe());
+    silent.set(key::SAMPLES, 4);
+    checkpoint::save(&at("film.exr"), &kept.film, &silent).unwrap();
+    render(directory.path(), &[&resume[..], &["--out", "unknown.exr"]].concat());
+    assert_eq!(seconds("unknown.exr"), None);
+}
+
+#[test]
+fn films_of_other_pictures_are_not_resumed() {
+    let directory = temp();
+    render(directory.path(), &["--samples", "2", "--checkpoint", "film.exr"]);
+    std::fs::write(directory.path().join("broken.exr"), "not a film").unwrap();
+    // The window refuses them, too.
+    for way in [&["--batch"][..], &[]] {
+        let with = |film: &'static str, more: &[&'static str]| [way, &["--resume", film], more].concat();
+        for (flags, parts) in [
+            (&["--size", "16x9"][..], &["16x9", "32x18"][..]),
+            (&["--seed", "5"], &["seed is 5"]),
+            (&["--depth", "3"], &["depth is 3"]),
+            (&["--vfov", "30"], &["camera"]),
+            (&["--sampler", "independent"], &["independent", "sobol"]),
+            (&["--estimate-error", "off"], &["estimate-error is off"]),
+            (&["--scene", "book", "--size", "32x18"], &["another picture"]),
+            (&["--stage", "metal", "--size", "32x18"], &["another picture"]),
+        ] {
+            refused_in(&directory, &with("film.exr", flags), parts);
+        }
+        refused_in(&directory, &with("broken.exr", &[]), &["broken.exr"]);
+        refused_in(&directory, &with("missing.exr", &[]), &["missing.exr"]);
+        refused_in(&directory, &with("film.png", &[]), &["--resume", ".exr"]);
+    }
+}
+
+#[test]
+fn parts_add_up_to_the_whole() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    render(directory.path(), &["--samples", "24", "--out", "whole.exr"]);
+    for (range, name) in [("0..8", "a.exr"), ("8..13", "b.exr"), ("13..24", "c.exr")] {
+        render(directory.path(), &["--sample-range", range, "--out", name]);
+    }
+    let merge = run(directory.path(), &["merge", "c.exr", "a.exr", "b.exr", "--out", "all.exr"]);
+    assert!(merge.status.success(), "{}", text(&merge.stderr));
+    assert!(text(&merge.stdout).contains("0..24"), "{}", text(&merge.stdout));
+    assert_eq!(film(at("all.exr")), film(at("whole.exr")));
+
+    refused_in(
+        &directory,
+        &["merge", "a.exr", "whole.exr", "--out", "x.exr"],
+        &["a.exr", "whole.exr", "0..8"],
+    );
+    render(directory.path(), &["--sample-range", "24..32", "--seed", "9", "--out", "other.exr"]);
+    refused_in(&directory, &["merge", "a.exr", "other.exr", "--out", "x.exr"], &["other.exr", "seed is 0"]);
+    refused_in(&directory, &["merge", "a.exr", "b.exr", "--out", "x.gif"], &["x.gif", ".exr"]);
+    refused_in(&directory, &["merge", "--out", "x.exr"], &["FILM"]);
+    refused_in(&directory, &["merge", "a.exr", "none.exr", "--out", "x.exr"], &["none.exr"]);
+}

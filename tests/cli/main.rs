@@ -1,0 +1,9 @@
+//! The program as a user runs it: files, messages and exit codes.
+
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+
+mod common;
+mod ending;
+mod films;
+mod outputs;
+mod values;

@@ -1,0 +1,88 @@
+//! The program and its signals.
+
+use std::fs::{self};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use weekender::film::{Film, checkpoint};
+
+pub const PATIENCE: Duration = Duration::from_secs(120);
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_weekender");
+
+/// A small picture with enough samples to interrupt.
+pub const PICTURE: [&str; 8] =
+    ["--batch", "--size", "48x27", "--threads", "2", "--device", "cpu", "--progress"];
+
+/// A render that never ends by itself and keeps its film.
+pub const ENDLESS: [&str; 8] =
+    ["--samples", "4294967296", "--checkpoint", "g.exr", "--every", "0.1s", "--out", "g.png"];
+
+pub fn rounds(usual: u32) -> u32 {
+    std::env::var("WEEKENDER_FAULT_ROUNDS").ok().and_then(|rounds| rounds.parse().ok()).unwrap_or(usual)
+}
+
+pub fn weekender(at: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(PROGRAM);
+    command
+        .current_dir(at)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+pub fn batch(at: &Path, progress: &str, arguments: &[&str]) -> Command {
+    weekender(at, &[&PICTURE[..], &[progress], arguments].concat())
+}
+
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+pub fn succeeds(command: &mut Command) {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{command:?}: {}", text(&output.stderr));
+}
+
+pub fn signal(child: &Child, name: &str) {
+    let killed = Command::new("kill").args(["-s", name, &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+}
+
+pub fn wait(child: &mut Child) -> ExitStatus {
+    let begin = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        if begin.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("it does not end");
+        }
+        sleep(Duration::from_millis(5));
+    }
+}
+
+/// Waits until `is_so` returns true.
+pub fn until(what: &str, is_so: impl Fn() -> bool) {
+    let begin = Instant::now();
+    while !is_so() {
+        assert!(begin.elapsed() < PATIENCE, "{what}");
+        sleep(Duration::from_millis(5));
+    }
+}
+
+pub fn film(path: &Path) -> Film {
+    checkpoint::load(path).unwrap().film
+}
+
+/// Files in a directory, except unfinished ones that a kill leaves behind.
+pub fn names(at: &Path) -> Vec<String> {
+    let entries = fs::read_dir(at).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}

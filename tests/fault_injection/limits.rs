@@ -1,0 +1,102 @@
+//! Full disks, limits on files and memory, and other runs.
+
+use super::common::{PICTURE, PROGRAM, batch, film, names, rounds, succeeds, text, wait};
+use std::fs::{self};
+use std::io::Read;
+use std::os::unix::fs::symlink;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+
+/// Runs the program with resource limits of the shell.
+fn limited(at: &Path, limits: &str, arguments: &[&str]) -> Output {
+    let mut command = Command::new("sh");
+    command.arg("-c").arg(format!("{limits}; exec \"$0\" \"$@\"")).arg(PROGRAM).args(arguments);
+    for name in ["TMPDIR", "XDG_STATE_HOME", "HOME"] {
+        command.env(name, at.join("elsewhere"));
+    }
+    command.current_dir(at).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    wait(&mut child);
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_limit_on_the_size_of_files_is_an_error_and_the_loss_is_told() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    fs::create_dir(at.join("elsewhere")).unwrap();
+    let flags =
+        [&PICTURE[..], &["off", "--samples", "2", "--checkpoint", "g.exr", "--out", "g.png"]].concat();
+    let output = limited(at, "ulimit -f 1", &flags);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    for part in ["g.exr", "g.png", "ulimit -f", "the samples are lost (2 per pixel", "elsewhere"] {
+        assert!(told.contains(part), "{told} should say {part}");
+    }
+    assert_eq!(names(at), ["elsewhere"]);
+}
+
+#[test]
+fn a_full_disk_keeps_the_samples_elsewhere() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    fs::create_dir(at.join("elsewhere")).unwrap();
+    fs::create_dir(at.join("here")).unwrap();
+    for name in ["g.exr", "g.png"] {
+        symlink("/dev/full", at.join("here").join(name)).unwrap();
+    }
+    let flags =
+        [&PICTURE[..], &["off", "--samples", "2", "--checkpoint", "here/g.exr", "--out", "here/g.png"]]
+            .concat();
+    let output = limited(at, "true", &flags);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    let kept: Vec<String> =
+        names(&at.join("here")).into_iter().filter(|name| name.starts_with("weekender-")).collect();
+    let [kept] = kept.as_slice() else { panic!("{told}") };
+    assert!(told.contains(kept) && told.contains("g.exr") && told.contains("g.png"), "{told}");
+    assert_eq!(film(&at.join("here").join(kept)).sample_count(), 2);
+}
+
+#[test]
+fn little_memory_is_an_error() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let large = ["--scene", "three-spheres", "--size", "4000x3000"];
+    let many = ["--scene", "field:3000000", "--size", "40x30"];
+    for (kilobytes, picture) in [(200_000, large), (400_000, large), (800_000, large), (600_000, many)] {
+        let flags =
+            [&["--batch", "--samples", "2", "--device", "cpu", "--out", "g.png"], &picture[..]].concat();
+        let output = limited(at, &format!("ulimit -v {kilobytes}"), &flags);
+        let code = output.status.code();
+        assert!(matches!(code, Some(0..=3)), "{kilobytes} kB: {}: {}", output.status, text(&output.stderr));
+    }
+}
+
+#[test]
+fn two_runs_on_one_film_lose_nothing() {
+    for _ in 0..rounds(2) {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        succeeds(&mut batch(at, "off", &["--samples", "8", "--checkpoint", "g.exr", "--out", "g.png"]));
+        let go_on = |range: &str, out: &str| {
+            let flags =
+                ["--resume", "g.exr", "--checkpoint", "g.exr", "--every", "0.1s", "--sample-range", range];
+            batch(at, "off", &[&flags[..], &["--out", out]].concat()).spawn().unwrap()
+        };
+        let mut runs = [go_on("8..3000", "a.png"), go_on("3000..6000", "b.png")];
+        for run in &mut runs {
+            let mut told = String::new();
+            run.stderr.take().unwrap().read_to_string(&mut told).unwrap();
+            assert!(wait(run).success(), "{told}");
+        }
+        succeeds(&mut batch(at, "off", &["--samples", "6000", "--out", "whole.exr"]));
+        assert!(
+            film(&at.join("g.exr")) == film(&at.join("whole.exr")),
+            "{}",
+            film(&at.join("g.exr")).samples()
+        );
+        assert_eq!(names(at), ["a.png", "b.png", "g.exr", "g.png", "whole.exr"]);
+    }
+}

@@ -1,0 +1,13 @@
+//! Fault drills: kills, full disks, resource limits, closed pipes, and other runs that use the same film. All rendered
+//! samples must be there afterwards, to the bit.
+//!
+//! Each test runs a few rounds. For a long series, set WEEKENDER_FAULT_ROUNDS to the number of rounds:
+//! `WEEKENDER_FAULT_ROUNDS=150 cargo test --release --test fault_injection -- --nocapture`.
+
+#![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+mod common;
+mod limits;
+mod outputs;
+mod signals;

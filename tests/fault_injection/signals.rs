@@ -1,0 +1,200 @@
+//! Kills and other signals.
+
+use super::common::{
+    ENDLESS, PATIENCE, batch, film, names, rounds, signal, succeeds, text, until, wait, weekender,
+};
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::Command;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// Pseudo-random numbers; each test prints its seed.
+struct Dice(u64);
+
+impl Dice {
+    fn new() -> Dice {
+        let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+        Dice(now.as_nanos() as u64 | 1)
+    }
+
+    /// A number below `limit`.
+    fn roll(&mut self, limit: u64) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0 % limit
+    }
+}
+
+/// Checks that `part`, left by a killed run, can be continued to the film of an uninterrupted run.
+fn goes_on_to_the_same_bits(at: &Path, part: &str) {
+    let whole = film(&at.join(part));
+    let samples = whole.samples().end() + 3;
+    let range = format!("0..{samples}");
+    let common = ["--sample-range", &range, "--out"];
+    succeeds(&mut batch(at, "off", &[&["--resume", part], &common[..], &["resumed.exr"]].concat()));
+    succeeds(&mut batch(at, "off", &[&common[..], &["whole.exr"]].concat()));
+    assert!(film(&at.join("resumed.exr")) == film(&at.join("whole.exr")), "{part}: {}", whole.samples());
+}
+
+#[test]
+fn signals_at_any_moment_leave_a_film_that_goes_on() {
+    let mut dice = Dice::new();
+    println!("dice {}", dice.0);
+    let (mut films, mut unfinished) = (0, 0);
+    for round in 0..rounds(6) {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let name = ["KILL", "INT", "TERM"][round as usize % 3];
+        let mut child = batch(at, "on", &ENDLESS).spawn().unwrap();
+        // It prints its first line after it has started to listen.
+        let mut stderr = BufReader::new(child.stderr.take().unwrap());
+        stderr.read_line(&mut String::new()).unwrap();
+        sleep(Duration::from_millis(dice.roll(400)));
+        signal(&child, name);
+        drop(stderr);
+        let status = wait(&mut child);
+        if name == "KILL" {
+            assert_eq!(status.signal(), Some(9));
+        } else {
+            assert_eq!(status.code(), Some(130), "{name}: {status}");
+            // Before the first sample, there is nothing to save.
+            assert!(names(at).is_empty() || names(at) == ["g.exr", "g.png"], "{name}: {:?}", names(at));
+        }
+        unfinished += names(at).iter().filter(|name| name.ends_with(".part")).count();
+        if at.join("g.exr").exists() {
+            films += 1;
+            goes_on_to_the_same_bits(at, "g.exr");
+            let left: Vec<String> = names(at).into_iter().filter(|name| name.ends_with(".part")).collect();
+            assert!(left.is_empty(), "the next run clears up: {left:?}");
+        }
+    }
+    assert!(films > 0);
+    println!("{} rounds: {films} films, {unfinished} unfinished files cleared up", rounds(6));
+}
+
+#[test]
+fn a_kill_costs_no_more_than_the_time_since_the_last_writing() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
+    let path = at.join("g.exr");
+    until("the film is not written", || path.exists());
+    let first = film(&path).sample_count();
+    until("the film does not grow", || film(&path).sample_count() > first);
+    signal(&child, "KILL");
+    wait(&mut child);
+    assert!(!at.join("g.png").exists());
+    goes_on_to_the_same_bits(at, "g.exr");
+}
+
+#[test]
+fn signals_while_files_are_written_wait_for_them_and_are_answered() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    // A pipe accepts a picture as slowly as its reader wants.
+    succeeds(Command::new("mkfifo").arg(at.join("slow.png")).arg(at.join("pipe.exr")));
+    let flags = ["--samples", "1", "--checkpoint", "g.exr", "--out", "slow.png"];
+    let mut child = batch(at, "on", &flags).spawn().unwrap();
+    let stderr = BufReader::new(child.stderr.take().unwrap());
+    let (said, lines) = std::sync::mpsc::channel();
+    let listener = std::thread::spawn(move || {
+        for line in stderr.lines().map_while(Result::ok) {
+            said.send(line).unwrap();
+        }
+    });
+    let hear = |part: &str| {
+        let begin = Instant::now();
+        while begin.elapsed() < PATIENCE {
+            if lines.recv_timeout(PATIENCE).unwrap().contains(part) {
+                return;
+            }
+        }
+        panic!("{part:?} is not said");
+    };
+    let film_in_pipe =
+        batch(at, "off", &["--samples", "4294967296", "--out", "a.png", "--checkpoint", "pipe.exr"])
+            .output()
+            .unwrap();
+    assert_eq!(film_in_pipe.status.code(), Some(2), "{film_in_pipe:?}");
+    assert!(text(&film_in_pipe.stderr).contains("pipe.exr"), "{film_in_pipe:?}");
+    hear("writing slow.png");
+    for _ in 0..3 {
+        signal(&child, "INT");
+        hear("still writing");
+        // Longer than the time within which two signals count as one.
+        sleep(Duration::from_millis(600));
+    }
+    assert_eq!(child.try_wait().unwrap(), None);
+    let mut picture = Vec::new();
+    File::open(at.join("slow.png")).unwrap().read_to_end(&mut picture).unwrap();
+    assert_eq!(wait(&mut child).code(), Some(130));
+    listener.join().unwrap();
+    assert!(picture.starts_with(b"\x89PNG") && picture.ends_with(b"IEND\xae\x42\x60\x82"));
+    assert_eq!(film(&at.join("g.exr")).sample_count(), 1);
+}
+
+#[test]
+fn a_signal_that_arrives_twice_is_one() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
+    until("the film is not written", || at.join("g.exr").exists());
+    signal(&child, "INT");
+    signal(&child, "TERM");
+    assert_eq!(wait(&mut child).code(), Some(130));
+    assert_eq!(names(at), ["g.exr", "g.png"]);
+}
+
+#[test]
+fn a_second_signal_ends_the_program_at_once() {
+    // One pass takes far longer than this test.
+    let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];
+    let flags = ["--samples", "1000", "--out", "g.png", "--checkpoint", "g.exr", "--progress", "on"];
+    for milliseconds in [800, 3000, 10_000] {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let mut child = weekender(at, &[&picture[..], &flags].concat()).spawn().unwrap();
+        let mut stderr = BufReader::new(child.stderr.take().unwrap());
+        stderr.read_line(&mut String::new()).unwrap();
+        sleep(Duration::from_millis(milliseconds));
+        signal(&child, "INT");
+        sleep(Duration::from_millis(700));
+        if child.try_wait().unwrap().is_some() && names(at).is_empty() {
+            // The signal came before the first pass, which may start late on a busy machine.
+            continue;
+        }
+        signal(&child, "INT");
+        let status = wait(&mut child);
+        let mut told = String::new();
+        stderr.read_to_string(&mut told).unwrap();
+        assert_eq!(status.code(), Some(130), "{told}");
+        assert!(told.contains("ended at once"), "{told}");
+        assert!(names(at).is_empty(), "nothing is written: {:?}", names(at));
+        return;
+    }
+    panic!("no pass was under way when the first signal came");
+}
+
+#[test]
+fn a_signal_ends_the_gallery_of_stages_with_the_present_one() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let flags = ["--stage", "all", "--samples", "4294967296", "--estimate-error", "off", "--out", "gallery"];
+    let mut child = batch(at, "on", &[&flags[..], &["--json", "figures.json"]].concat()).spawn().unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    stderr.read_line(&mut String::new()).unwrap();
+    sleep(Duration::from_millis(300));
+    signal(&child, "INT");
+    assert_eq!(wait(&mut child).code(), Some(130));
+    let pictures = names(&at.join("gallery"));
+    assert!(pictures.len() <= 1, "one stage at most: {pictures:?}");
+    let figures: serde_json::Value =
+        serde_json::from_slice(&fs::read(at.join("figures.json")).unwrap()).unwrap();
+    assert_eq!(figures["stages"].as_array().map(Vec::len), Some(1), "{figures}");
+    assert_eq!(figures["stages"][0]["ended_by"], "stopped");
+}

@@ -1,0 +1,169 @@
+//! Film files: what is read back, and what is refused.
+
+use super::common::{description, noisy_film};
+use proptest::prelude::*;
+use std::io::Cursor;
+use std::ops::Range;
+use std::path::Path;
+use weekender::files::InputError;
+use weekender::film::{CheckpointError, Film, checkpoint};
+use weekender::output::decode_description;
+
+proptest! {
+    #[test]
+    fn a_film_file_gives_back_the_film(
+        width in 1_u32..9,
+        height in 1_u32..9,
+        halves in 1_usize..=2,
+        words in prop::collection::vec(0..u64::MAX / 4, 1..40),
+        rejected in 0_u64..5,
+    ) {
+        let mut film = Film::new(width, height, halves);
+        let mut next = words.iter().cycle();
+        for half in film.halves_mut() {
+            for sum in half {
+                sum.0 = [0; 3].map(|_| *next.next().unwrap());
+            }
+        }
+        film.record(5..1 << 32, rejected).unwrap();
+        film.record(0..2, 0).unwrap();
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("film.exr");
+        checkpoint::save(&path, &film, &description()).unwrap();
+        let file = checkpoint::load(&path).unwrap();
+        prop_assert_eq!(file.film, film);
+        prop_assert_eq!(file.description, description());
+    }
+}
+
+#[test]
+fn a_film_always_becomes_the_same_bytes() {
+    let directory = tempfile::tempdir().unwrap();
+    let film = noisy_film(9, 4, 2, &[0..10]);
+    let bytes: Vec<Vec<u8>> = (0..8)
+        .map(|i| {
+            let path = directory.path().join(format!("{i}.exr"));
+            checkpoint::save(&path, &film, &description()).unwrap();
+            std::fs::read(path).unwrap()
+        })
+        .collect();
+    assert!(bytes.iter().all(|other| *other == bytes[0]));
+}
+
+fn load_error(path: &Path) -> CheckpointError {
+    let error = checkpoint::load(path).unwrap_err();
+    assert!(error.to_string().contains(&path.display().to_string()), "{error}");
+    error
+}
+
+#[test]
+fn what_is_no_film_file_is_refused_with_the_reason() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("x.exr");
+    let input = |error| match error {
+        CheckpointError::Input(error) => error,
+        other => panic!("{other}"),
+    };
+    assert!(matches!(input(load_error(&path)), InputError::Unreadable { .. }));
+    assert!(matches!(input(load_error(directory.path())), InputError::NotFile { .. }));
+    for bytes in [&b""[..], b"v/1", b"P6\n1 1\n255\nabc"] {
+        std::fs::write(&path, bytes).unwrap();
+        assert!(matches!(load_error(&path), CheckpointError::NotExr { .. }));
+    }
+    exr::prelude::write_rgb_file(&path, 3, 2, |_, _| (0.1_f32, 0.2_f32, 0.3_f32)).unwrap();
+    assert!(matches!(load_error(&path), CheckpointError::NotFilm { .. }));
+}
+
+/// Changes the byte at `offset` after the position of `needle` in the file.
+fn spoil(path: &Path, needle: &[u8], offset: usize, byte: u8) {
+    let mut bytes = std::fs::read(path).unwrap();
+    let place = bytes.windows(needle.len()).position(|window| window == needle).unwrap();
+    bytes[place + offset] = byte;
+    std::fs::write(path, bytes).unwrap();
+}
+
+#[test]
+fn another_version_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("x.exr");
+    checkpoint::save(&path, &noisy_film(9, 4, 2, &[0..10]), &description()).unwrap();
+    spoil(&path, b"version = 3", 10, b'2');
+    let error = load_error(&path);
+    let told = error.to_string();
+    assert!(
+        told.contains("version 2, but this program reads version 3; continue with the program"),
+        "{told}"
+    );
+    assert_eq!(error, CheckpointError::Version { path, version: 2 });
+}
+
+/// The bytes of an attribute in a file: name, type, length and value.
+fn attribute(bytes: &[u8], name_and_type: &[u8]) -> Range<usize> {
+    let start = bytes.windows(name_and_type.len()).position(|window| window == name_and_type).unwrap();
+    let length = start + name_and_type.len();
+    let value = u32::from_le_bytes(bytes[length..length + 4].try_into().unwrap());
+    start..length + 4 + value as usize
+}
+
+#[test]
+fn no_flipped_bit_changes_a_film_unnoticed() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("x.exr");
+    let film = noisy_film(3, 2, 2, &[0..4, 9..12]);
+    checkpoint::save(&path, &film, &description()).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    let original = checkpoint::load(&path).unwrap();
+    // Attributes that other programs may read and this one does not.
+    let harmless: Vec<Range<usize>> = [
+        &b"displayWindow\0box2i\0"[..],
+        b"dataWindow\0box2i\0",
+        b"pixelAspectRatio\0float\0",
+        b"screenWindowCenter\0v2f\0",
+        b"screenWindowWidth\0float\0",
+        b"name\0string\0",
+        b"type\0string\0",
+        b"software\0string\0",
+        b"lineOrder\0lineOrder\0",
+        b"chunkCount\0int\0",
+        b"channels\0chlist\0",
+    ]
+    .into_iter()
+    .map(|name| attribute(&whole, name))
+    // The version field of OpenEXR.
+    .chain([4..8])
+    .collect();
+    let (mut bytes, mut accepted) = (whole.clone(), Vec::new());
+    for bit in 0..8 * whole.len() {
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        if let Ok(read) = checkpoint::read(Cursor::new(&bytes), bytes.len() as u64, &path) {
+            assert_eq!(read, original, "bit {} of byte {}", bit % 8, bit / 8);
+            accepted.push(bit / 8);
+        }
+        if let Ok(description) = decode_description(Cursor::new(&bytes), &path) {
+            assert_eq!(description, original.description, "bit {} of byte {}", bit % 8, bit / 8);
+        }
+        bytes[bit / 8] ^= 1 << (bit % 8);
+    }
+    accepted.dedup();
+    let surprising: Vec<String> = accepted
+        .iter()
+        .filter(|place| !harmless.iter().any(|range| range.contains(place)))
+        .map(|place| {
+            format!("{place}: {:?}", String::from_utf8_lossy(&whole[place.saturating_sub(30)..=*place]))
+        })
+        .collect();
+    assert!(surprising.is_empty(), "{surprising:#?}");
+    for length in 0..whole.len() {
+        assert!(checkpoint::read(Cursor::new(&whole[..length]), length as u64, &path).is_err(), "{length}");
+    }
+}
+
+#[test]
+fn a_missing_channel_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("x.exr");
+    checkpoint::save(&path, &noisy_film(9, 4, 1, &[0..10]), &description()).unwrap();
+    spoil(&path, b"sum.a.R.lo", 9, b'p');
+    let message = load_error(&path).to_string();
+    assert!(message.contains("sum.a.R.lo is missing"), "{message}");
+}

@@ -1,0 +1,11 @@
+//! The film: exact sums, sample ranges, the resolved picture, the error estimate, film files and merging.
+
+#![allow(clippy::unwrap_used, clippy::panic, clippy::single_range_in_vec_init)]
+
+mod common;
+mod error_estimate;
+mod files;
+mod merging;
+mod ranges;
+mod shared_file;
+mod sums;

@@ -1,0 +1,99 @@
+//! Merging films and film files.
+
+use super::common::{RECIPE, description, noisy_film};
+use std::ops::Range;
+use std::path::Path;
+use weekender::film::{
+    Description, Film, FilmError, MergeError, checkpoint, key, merge_files, same_recipe_text,
+};
+
+#[test]
+fn merged_films_have_rejected_the_samples_of_both() {
+    let mut film = Film::new(1, 1, 2);
+    film.record(0..4, 3).unwrap();
+    let mut other = Film::new(1, 1, 2);
+    other.record(4..6, 2).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let paths = ["a.exr", "b.exr"].map(|name| directory.path().join(name));
+    for (path, film) in paths.iter().zip([&film, &other]) {
+        checkpoint::save(path, film, &description()).unwrap();
+    }
+    assert_eq!(merge_files(&paths, same_recipe_text).unwrap().film.rejected(), 5);
+    film.merge(&other).unwrap();
+    assert_eq!((film.rejected(), film.sample_count()), (5, 6));
+}
+
+#[test]
+fn films_that_do_not_go_together_are_left_as_they_were() {
+    let mut film = noisy_film(4, 3, 2, &[0..10]);
+    let before = film.clone();
+    let error = film.merge(&noisy_film(4, 3, 2, &[20..30, 8..12])).unwrap_err();
+    assert_eq!(error, FilmError::Overlap { range: 8..10 });
+    for (width, height, halves) in [(3, 4, 2), (4, 3, 1)] {
+        assert!(matches!(film.merge(&Film::new(width, height, halves)), Err(FilmError::Size { .. })));
+    }
+    assert!(film.record(9..11, 5).is_err());
+    assert_eq!(film, before);
+}
+
+#[test]
+fn more_rejected_samples_than_can_be_counted_are_an_error() {
+    let mut film = Film::new(1, 1, 1);
+    film.record(0..1, u64::MAX).unwrap();
+    let before = film.clone();
+    assert!(matches!(film.record(1..2, 1), Err(FilmError::Parts { .. })));
+    let mut other = Film::new(1, 1, 1);
+    other.record(1..2, 1).unwrap();
+    assert!(matches!(film.merge(&other), Err(FilmError::Parts { .. })));
+    assert_eq!(film, before);
+}
+
+#[test]
+fn merged_files_are_the_film_of_one_run() {
+    let directory = tempfile::tempdir().unwrap();
+    let paths: Vec<_> = [0..4, 9..12, 4..9]
+        .into_iter()
+        .map(|range: Range<u64>| {
+            let path = directory.path().join(format!("{}.exr", range.start));
+            let mut description = description();
+            description.set(key::BACKEND, if range.start == 9 { "gpu" } else { "cpu" });
+            checkpoint::save(&path, &noisy_film(5, 3, 2, &[range]), &description).unwrap();
+            path
+        })
+        .collect();
+    let merged = merge_files(&paths, same_recipe_text).unwrap();
+    assert_eq!(merged.film, noisy_film(5, 3, 2, &[0..12]));
+    assert_eq!(merged.description.get(key::SAMPLES), Some("12"));
+    assert_eq!(merged.description.get(key::SECONDS), Some("4.5"));
+    assert_eq!(merged.description.get(key::BACKEND), Some("cpu; gpu"));
+    assert_eq!(merged.description.recipe(), RECIPE);
+
+    // Overlap: the message names both files and the samples.
+    let overlapping = directory.path().join("overlapping.exr");
+    checkpoint::save(&overlapping, &noisy_film(5, 3, 2, &[100..101, 10..20]), &description()).unwrap();
+    let error = merge_files(&[&paths[0], &paths[1], &overlapping], same_recipe_text).unwrap_err();
+    let (first, other) = (paths[1].clone(), overlapping);
+    assert_eq!(error, MergeError::Overlap { first, other, range: 10..12 });
+
+    // Different jobs, different sizes, no files.
+    let stranger = directory.path().join("stranger.exr");
+    let recipe = RECIPE.replace("width = 7", "width = 8");
+    checkpoint::save(&stranger, &noisy_film(5, 3, 2, &[50..51]), &Description::new(&recipe)).unwrap();
+    let error = merge_files(&[&paths[0], &stranger], same_recipe_text).unwrap_err().to_string();
+    assert!(error.contains("stranger.exr") && error.contains("`width = 7`") && error.contains("`width = 8`"));
+    let trusting = merge_files(&[&paths[0], &stranger], |_, _| Ok(())).unwrap();
+    assert_eq!(trusting.film.sample_count(), 5);
+    assert_eq!(trusting.description.get(key::SAMPLES), Some("5"), "with a gap");
+    checkpoint::save(&stranger, &noisy_film(3, 5, 2, &[50..51]), &description()).unwrap();
+    let error = merge_files(&[&paths[0], &stranger], same_recipe_text).unwrap_err();
+    assert!(matches!(error, MergeError::Film { reason: FilmError::Size { .. }, .. }));
+    assert_eq!(merge_files::<&Path>(&[], same_recipe_text), Err(MergeError::NoFiles));
+}
+
+#[test]
+fn recipes_may_ask_for_different_numbers_of_samples() {
+    let more = RECIPE.replace("samples_per_pixel = 10", "samples_per_pixel = 500");
+    assert_eq!(same_recipe_text(RECIPE, &more), Ok(()));
+    assert!(same_recipe_text(RECIPE, "[render]\n").is_err());
+    assert!(same_recipe_text("samples_per_pixel_other = 1", "samples_per_pixel_other = 2").is_err());
+}

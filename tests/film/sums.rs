@@ -1,0 +1,136 @@
+//! Exact sums, and the picture that is resolved from them.
+
+use super::common::{add, noisy_film};
+use weekender::film::{
+    FIXED_POINT_MAX, FIXED_POINT_SCALE, Film, PixelSum, RADIANCE_LIMIT, fixed_point, to_byte,
+};
+use weekender::stages::Transfer;
+
+#[test]
+fn ten_million_samples_of_a_constant_have_its_mean() {
+    let samples = 10_000_000;
+    let mut film = Film::new(1, 1, 2);
+    for sample in 0..samples {
+        add(&mut film, 0, sample, [0.7; 3]);
+    }
+    film.record(0..samples, 0).unwrap();
+    for mean in film.mean(0) {
+        assert!((mean / 0.7 - 1.0).abs() <= 1e-7, "{mean}");
+    }
+}
+
+#[test]
+fn the_order_of_samples_does_not_matter() {
+    let forward = noisy_film(5, 3, 2, &[0..100, 100..128]);
+    let backward = noisy_film(5, 3, 2, &[100..128, 7..100, 0..7]);
+    assert_eq!(forward, backward);
+    let mut merged = noisy_film(5, 3, 2, &[3..90]);
+    merged.merge(&noisy_film(5, 3, 2, &[90..128, 0..3])).unwrap();
+    assert_eq!(forward, merged);
+}
+
+#[test]
+fn what_is_no_radiance_is_rejected_and_the_picture_stays_finite() {
+    let mut film = Film::new(1, 1, 1);
+    let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1e-30];
+    let mut rejected = 0;
+    for (sample, x) in bad.into_iter().enumerate() {
+        for channel in 0..3 {
+            let mut radiance = [0.5; 3];
+            radiance[channel] = x;
+            rejected += u64::from(!add(&mut film, 0, sample as u64, radiance));
+        }
+    }
+    assert!(add(&mut film, 0, 12, [1.0, 0.0, -0.0]));
+    film.record(0..13, rejected).unwrap();
+    assert_eq!(film.rejected(), 12);
+    assert_eq!(film.pixel_sum(0), PixelSum([1 << 24, 0, 0]));
+    assert!(film.mean(0).iter().all(|x| x.is_finite()));
+}
+
+#[test]
+fn fixed_point_rounds_and_saturates() {
+    let k = |x: f64| fixed_point([x; 3]).unwrap().0[0];
+    assert_eq!(k(1.0), 1 << 24);
+    assert_eq!(k(0.6 / FIXED_POINT_SCALE), 1);
+    assert_eq!(k(0.4 / FIXED_POINT_SCALE), 0);
+    assert_eq!(k(RADIANCE_LIMIT), u64::from(FIXED_POINT_MAX));
+    assert_eq!(k(f64::MAX), u64::from(FIXED_POINT_MAX));
+    let largest = f32::from_bits((RADIANCE_LIMIT as f32).to_bits() - 1);
+    assert_eq!(k(f64::from(largest)), u64::from(FIXED_POINT_MAX));
+}
+
+/// A film of one sample in which one channel takes all of `values`.
+fn film_of(values: &[f64]) -> Film {
+    let mut film = Film::new(values.len() as u32, 1, 1);
+    for (pixel, x) in values.iter().enumerate() {
+        add(&mut film, pixel, 0, [*x; 3]);
+    }
+    film.record(0..1, 0).unwrap();
+    film
+}
+
+#[test]
+fn bytes_step_where_the_book_has_them_step() {
+    // (b / 256)^2 is exact in fixed point for every byte b.
+    for byte in 0..=255_u8 {
+        let edge = (f64::from(byte) / 256.0).powi(2);
+        let below = edge - 1.0 / FIXED_POINT_SCALE;
+        let film = film_of(&[edge, below.max(0.0)]);
+        let bytes = film.to_rgb8(Transfer::Gamma2);
+        assert_eq!(bytes[..3], [byte; 3], "at the edge of {byte}");
+        assert_eq!(bytes[3..], [byte.saturating_sub(1); 3], "below the edge of {byte}");
+        let bytes = film_of(&[f64::from(byte) / 256.0]).to_rgb8(Transfer::Linear);
+        assert_eq!(bytes, [byte; 3]);
+    }
+    assert_eq!(film_of(&[1.0, 100.0]).to_rgb8(Transfer::Gamma2), [255; 6]);
+    assert_eq!(Film::new(2, 2, 1).to_rgb8(Transfer::Gamma2), [0; 12]);
+}
+
+#[test]
+fn the_upper_half_can_stay_linear() {
+    let mut film = Film::new(1, 3, 1);
+    for pixel in 0..3 {
+        add(&mut film, pixel, 0, [0.25; 3]);
+    }
+    film.record(0..1, 0).unwrap();
+    let bytes = film.to_rgb8(Transfer::LinearAboveGamma2);
+    assert_eq!(bytes, [64, 64, 64, 128, 128, 128, 128, 128, 128]);
+}
+
+#[test]
+fn rows_are_the_picture_s_rows() {
+    for halves in [1, 2] {
+        let film = noisy_film(7, 5, halves, &[0..6]);
+        for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {
+            let whole = film.to_rgb8(transfer);
+            let mut expected = Vec::new();
+            for pixel in 0..35 {
+                expected.extend(film.mean(pixel).map(|x| to_byte(x, transfer, pixel / 7, 5)));
+            }
+            assert_eq!(whole, expected);
+            let mut part = vec![0; 3 * 7 * 2];
+            film.resolve_rows(2..4, transfer, &mut part);
+            assert_eq!(part, whole[2 * 21..4 * 21]);
+        }
+        let means = film.means();
+        assert!((0..35).all(|i| means[i] == film.mean(i).map(|x| x as f32)));
+    }
+}
+
+#[test]
+fn only_what_can_be_a_film_becomes_one() {
+    let film = noisy_film(4, 3, 2, &[0..10]);
+    let build = |width, halves: Vec<Vec<PixelSum>>, rejected| {
+        Film::from_parts(width, 3, halves, film.samples().clone(), rejected)
+    };
+    assert_eq!(build(4, film.halves().to_vec(), 0).unwrap(), film);
+    assert!(build(5, film.halves().to_vec(), 0).is_err());
+    assert!(build(4, film.halves()[..1].to_vec(), 0).is_ok());
+    assert!(build(4, Vec::new(), 0).is_err());
+    assert!(build(4, film.halves().to_vec(), 4 * 3 * 10 + 1).is_err());
+    let mut beyond = film.halves().to_vec();
+    beyond[1][11].0[2] = 5 * u64::from(FIXED_POINT_MAX) + 1;
+    let message = build(4, beyond, 0).unwrap_err().to_string();
+    assert!(message.contains("pixel 11"), "{message}");
+}

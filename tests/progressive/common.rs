@@ -1,0 +1,118 @@
+//! A renderer that can be told to fail.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use weekender::backends::BackendChoice;
+use weekender::film::{Film, PixelSum};
+use weekender::progressive::{Factory, Plan, Progressive, RenderRequest};
+use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
+use weekender::render_cpu::CpuOptions;
+use weekender::scene::{Camera, Scene};
+use weekender::stages::Rules;
+
+/// Shortest time of a sample of the fake renderer.
+pub const PAUSE: Duration = Duration::from_micros(100);
+
+pub const PATIENCE: Duration = Duration::from_secs(60);
+
+/// Adds to each pixel a number that depends only on pixel and sample.
+pub struct Fake {
+    pub name: &'static str,
+    pub pause: Duration,
+    pub fails_at: Option<u64>,
+    pub panics_at: Option<u64>,
+}
+
+pub fn sample(pixel: usize, index: u64) -> PixelSum {
+    let mixed = (pixel as u64 * 0x9E37_79B9 + index).wrapping_mul(0xD6E8_FEB8_6659_FD93) >> 40;
+    PixelSum([mixed, mixed / 2, mixed / 3])
+}
+
+impl Renderer for Fake {
+    fn info(&self) -> BackendInfo {
+        BackendInfo { name: self.name, device: "fake".into(), lanes: 1, threads: 1 }
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        _: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        if self.fails_at.is_some_and(|at| range.end > at) {
+            return Err(RenderError::Backend { backend: self.name, reason: "pulled out".into() });
+        }
+        assert!(self.panics_at.is_none_or(|at| range.end <= at), "a slip of the tracer");
+        for index in range.clone() {
+            if cancel.load(Ordering::Relaxed) {
+                return Err(RenderError::Cancelled);
+            }
+            std::thread::sleep(self.pause);
+            let half_count = film.halves().len();
+            let half = &mut film.halves_mut()[index as usize % half_count];
+            half.iter_mut().enumerate().for_each(|(pixel, sum)| sum.add(sample(pixel, index)));
+        }
+        let samples = range.end - range.start;
+        film.record(range, 0)?;
+        Ok(Stats { paths: samples * 4, rays: samples * 8, ..Stats::default() })
+    }
+}
+
+/// In these tests, the reference fails after sample 16, and every CPU backend works.
+pub fn factory() -> Factory {
+    Box::new(|choice| {
+        let fails_at = matches!(choice, BackendChoice::Reference { .. }).then_some(16);
+        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at, panics_at: None }))
+    })
+}
+
+pub const CPU: BackendChoice = BackendChoice::Cpu(CpuOptions {
+    isa: None,
+    lanes: None,
+    threads: None,
+    low_priority: false,
+    panics_after: None,
+});
+pub const FAILING: BackendChoice = BackendChoice::Reference { threads: None };
+
+pub fn other_cpu() -> BackendChoice {
+    BackendChoice::Cpu(CpuOptions { lanes: Some(1), ..CpuOptions::default() })
+}
+
+pub fn job(width: u32) -> RenderJob {
+    let settings = RenderSettings {
+        width,
+        height: 2,
+        max_depth: 5,
+        sampler: SamplerKind::Sobol,
+        seed: 0,
+        estimate_error: true,
+    };
+    RenderJob::new(Scene::default(), Camera::default(), settings, Rules::default()).unwrap()
+}
+
+pub fn expected(samples: u64) -> Film {
+    let mut film = job(2).new_film();
+    let mut fake = Fake { name: "alone", pause: Duration::ZERO, fails_at: None, panics_at: None };
+    fake.accumulate(&job(2), 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
+    film
+}
+
+pub fn started(backend: BackendChoice, plan: Plan) -> Progressive {
+    let mut progressive = Progressive::with_factory(factory()).unwrap();
+    progressive.start(RenderRequest::new(job(2), backend, plan));
+    progressive
+}
+
+pub fn wait_for(progressive: &Progressive, samples: u64) {
+    let begin = std::time::Instant::now();
+    while progressive.wait(Duration::from_millis(20)).samples_per_pixel < samples {
+        assert!(begin.elapsed() < PATIENCE, "stuck: {:?}", progressive.status());
+    }
+}

@@ -1,0 +1,162 @@
+//! Films, pictures and samples that pass between render, renderer and user.
+
+use super::common::{
+    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, factory, job, other_cpu, started, wait_for,
+};
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use weekender::film::Film;
+use weekender::progressive::{Phase, Plan, Progressive, RenderRequest};
+use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+
+/// The history of a render whose samples take at least a known time.
+#[test]
+fn a_point_of_the_history_has_the_seconds_of_its_own_samples() {
+    let progressive = started(CPU, Plan::samples(128));
+    let status = progressive.wait_until_over();
+    for point in &status.history {
+        let least = PAUSE.as_secs_f64() * point.samples_per_pixel as f64;
+        assert!(point.trace_seconds >= least, "{point:?} before {least} s");
+    }
+    assert_eq!(status.history.last().map(|point| point.trace_seconds), Some(status.trace.as_secs_f64()));
+}
+
+#[test]
+fn another_backend_goes_on_with_the_same_film() {
+    let progressive = started(CPU, Plan::samples(3000));
+    for (backend, at) in [(other_cpu(), 4), (CPU, 100), (FAILING, 500), (other_cpu(), 600)] {
+        wait_for(&progressive, at);
+        progressive.switch_backend(backend);
+    }
+    let status = progressive.wait_until_over();
+    assert_eq!(status.contributions.iter().map(|c| c.samples_per_pixel).sum::<u64>(), 3000);
+    assert_eq!(progressive.finish(), Some(expected(3000)));
+}
+
+/// Holds samples back until they are collected, as a GPU does.
+struct Holding {
+    fake: Fake,
+    held: Vec<Range<u64>>,
+    traced: Arc<Mutex<u64>>,
+}
+
+impl Renderer for Holding {
+    fn info(&self) -> BackendInfo {
+        self.fake.info()
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        self.held.clear();
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.fake.accumulate(job, range, film, cancel)
+    }
+
+    fn advance(
+        &mut self,
+        _: &RenderJob,
+        range: Range<u64>,
+        _: &mut Film,
+        _: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        std::thread::sleep(PAUSE);
+        *self.traced.lock().unwrap() += range.end - range.start;
+        self.held.push(range);
+        Ok(Stats::default())
+    }
+
+    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
+        let mut stats = Stats::default();
+        for range in std::mem::take(&mut self.held) {
+            stats.add(&self.fake.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
+        }
+        Ok(stats)
+    }
+}
+
+#[test]
+fn a_pause_brings_home_what_the_device_holds() {
+    let traced = Arc::new(Mutex::new(0));
+    let count = Arc::clone(&traced);
+    let progressive = Progressive::with_factory(Box::new(move |choice| {
+        let fake = Fake { name: choice.name(), pause: Duration::ZERO, fails_at: None, panics_at: None };
+        Ok(Box::new(Holding { fake, held: Vec::new(), traced: Arc::clone(&count) }))
+    }));
+    let mut progressive = progressive.unwrap();
+    // With short passes, samples accumulate while the test waits.
+    let plan = Plan { pass_target: PAUSE, ..Plan::endless() };
+    progressive.start(RenderRequest::new(job(2), CPU, plan));
+    for more in [64, 512] {
+        let begin = std::time::Instant::now();
+        let first = *traced.lock().unwrap();
+        while *traced.lock().unwrap() < first + more {
+            assert!(begin.elapsed() < PATIENCE, "stuck: {:?}", progressive.status());
+            std::thread::sleep(PAUSE);
+        }
+        progressive.pause();
+        while progressive.wait(Duration::from_millis(20)).phase != Phase::Paused {
+            assert!(begin.elapsed() < PATIENCE, "no pause: {:?}", progressive.status());
+        }
+        // All traced samples are in the film and are reported.
+        let held = *traced.lock().unwrap();
+        let status = progressive.status();
+        assert_eq!((status.samples_per_pixel, status.stats.paths), (held, 4 * held));
+        progressive.resume();
+    }
+    progressive.stop();
+    let status = progressive.wait_until_over();
+    let held = *traced.lock().unwrap();
+    assert_eq!(status.samples_per_pixel, held);
+    assert_eq!(progressive.finish(), Some(expected(held)));
+}
+
+#[test]
+fn a_film_goes_on_where_it_has_gaps() {
+    let mut film = job(2).new_film();
+    let mut fake = Fake { name: "before", pause: Duration::ZERO, fails_at: None, panics_at: None };
+    for range in [3..5, 10..30] {
+        fake.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
+    }
+    let mut progressive = Progressive::with_factory(factory()).unwrap();
+    progressive
+        .start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, Plan::samples(100)) });
+    let status = progressive.wait_until_over();
+    assert_eq!((status.planned_samples_per_pixel, status.stats.paths), (100, (100 - 22) * 4));
+    // The history covers only this render, since the film's earlier samples have no times.
+    let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
+    assert!(history.first().is_some_and(|first| (32..40).contains(first)), "{history:?}");
+    assert!(status.history.iter().all(|point| point.trace_seconds > 0.0), "{:?}", status.history);
+    assert_eq!(progressive.finish(), Some(expected(100)));
+}
+
+#[test]
+fn pictures_come_when_asked_for_and_films_can_be_looked_at() {
+    let progressive = started(CPU, Plan::samples(64));
+    progressive.wait_until_over();
+    assert_eq!(progressive.take_picture(), None);
+    let begin = std::time::Instant::now();
+    let picture = loop {
+        if let Some(picture) = progressive.take_picture() {
+            break picture;
+        }
+        assert!(begin.elapsed() < PATIENCE);
+        std::thread::sleep(Duration::from_millis(1));
+    };
+    assert_eq!(
+        (picture.width, picture.height, picture.samples_per_pixel, picture.rgb8.len()),
+        (2, 2, 64, 12)
+    );
+    let (sender, receiver) = std::sync::mpsc::channel();
+    progressive.inspect(move |film| sender.send(film.clone()).unwrap());
+    assert_eq!(receiver.recv_timeout(PATIENCE).unwrap(), expected(64));
+}

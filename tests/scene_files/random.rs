@@ -1,0 +1,138 @@
+//! Random recipes.
+
+use super::common::{ONE_SPHERE, assert_round_trip};
+use glam::DVec3;
+use proptest::prelude::*;
+use weekender::recipe::Recipe;
+use weekender::recipe::file::parse;
+use weekender::render::{RenderSettings, SamplerKind};
+use weekender::scene::{Camera, Material, Scene, Sky};
+use weekender::stages::{DielectricLaws, Diffuse, Rules, Shading, SurfaceRule, Transfer};
+
+fn number(within: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+    let (low, high) = (within.start, within.end);
+    prop_oneof![
+        8 => within,
+        1 => Just(low),
+        1 => (0.0..1.0_f64, -18..0).prop_map(move |(m, e)| (m * 10_f64.powi(e)).clamp(low, high)),
+    ]
+}
+
+fn vector(within: std::ops::Range<f64>) -> impl Strategy<Value = DVec3> {
+    [number(within.clone()), number(within.clone()), number(within)].prop_map(DVec3::from_array)
+}
+
+fn material() -> impl Strategy<Value = Material> {
+    prop_oneof![
+        vector(0.0..1.0).prop_map(|albedo| Material::Lambertian { albedo }),
+        (vector(0.0..1.0), number(0.0..9.0)).prop_map(|(albedo, fuzz)| Material::Metal { albedo, fuzz }),
+        number(1e-9..1e9).prop_map(|refraction_index| Material::Dielectric { refraction_index }),
+    ]
+}
+
+fn rules() -> impl Strategy<Value = Rules> {
+    let shading = prop::sample::select(vec![
+        Shading::ImageGradient,
+        Shading::FirstHitRed,
+        Shading::Normals,
+        Shading::Path,
+    ]);
+    let diffuse = prop::sample::select(vec![Diffuse::Hemisphere, Diffuse::Lambertian]);
+    let dielectric = prop::sample::select(vec![
+        DielectricLaws::RefractOnly,
+        DielectricLaws::TotalReflection,
+        DielectricLaws::Schlick,
+    ]);
+    let surface = prop::sample::select(vec![SurfaceRule::Exact, SurfaceRule::Acne, SurfaceRule::Book]);
+    let transfer =
+        prop::sample::select(vec![Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2]);
+    (shading, diffuse, dielectric, surface, any::<bool>(), any::<bool>(), transfer).prop_map(
+        |(shading, diffuse, dielectric, surface, reflectance_strips, antialiasing, transfer)| Rules {
+            shading,
+            diffuse,
+            dielectric,
+            surface,
+            reflectance_strips,
+            antialiasing,
+            transfer,
+        },
+    )
+}
+
+fn scene() -> impl Strategy<Value = Scene> {
+    let materials = prop::collection::btree_map(any::<String>(), material(), 0..6);
+    let sphere = (vector(-1e18..1e18), number(1e-18..1e18), any::<prop::sample::Index>());
+    let sky = (vector(0.0..100.0), vector(0.0..100.0)).prop_map(|(bottom, top)| Sky { bottom, top });
+    (materials, prop::collection::vec(sphere, 0..60), sky, any::<bool>()).prop_map(
+        |(materials, spheres, sky, is_reversed)| {
+            let mut scene = Scene { sky, ..Scene::default() };
+            for (name, material) in materials {
+                scene.add_material(name, material);
+            }
+            if is_reversed {
+                scene.materials.reverse();
+            }
+            for (center, radius, index) in spheres {
+                if !scene.materials.is_empty() {
+                    scene.add_sphere(center, radius, index.index(scene.materials.len()));
+                }
+            }
+            scene
+        },
+    )
+}
+
+fn camera() -> impl Strategy<Value = Camera> {
+    let focus = prop::option::of(number(1e-18..1e18));
+    (vector(-1e3..1e3), vector(-1e3..1e3), vector(-2.0..2.0), number(0.01..179.0), number(0.0..179.0), focus)
+        .prop_filter("a direction", |(look_from, look_at, ..)| look_from.distance(*look_at) > 1e-3)
+        .prop_map(|(look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance)| Camera {
+            look_from,
+            look_at,
+            vup,
+            vfov_degrees,
+            defocus_angle_degrees,
+            focus_distance,
+        })
+}
+
+fn recipe() -> impl Strategy<Value = Recipe> {
+    let settings =
+        (1..=16_384_u32, 1..=16_384_u32, 1..=10_000_u32, any::<bool>(), any::<u32>(), any::<bool>())
+            .prop_map(|(width, height, max_depth, is_sobol, seed, estimate_error)| RenderSettings {
+                width,
+                height,
+                max_depth,
+                sampler: if is_sobol { SamplerKind::Sobol } else { SamplerKind::Independent },
+                seed,
+                estimate_error,
+            });
+    (any::<String>(), scene(), camera(), settings, rules(), 1..=1_u64 << 32).prop_map(
+        |(name, scene, camera, settings, rules, samples_per_pixel)| Recipe {
+            name,
+            scene: scene.into(),
+            camera,
+            settings,
+            rules,
+            samples_per_pixel,
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_recipes_are_read_back_to_the_bit(recipe in recipe()) {
+        assert_round_trip(&recipe);
+    }
+
+    #[test]
+    fn no_text_makes_the_reader_panic(text in any::<String>(), cut in 0..ONE_SPHERE.len(), byte in 32_u8..127) {
+        let _ = parse(&text, "random.toml");
+        let _ = parse(&ONE_SPHERE[..cut], "cut.toml");
+        let mut damaged = ONE_SPHERE.as_bytes().to_vec();
+        damaged[cut] = byte;
+        let _ = parse(&String::from_utf8(damaged).expect("ASCII"), "damaged.toml");
+    }
+}

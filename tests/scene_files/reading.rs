@@ -1,0 +1,62 @@
+//! What a file may leave out, and how it may say the rest.
+
+use super::common::{CAMERA, ONE_SPHERE, assert_round_trip};
+use glam::DVec3;
+use weekender::recipe::file::parse;
+use weekender::render::RenderSettings;
+use weekender::scene::{Material, Scene, Sky};
+use weekender::stages::{Rules, SurfaceRule};
+
+#[test]
+fn what_is_left_out_has_defaults() {
+    let recipe = parse(CAMERA, "bare").expect("enough");
+    assert_eq!(recipe.name, "bare");
+    assert_eq!(*recipe.scene, Scene::default());
+    assert_eq!(recipe.rules, Rules::default());
+    assert_eq!(recipe.settings, RenderSettings::default());
+    assert_eq!((recipe.settings.width, recipe.settings.height), (800, 450));
+    assert_eq!((recipe.samples_per_pixel, recipe.settings.max_depth), (200, 50));
+    let camera = recipe.camera;
+    assert_eq!((camera.vup, camera.defocus_angle_degrees), (DVec3::Y, 0.0));
+    assert_eq!((camera.focus_distance, camera.effective_focus_distance()), (None, 3.0));
+
+    let text =
+        format!("{CAMERA}[render]\nwidth = 400\n[sky]\ntop = [0, 0, 1]\n[rules]\nsurface = \"acne\"\n");
+    let recipe = parse(&text, "some").expect("enough");
+    assert_eq!(recipe.settings, RenderSettings { width: 400, ..RenderSettings::default() });
+    assert_eq!(recipe.scene.sky, Sky { top: DVec3::Z, ..Sky::default() });
+    assert_eq!(recipe.rules, Rules { surface: SurfaceRule::Acne, ..Rules::default() });
+}
+
+#[test]
+fn materials_are_named_or_inline() {
+    let inline = "material = { kind = \"metal\", albedo = [1, 0.5, 0] }";
+    let text = ONE_SPHERE.replace("material = \"ball\"", inline);
+    let recipe = parse(&text, "inline").expect("valid");
+    let sphere = &recipe.scene.spheres[0];
+    let metal = Material::Metal { albedo: DVec3::new(1.0, 0.5, 0.0), fuzz: 0.0 };
+    assert_eq!(recipe.scene.material_of(sphere), &metal);
+    assert_eq!(recipe.scene.materials.len(), 2);
+    assert_round_trip(&recipe);
+
+    // A name that the reader would choose itself.
+    let taken = text.replace("materials.ball", "materials.sphere-0");
+    assert_round_trip(&parse(&taken, "taken").expect("valid"));
+}
+
+#[test]
+fn materials_keep_their_order() {
+    let text = format!(
+        "{CAMERA}[materials.zinc]\nkind = \"metal\"\nalbedo = [1, 1, 1]\n\
+         [materials]\n\"a b\" = {{ kind = \"dielectric\", refraction_index = 1.5 }}\n"
+    );
+    let recipe = parse(&text, "order").expect("valid");
+    let names: Vec<_> = recipe.scene.materials.iter().map(|named| named.name.as_str()).collect();
+    assert_eq!(names, ["zinc", "a b"]);
+}
+
+/// Case 31: an up vector along the view is not an error.
+#[test]
+fn up_may_lie_along_the_view() {
+    parse(&format!("{CAMERA}vup = [0, 0, 1]\n"), "up").expect("valid");
+}
