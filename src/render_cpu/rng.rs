@@ -58,20 +58,20 @@ pub fn sobol_pair<L: Lanes>(l: L, counter: L::U, stream: L::U) -> [L::U; 2] {
     [u, pascal(l, u)]
 }
 
-/// The stream of a pixel's camera rays, lane by lane: [`HalfKey::of_pixel`].
-#[inline(always)]
-pub fn stream_of_pixel<L: Lanes>(l: L, half_key: HalfKey, pixel: L::U) -> L::U {
-    match half_key.bits() {
-        Some(half_key) => mix32(l, pixel ^ l.splat_u(half_key)),
-        None => l.splat_u(0),
-    }
-}
-
 /// The stream of the second pair of dimensions of the same ray, which supplies the point in the pixel when the first
 /// pair is used for the lens.
 #[inline(always)]
 pub fn lens_stream_of<L: Lanes>(l: L, stream: L::U) -> L::U {
     stream + l.splat_u(LENS_BLOCK.wrapping_mul(GOLDEN_RATIO))
+}
+
+/// The stream of a pixel's camera rays, lane by lane: [`HalfKey::of_pixel`].
+#[inline(always)]
+pub fn sampler_key<L: Lanes>(l: L, half_key: HalfKey, pixel: L::U) -> L::U {
+    match half_key.bits() {
+        Some(half_key) => mix32(l, pixel ^ l.splat_u(half_key)),
+        None => l.splat_u(0),
+    }
 }
 
 /// Two pairs of numbers for a path's next ray; the second pair matters only `with_lens`. `counter` selects the sample,

@@ -208,7 +208,7 @@ impl<'film> Work<'film> {
             lanes.pixel = m.select(pixel, lanes.pixel);
             lanes.step = m.select(l.splat_u(block.step), lanes.step);
             lanes.end = m.select(l.splat_u(block.end), lanes.end);
-            lanes.key = m.select(rng::stream_of_pixel(l, block.half_key, pixel), lanes.key);
+            lanes.key = m.select(rng::sampler_key(l, block.half_key, pixel), lanes.key);
             counter = m.select(l.splat_u(block.counter), counter);
             self.next_place += given.count_ones() as usize;
             if self.next_place == self.order.len() {

@@ -23,6 +23,11 @@ const PAIRS: &[Pair] = &[
             ("shade", "packets take turns, a thread has one path"),
             ("next_stream", "a lane counts its stream up, a thread has its bounce"),
             ("last_stream", "a lane counts its stream up, a thread has its bounce"),
+            (
+                "normalised_or",
+                "`normalized` of lanes.wgsl; a thread tests for short directions in `scatter_path`",
+            ),
+            ("nowhere", "one lane leaves out the bounce of an ended path, as a thread does"),
         ],
     },
     Pair { shader: "camera.wgsl", twins: &["camera.rs"], shader_alone: &[], twin_alone: &[] },
@@ -57,7 +62,6 @@ const PAIRS: &[Pair] = &[
         shader_alone: &[
             ("stream_of", "a lane counts its stream up"),
             ("pixel_key", "made when a lane is refilled with a block: `sampling::pixel_key`"),
-            ("sampler_key", "made when a lane is refilled with a block: `sampling::HalfKey`"),
         ],
         twin_alone: &[],
     },
@@ -127,7 +131,8 @@ fn arithmetic_has_twins() {
         .flat_map(|file| functions(&read(&format!("src/render_cpu/lanes/{file}.rs"))))
         .collect();
     // WGSL has a `dot` of its own, and packets normalise their directions when the rays are sent.
-    let other_names = [("dot3", "dot"), ("normalized", "sqrt")];
+    let other_names =
+        [("dot3", "dot"), ("mul_add3", "mul_add"), ("neg_mul_add3", "neg_mul_add"), ("normalized", "sqrt")];
     for name in shader {
         let twin =
             other_names.iter().find(|(other, _)| *other == name).map_or(name.as_str(), |(_, twin)| twin);

@@ -45,10 +45,7 @@ pub(super) fn collect<L: Lanes, const PARTS: u32>(
     let at_end = packet.counter.eq(packet.blocks.end);
     let done = (ended & at_end).bits();
     if done != 0 {
-        let (blocks, counter) = work.refill(l, done, packet.blocks, packet.counter);
-        (packet.blocks, packet.counter) = (blocks, counter);
-        let [x, y] = pixel_position(l, blocks.pixel);
-        packet.screen = screen(l, &broadcast.camera, x, y);
+        enter_block(l, broadcast, packet, work, done);
     }
     packet.stream = ended.select(packet.blocks.key, next_stream(l, broadcast, packet));
     packet.ended = ended;
@@ -122,4 +119,19 @@ fn add_radiance<L: Lanes>(l: L, packet: &mut Packet<L>, lit: L::M, light: V3<L::
     add(0, radiance.x);
     add(1, radiance.y);
     add(2, radiance.z);
+}
+
+/// Refills the lanes `done` with their next blocks of samples.
+#[inline(always)]
+fn enter_block<L: Lanes>(
+    l: L,
+    broadcast: &BroadcastScene<L::Real>,
+    packet: &mut Packet<L>,
+    work: &mut Work,
+    done: u32,
+) {
+    let (blocks, counter) = work.refill(l, done, packet.blocks, packet.counter);
+    (packet.blocks, packet.counter) = (blocks, counter);
+    let [x, y] = pixel_position(l, blocks.pixel);
+    packet.screen = screen(l, &broadcast.camera, x, y);
 }
