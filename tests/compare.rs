@@ -200,7 +200,7 @@ fn what_cannot_be_compared_exits_with_2() {
         (&["a.exr", "cpu", "--json", "nowhere/a.json"], &["a.json", "create its directory"]),
         (&["a.exr", "nowhere.exr"], &["nowhere.exr"]),
         (&["a.exr", "text.png"], &["text.png", "not a PFM, EXR, PNG or PPM"]),
-        (&["a.exr", "small.exr"], &["160x90", "80x45", "one size"]),
+        (&["a.exr", "small.exr"], &["160x90", "80x45", "the same size"]),
         (&["a.exr", "cpu", "--adapter", "x"], &["--adapter", "gpu"]),
         (&["cpu", "reference", "--stage", "all"], &["--stage all", "choose one"]),
     ];

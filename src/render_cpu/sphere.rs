@@ -109,7 +109,9 @@ impl<L: Lanes> Nearest<L> {
         L::store_u(self.sphere, &mut held);
         for (lane, number) in held.0.iter_mut().enumerate().take(L::WIDTH) {
             let rank = |number: u32| ranks.get(number as usize);
-            if tied >> lane & 1 != 0 && rank(sphere) < rank(*number) {
+            // Spheres without a rank come last in the list.
+            let comes_first = rank(*number).is_none_or(|held| rank(sphere).is_some_and(|rank| rank < held));
+            if tied >> lane & 1 != 0 && *number != NONE && comes_first {
                 *number = sphere;
             }
         }

@@ -197,5 +197,5 @@ fn help_tells_units_and_ranges() {
 #[test]
 fn progress_can_be_asked_for_where_there_is_no_terminal() {
     let output = render(temp().path(), &["--samples", "2", "--progress", "on"]);
-    assert!(text(&output.stderr).contains("write"), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("writing"), "{}", text(&output.stderr));
 }

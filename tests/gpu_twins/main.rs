@@ -362,7 +362,10 @@ fn scattering() {
             ulps.compare(&list(vector(&output, 0)), &list(sent.direction), 2.0);
             ulps.compare(&[float(&output, 4)], &[reflectance(L, cosine, f0).0], 1.0);
             let sine2 = incidence_of(L, cosine).sine2;
-            ulps.compare(&list(vector(&output, 5)), &list(refracted(L, d, n, sent.ratio, sine2)), 2.0);
+            // One lane computes the ratio for glass alone.
+            if refraction_index.0 > 0.0 {
+                ulps.compare(&list(vector(&output, 5)), &list(refracted(L, d, n, sent.ratio, sine2)), 2.0);
+            }
         }
         assert!(parted <= 2, "{parted} parted");
         // Near the critical angle, the inner cosine is the root of almost 0.

@@ -24,6 +24,7 @@ use super::sphere::{
 };
 use super::work::{LaneBlocks, TileStats, Work};
 use crate::kernel::{LoadShading, parts};
+use crate::prepared::PreparedScene;
 use crate::stages::SurfaceRule;
 use collect::collect;
 use draw::Draw;
@@ -151,6 +152,8 @@ fn intersect<L: Lanes, const PARTS: u32>(
         }
         match &prepared.hierarchy {
             Some(hierarchy) if PARTS & parts::HIERARCHY != 0 => {
+                // A hit of the ground rules out the boxes behind it.
+                take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest);
                 traverse(l, hierarchy, &prepared.two_root, rays, l.mask(active), stack, &mut nearest);
             }
             _ if PARTS & parts::GLASS != 0 => {
@@ -158,19 +161,31 @@ fn intersect<L: Lanes, const PARTS: u32>(
                     let sphere = Spheres::load(l, sphere);
                     nearest.take(nearest_root(l, rays, &sphere), sphere.number);
                 }
+                take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest);
             }
-            _ => {}
-        }
-        if PARTS & parts::EXTREMES != 0 {
-            let one = l.splat_u(1);
-            let mut number = l.splat_u((prepared.opaque.len() + prepared.two_root.len()) as u32);
-            for sphere in &prepared.anchored {
-                nearest.take(anchored_root(l, rays, sphere, number), number);
-                number = number + one;
-            }
+            _ => take_anchored::<L, PARTS>(l, prepared, rays, &mut nearest),
         }
     }
     packet.nearest = nearest;
+}
+
+/// Takes the hits of the anchored spheres, where they are nearer.
+#[inline(always)]
+fn take_anchored<L: Lanes, const PARTS: u32>(
+    l: L,
+    prepared: &PreparedScene<L::Real>,
+    rays: &Rays<L>,
+    nearest: &mut Nearest<L>,
+) {
+    if PARTS & parts::EXTREMES == 0 {
+        return;
+    }
+    let one = l.splat_u(1);
+    let mut number = l.splat_u((prepared.opaque.len() + prepared.two_root.len()) as u32);
+    for sphere in &prepared.anchored {
+        nearest.take(anchored_root(l, rays, sphere, number), number);
+        number = number + one;
+    }
 }
 
 /// The points of the hits; meaningless for lanes without one.
