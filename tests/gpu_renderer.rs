@@ -233,12 +233,10 @@ fn cancelled_between_dispatches() {
 
 #[test]
 fn samples_stay_on_the_device_until_they_are_fetched() {
-    let Some(mut gpu) = gpu(GpuOptions { film_limit: Some(50 * 2 * 24 * 16), ..GpuOptions::default() })
-    else {
-        return;
-    };
+    let new = || gpu(GpuOptions { film_limit: Some(50 * 2 * 24 * 16), ..GpuOptions::default() });
+    let (Some(mut other), Some(mut gpu)) = (new(), new()) else { return };
     let job = three_spheres([50, 43], 12, true);
-    let expected = rendered(&mut gpu, &job, 32);
+    let expected = rendered(&mut other, &job, 32);
     let mut film = job.new_film();
     gpu.prepare(&job, &go_on()).unwrap();
     // The first pass fetches the film by itself, because the cost of fetching is not yet known.
