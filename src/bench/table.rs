@@ -117,3 +117,27 @@ fn scale_lines(rows: &[ScaleFigures]) -> Vec<String> {
     }
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn peak_memory_is_in_mib() {
+        let row = ScaleFigures {
+            spheres: 1000,
+            generate_seconds: 0.25,
+            build_seconds: 0.5,
+            hierarchy_seconds: 0.125,
+            scene_bytes_per_sphere: 40.0,
+            table_bytes_per_sphere: 96.5,
+            peak_memory_bytes: Some(300 << 20),
+            samples_per_pixel: 4,
+            paths_per_second: None,
+            rays_per_second: None,
+        };
+        let lines = scale_lines(&[row]);
+        let cells: Vec<&str> = lines[2].split_whitespace().collect();
+        assert_eq!(cells, ["1000", "0.250", "0.5000", "0.1250", "96.5", "300", "4", "-", "-"]);
+    }
+}

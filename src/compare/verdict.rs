@@ -199,7 +199,7 @@ impl Comparison {
 mod tests {
     use super::*;
     use crate::compare::PairedSums;
-    use crate::film::{Film, PixelSum, fixed_point};
+    use crate::film::{FIXED_POINT_SCALE, Film, PixelSum, fixed_point};
     use crate::sampling::pcg4d;
 
     /// Two samples per pixel: noise that depends on pixel and half, and an offset.
@@ -343,5 +343,25 @@ mod tests {
         let other = side(2, 0.0);
         sums.add(film_a, other.film.as_ref().unwrap());
         assert!(sums.finish().parted_share() > 0.4);
+    }
+
+    /// With many samples the noise of the mean is far below what rounding may do to it.
+    #[test]
+    fn a_mean_that_rounding_moves_is_equal() {
+        let side = |offset: f64| {
+            let samples = 1 << 20;
+            let sum = (samples / 2) as f64 * (0.5 + offset) * FIXED_POINT_SCALE;
+            let mut film = Film::new(80, 48, 2);
+            film.halves_mut()
+                .iter_mut()
+                .flatten()
+                .for_each(|pixel| *pixel = PixelSum([sum.round() as u64; 3]));
+            film.record(0..samples, 0).unwrap();
+            Side::of_film(String::new(), String::new(), film)
+        };
+        let rounded = compare(&side(0.0), &side(ROUNDING_BIAS), None);
+        assert!(rounded.is_equal(), "{:?}", rounded.reasons);
+        let moved = compare(&side(0.0), &side(5.0 * ROUNDING_BIAS), None);
+        assert!(moved.reasons.iter().any(|reason| reason.starts_with("the mean is")), "{:?}", moved.reasons);
     }
 }

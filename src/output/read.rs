@@ -243,4 +243,23 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn an_exr_that_deflates_well_is_no_short_file() {
+        use exr::prelude::*;
+        let (width, height) = (512, 512);
+        let black = SpecificChannels::rgb(|_: Vec2<usize>| (0.0_f32, 0.0_f32, 0.0_f32));
+        for compression in [Compression::ZIP1, Compression::ZIP16] {
+            let encoding = Encoding { compression, ..Encoding::FAST_LOSSLESS };
+            let layer = Layer::new((width, height), LayerAttributes::default(), encoding, black.clone());
+            let mut file = io::Cursor::new(Vec::new());
+            Image::from_layer(layer).write().to_buffered(&mut file).unwrap();
+            let bytes = file.into_inner();
+            assert!(compression == Compression::ZIP1 || bytes.len() * 300 < width * height * 12);
+            let (found_width, found_height, pixels) =
+                read_exr(io::Cursor::new(&bytes), bytes.len() as u64).unwrap();
+            assert_eq!((found_width as usize, found_height as usize), (width, height));
+            assert!(pixels.iter().flatten().all(|x| *x == 0.0), "{compression:?}");
+        }
+    }
 }

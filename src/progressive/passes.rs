@@ -140,4 +140,14 @@ mod tests {
         sizer.measured(64, Duration::from_secs(1), TARGET);
         assert_eq!(sizer.next(&held, 0..100, Some(TARGET / 4)), Some(0..16));
     }
+
+    #[test]
+    fn a_pass_gives_each_half_a_sample_or_is_not_begun() {
+        let mut sizer = PassSizer::new(2);
+        sizer.measured(2, Duration::from_secs(20), TARGET);
+        let in_time =
+            |seconds| sizer.next(&SampleRanges::default(), 0..100, Some(Duration::from_secs(seconds)));
+        assert_eq!(in_time(15), None, "there is time for one sample");
+        assert_eq!(in_time(25), Some(0..2));
+    }
 }

@@ -209,3 +209,34 @@ fn by_baseline(
         rejected: 0,
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_step_should_end_within_the_limits() {
+        let steps = |seconds: f64, samples: u64| -> Vec<u64> {
+            let measure = |samples: u64| {
+                Ok(Some(Measured {
+                    samples,
+                    trace_seconds: samples as f64,
+                    wall_seconds: samples as f64,
+                    device_seconds: None,
+                    mse: 0.0,
+                    rel_mse: 0.0,
+                    flip: 0.0,
+                    mse_estimate: None,
+                    rejected: 0,
+                }))
+            };
+            let points = powers_of_two(Limits { seconds, samples }, &|| true, measure).unwrap().unwrap();
+            points.iter().map(|point| point.samples).collect()
+        };
+        assert_eq!(steps(10.0, 64), [1, 2, 4, 8]);
+        assert_eq!(steps(8.0, 64), [1, 2, 4, 8]);
+        assert_eq!(steps(7.9, 64), [1, 2, 4]);
+        assert_eq!(steps(1e9, 9), [1, 2, 4, 8]);
+        assert_eq!(steps(0.1, 1), [1, 2], "two samples are always taken");
+    }
+}

@@ -7,7 +7,7 @@ use weekender::render::{RenderJob, RenderSettings};
 use weekender::sampling::{numbers, unit_float};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres, touching_spheres};
 use weekender::scene::{Camera, Scene, Sky};
-use weekender::stages::Rules;
+use weekender::stages::{Rules, Stage};
 
 fn scaled(scale: f64) -> (Scene, Camera) {
     let mut scene = three_spheres(LeftSphere::HollowGlass);
@@ -235,6 +235,22 @@ fn case_38_eye_inside_a_matte_sphere() {
             let (film, stats) = render_with_stats(&mut renderer, &job(&scene, camera, size(48, 27)), 0..16);
             assert!((0..48 * 27).all(|pixel| film.pixel_sum(pixel).0 == [0; 3]), "light gets in at {eye}");
             assert_eq!(stats.rays, 50 * stats.paths, "every path runs to its end inside");
+        }
+    }
+}
+
+/// Red goes from 0 at the left to 1 at the right, green from 0 at the top to 1 at the bottom. (Section 2.)
+#[test]
+fn the_image_gradient_spans_the_picture() {
+    for (width, height) in [(16, 9), (1, 5), (5, 1)] {
+        let mut recipe = Stage::find("ppm-tiny").unwrap().recipe();
+        (recipe.settings.width, recipe.settings.height) = (width, height);
+        let film = render(&mut widest(), &recipe.job().unwrap(), 0..1);
+        let share = |position: u32, pixels: u32| f64::from(position) / f64::from(pixels.max(2) - 1);
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            let [red, green, blue] = film.mean((y * width + x) as usize);
+            let off = (red - share(x, width)).abs().max((green - share(y, height)).abs()).max(blue);
+            assert!(off < 1e-6, "{width}x{height}, pixel {x},{y}: {red}, {green}, {blue}");
         }
     }
 }

@@ -3,8 +3,8 @@
 use crate::common::*;
 use glam::DVec3;
 use weekender::render::{RenderSettings, SamplerKind};
-use weekender::render_cpu::lanes::{Lanes, Scalar};
-use weekender::render_cpu::material::{Surface, incidence_of, reflectance, scatter};
+use weekender::render_cpu::lanes::{Lanes, Reference, Scalar};
+use weekender::render_cpu::material::{Surface, incidence_of, incidence_of_sine2, reflectance, scatter};
 use weekender::scene::{Camera, Material, Sky};
 use weekender::stages::DielectricLaws;
 
@@ -222,5 +222,16 @@ fn case_22_mirrors_have_no_noise() {
     assert_eq!(one.halves()[0], one.halves()[1]);
     for (seed, sampler) in [(1, SamplerKind::Sobol), (12_345, SamplerKind::Independent)] {
         assert_eq!(film(seed, sampler), one);
+    }
+}
+
+#[test]
+fn a_sine_that_rounding_pushes_above_1_is_grazing() {
+    let l = Reference;
+    for sine2 in [0.0, 0.25, 1.0, 1.0 + f64::EPSILON, 1.1] {
+        let incidence = incidence_of_sine2(l, l.constant(sine2));
+        let found = [incidence.sine2, incidence.cosine].map(first::<Reference>);
+        let expected = sine2.min(1.0);
+        assert_eq!(found, [expected, (1.0 - expected).sqrt()], "{sine2}");
     }
 }

@@ -160,3 +160,58 @@ fn pictures_come_when_asked_for_and_films_can_be_looked_at() {
     progressive.inspect(move |film| sender.send(film.clone()).unwrap());
     assert_eq!(receiver.recv_timeout(PATIENCE).unwrap(), expected(64));
 }
+
+/// Notes how many samples its passes have.
+struct Noting {
+    fake: Fake,
+    passes: Arc<Mutex<Vec<u64>>>,
+}
+
+impl Renderer for Noting {
+    fn info(&self) -> BackendInfo {
+        self.fake.info()
+    }
+
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
+        self.fake.prepare(job, cancel)
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.passes.lock().unwrap().push(range.end - range.start);
+        self.fake.accumulate(job, range, film, cancel)
+    }
+}
+
+/// A pass of many samples by a fast backend can take a slow one minutes.
+#[test]
+fn another_backend_begins_with_short_passes() {
+    let passes = Arc::new(Mutex::new(Vec::new()));
+    let noted = Arc::clone(&passes);
+    let progressive = Progressive::with_factory(Box::new(move |choice| {
+        let pause = if *choice == CPU { Duration::ZERO } else { PAUSE };
+        let fake = Fake { name: choice.name(), pause, fails_at: None, panics_at: None };
+        if *choice == CPU {
+            return Ok(Box::new(fake));
+        }
+        Ok(Box::new(Noting { fake, passes: Arc::clone(&noted) }))
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
+    wait_for(&progressive, 4096);
+    progressive.switch_backend(other_cpu());
+    let begin = std::time::Instant::now();
+    while passes.lock().unwrap().len() < 4 {
+        assert!(begin.elapsed() < PATIENCE, "stuck: {:?}", progressive.status());
+        std::thread::sleep(PAUSE);
+    }
+    progressive.finish();
+    let passes = passes.lock().unwrap();
+    assert_eq!(passes[0], 2, "{passes:?}");
+    assert!(passes.windows(2).all(|pair| pair[1] <= 2 * pair[0]), "{passes:?}");
+}

@@ -1,10 +1,14 @@
 //! What ends a render, pauses it, or starts another.
 
-use super::common::{CPU, Fake, PATIENCE, expected, job, started, wait_for};
+use super::common::{CPU, Fake, PATIENCE, PAUSE, expected, job, started, wait_for};
+use std::ops::Range;
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
+use weekender::film::Film;
 use weekender::progressive::{
     EndReason, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, RenderRequest, Stop,
 };
+use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 
 #[test]
 fn a_plan_of_samples_is_met_exactly() {
@@ -103,4 +107,44 @@ fn abandoned_work_leaves_nothing() {
     progressive.abandon();
     assert_eq!(progressive.wait_until_over().phase, Phase::Idle);
     assert_eq!(progressive.finish(), None);
+}
+
+/// Takes a while to prepare.
+struct Unhurried(Fake);
+
+const PREPARATION: Duration = Duration::from_millis(100);
+
+impl Renderer for Unhurried {
+    fn info(&self) -> BackendInfo {
+        self.0.info()
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        std::thread::sleep(PREPARATION);
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.0.accumulate(job, range, film, cancel)
+    }
+}
+
+#[test]
+fn the_time_limit_includes_preparation() {
+    let progressive = Progressive::with_factory(Box::new(|choice| {
+        let fake = Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None };
+        Ok(Box::new(Unhurried(fake)))
+    }));
+    let mut progressive = progressive.unwrap();
+    let stop = Stop { seconds: Some(PREPARATION.as_secs_f64() / 2.0), ..Stop::default() };
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::until(stop)));
+    let status = progressive.wait_until_over();
+    assert_eq!(status.phase, Phase::Done(EndReason::TimeLimit));
+    assert_eq!(status.samples_per_pixel, 2, "only the first pass, which is always rendered");
 }

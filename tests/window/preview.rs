@@ -6,9 +6,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::time::{Duration, Instant};
 use weekender::app::{Command, Window};
+use weekender::film::to_byte;
 use weekender::output::{OutputFormat, read_description};
 use weekender::progressive::Stop;
 use weekender::recipe::file;
+use weekender::stages::Transfer;
 
 /// Large enough for previews to be coarser.
 const LARGE: &str = "--size 1600x900 --device cpu --samples 4";
@@ -87,4 +89,25 @@ fn the_pixel_under_the_pointer_is_never_that_of_a_preview() {
         assert!(off < 0.002, "{mean:?} where the picture has {expected:?}");
     }
     assert!(previews > 10, "{previews}");
+}
+
+/// The upper half of this stage's picture is linear, the lower half is not.
+#[test]
+fn the_bytes_of_a_pixel_are_those_of_its_row() {
+    let mut harness = open("--stage gamut --size 64x36 --samples 4");
+    until(&mut harness, "the end", has_samples(4));
+    for (share, is_upper) in [([0.9_f32, 0.1], true), ([0.1, 0.9], false)] {
+        let at = harness.state().picture_rect().lerp_inside(share);
+        harness.event(egui::Event::PointerMoved(at));
+        harness.step();
+        let is_there = |window: &Window| window.inspected().is_some_and(|([_, y], _)| (y < 18) == is_upper);
+        until(&mut harness, "the pixel", is_there);
+        harness.step();
+        let ([_, y], mean) = harness.state().inspected().unwrap();
+        for linear in mean {
+            let byte = to_byte(linear, Transfer::LinearAboveGamma2, y as usize, 36).to_string();
+            let is_seen = harness.query_all_by_label(&byte).next().is_some();
+            assert!(is_seen, "{linear} in row {y}: {byte} is not in the panel");
+        }
+    }
 }

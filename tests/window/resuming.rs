@@ -1,8 +1,10 @@
 //! Films that the window resumes.
 
-use crate::common::{has_samples, open, opened, save, until};
+use crate::common::{has_samples, open, opened, save, send, until};
+use egui_kittest::Harness;
+use weekender::app::{Command, Window};
 use weekender::cli;
-use weekender::film::checkpoint;
+use weekender::film::{checkpoint, key};
 use weekender::output::OutputFormat;
 use weekender::progressive::Stop;
 
@@ -77,4 +79,32 @@ fn the_film_of_another_picture_is_refused() {
             .any(|text| text.starts_with("Not resumed") && text.contains("seed is 0 here, 9 there"))
     });
     until(&mut harness, "a render from the beginning", has_samples(50));
+}
+
+#[test]
+fn a_new_start_forgets_the_seconds_of_the_film() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    save_film(&path, "");
+    let mut file = checkpoint::load(&path).unwrap();
+    file.description.set(key::SECONDS, 1e6);
+    checkpoint::save(&path, &file.film, &file.description).unwrap();
+    let seconds = |harness: &mut Harness<'_, Window>, name: &str| -> f64 {
+        let path = directory.path().join(name);
+        save(harness, OutputFormat::Exr, &path);
+        checkpoint::load(&path).unwrap().description.get(key::SECONDS).unwrap().parse().unwrap()
+    };
+    let has_traced = |samples: u64| {
+        move |window: &Window| {
+            let traced = window.status().contributions.iter().map(|part| part.samples_per_pixel);
+            has_samples(90)(window) && traced.sum::<u64>() == samples
+        }
+    };
+    let mut harness = open(&format!("--resume {} --device cpu --samples 90", path.display()));
+    until(&mut harness, "the film's end", has_traced(50));
+    assert!(seconds(&mut harness, "resumed.exr") > 1e6);
+    send(&mut harness, Command::Restart);
+    until(&mut harness, "the new film's end", has_traced(90));
+    let traced = seconds(&mut harness, "new.exr");
+    assert!(traced < 1e5, "{traced} s");
 }

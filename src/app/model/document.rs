@@ -134,4 +134,14 @@ mod tests {
         document.camera.defocus_angle_degrees = 1.0;
         assert!(!document.has_same_film(&before));
     }
+
+    #[test]
+    fn the_recipe_has_the_samples_at_which_the_render_stops() {
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let usual = document.origin.recipe.samples_per_pixel;
+        document.stop = Stop::default();
+        assert_eq!(document.recipe().samples_per_pixel, usual);
+        document.stop = Stop::at_samples(usual + 7);
+        assert_eq!(document.recipe().samples_per_pixel, usual + 7);
+    }
 }
