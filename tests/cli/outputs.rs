@@ -12,7 +12,7 @@ fn the_default_picture_is_named_after_its_scene() {
     for part in [
         "three-spheres, 32x18",
         "kernel   ",
-        "left out ",
+        "left out lens, ",
         "2 per pixel",
         "number of samples",
         "three-spheres.png",
