@@ -193,6 +193,15 @@ impl Stats {
     }
 }
 
+/// What a kernel has code for, in words.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct KernelContents {
+    /// What it has.
+    pub present: String,
+    /// What it leaves out.
+    pub left_out: Vec<&'static str>,
+}
+
 /// Occupancy of packets in each tile of a picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TileOccupancy {
@@ -295,6 +304,11 @@ pub trait Renderer: Send {
     /// Describes the prepared job's kernel and the time it took to compile.
     fn kernel(&self) -> String {
         String::new()
+    }
+
+    /// What the prepared job's kernel has and leaves out; both empty if no job is prepared.
+    fn kernel_contents(&self) -> KernelContents {
+        KernelContents::default()
     }
 
     /// Packet occupancy since the prepared job's first pass; `None` if the renderer traces without packets.

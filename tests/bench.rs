@@ -5,6 +5,7 @@
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use weekender::stages::Stage;
 
 fn bench(directory: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
@@ -128,9 +129,75 @@ fn fields_are_measured_and_drawn() {
     assert!(read("s.svg").contains("million paths per second"));
 }
 
+fn features(directory: &Path, arguments: &[&str]) -> Value {
+    let flags = ["--features", "--runs", "2", "--size", "32x18", "--run-limit", "0.002", "--json", "-"];
+    let output = bench(directory, &[&flags, arguments].concat());
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn a_scene_s_own_kernel_and_the_general_one_render_the_same_film() {
+    let directory = tempfile::tempdir().unwrap();
+    let report = features(directory.path(), &["--scene", "three-spheres", "--scene", "book"]);
+    let device = &report["features"][0];
+    assert_eq!(device["skipped"], Value::Null);
+    let rows = device["rows"].as_array().unwrap();
+    assert_eq!(rows.iter().map(|row| &row["name"]).collect::<Vec<_>>(), ["three-spheres", "book"]);
+    for row in rows {
+        assert_eq!(row["same_bits"], true, "{row}");
+        assert_eq!([&row["width"], &row["height"]], [32, 18]);
+        for runs in ["own_runs", "general_runs"] {
+            assert_eq!(row[runs].as_array().unwrap().len(), 2);
+            let paths = 32.0 * 18.0 * number(row, "samples_per_pixel");
+            assert_eq!(number(&row[runs][0], "paths"), paths);
+        }
+        for spread in ["own_paths_per_second", "general_paths_per_second", "gain"] {
+            check_spread(&row[spread]);
+        }
+    }
+    let level = report["machine"]["levels"].as_array().unwrap().last().unwrap();
+    let words = |row: &Value| (row["kernel"].as_str().unwrap().to_owned(), row["left_out"].to_string());
+    let (kernel, left_out) = words(&rows[0]);
+    if level != "portable" {
+        assert_eq!(kernel, "glass");
+        assert!(left_out.contains("lens"), "{left_out}");
+    }
+    let (kernel, left_out) = words(&rows[1]);
+    assert!(kernel.contains("lens") && !left_out.contains("lens"), "{kernel}; {left_out}");
+}
+
+#[test]
+fn one_lane_leaves_nothing_out() {
+    let directory = tempfile::tempdir().unwrap();
+    let report = features(directory.path(), &["--scene", "metals", "--isa", "portable", "--samples", "2"]);
+    let row = &report["features"][0]["rows"][0];
+    assert_eq!(row["left_out"], Value::Array(Vec::new()), "{row}");
+    assert_eq!(row["samples_per_pixel"], 2);
+}
+
+#[test]
+fn all_stages_and_scenes_are_measured_unless_some_are_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let report = features(directory.path(), &["--samples", "2"]);
+    let rows = report["features"][0]["rows"].as_array().unwrap();
+    let names = |is_stage: bool| -> Vec<&str> {
+        let group = rows.iter().filter(|row| row["is_stage"] == is_stage);
+        group.map(|row| row["name"].as_str().unwrap()).collect()
+    };
+    assert_eq!(names(true), Stage::ALL.iter().map(|stage| stage.id).collect::<Vec<_>>());
+    // Every other built-in scene is the picture of a stage.
+    assert_eq!(names(false), ["field"]);
+    for row in rows {
+        assert_eq!(row["same_bits"], true, "{row}");
+    }
+}
+
 #[test]
 fn bad_flags_are_refused_before_anything_is_measured() {
-    let cases: [(&[&str], &str); 8] = [
+    let cases: [(&[&str], &str); 10] = [
+        (&["--features", "--scale", "10..20"], "--scale"),
+        (&["--features", "--plot", "chart.svg"], "--plot"),
         (&["--scene", "no-such"], "no-such"),
         (&["--scale", "5..1"], "A at most B"),
         (&["--scale", "10..20", "--scene", "book"], "--scene"),

@@ -2,7 +2,7 @@
 
 use super::close;
 use crate::film::Film;
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
+use crate::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy};
 use std::any::Any;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -142,6 +142,19 @@ impl Renderer for Together {
 
     fn kernel(&self) -> String {
         self.members.iter().map(|member| member.renderer.kernel()).collect::<Vec<_>>().join(" | ")
+    }
+
+    /// Left out is what any member leaves out.
+    fn kernel_contents(&self) -> KernelContents {
+        let members: Vec<_> = self.members.iter().map(|member| member.renderer.kernel_contents()).collect();
+        let mut left_out = Vec::new();
+        for word in members.iter().flat_map(|member| &member.left_out) {
+            if !left_out.contains(word) {
+                left_out.push(*word);
+            }
+        }
+        let present: Vec<String> = members.into_iter().map(|member| member.present).collect();
+        KernelContents { present: present.join(" | "), left_out }
     }
 
     fn hierarchy_time(&self) -> Duration {

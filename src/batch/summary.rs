@@ -59,6 +59,7 @@ pub(super) struct Summary {
     lanes: Option<usize>,
     threads: Option<usize>,
     kernel: String,
+    left_out: Vec<&'static str>,
     samples_per_pixel: u64,
     sample_ranges: String,
     added_samples_per_pixel: u64,
@@ -111,6 +112,7 @@ impl Summary {
             lanes: backend.map(|info| info.lanes),
             threads: backend.map(|info| info.threads),
             kernel: status.kernel.clone(),
+            left_out: status.left_out.clone(),
             samples_per_pixel: status.samples_per_pixel,
             sample_ranges: film.map_or_else(String::new, |film| film.samples().to_string()),
             added_samples_per_pixel: status.contributions.iter().map(|part| part.samples_per_pixel).sum(),
@@ -156,6 +158,9 @@ impl fmt::Display for Summary {
             let (lanes, threads) = (counted(lanes as u64, "lane"), counted(threads as u64, "thread"));
             writeln!(f, "backend  {backend} {device}, {lanes}, {threads}")?;
             writeln!(f, "kernel   {}", self.kernel)?;
+            let left_out =
+                if self.left_out.is_empty() { "nothing".to_owned() } else { self.left_out.join(", ") };
+            writeln!(f, "left out {left_out}")?;
         }
         if self.backends.len() > 1 {
             let part = |c: &Contribution| {

@@ -141,12 +141,8 @@ impl Candidate {
         loop {
             let Some(run) = self.run(job, tried, cancel)? else { return Ok(()) };
             if run.seconds >= WARM_UP_SECONDS.min(limit_seconds) || tried >= samples {
-                let mut chosen = samples;
-                while chosen > least && chosen as f64 * run.seconds / tried as f64 > limit_seconds {
-                    // Both halves of the film get the same number.
-                    chosen = (chosen / 2).next_multiple_of(least);
-                }
-                self.row.samples_per_pixel = chosen;
+                let seconds_per_sample = run.seconds / tried as f64;
+                self.row.samples_per_pixel = affordable(samples, least, seconds_per_sample, limit_seconds);
                 return Ok(());
             }
             tried = (4 * tried).min(samples);
@@ -185,14 +181,7 @@ impl Candidate {
             Some(Runner::Renderer(renderer)) => {
                 let mut film = job.new_film();
                 match renderer.accumulate(job, 0..samples, &mut film, cancel) {
-                    Ok(stats) => Ok(Run {
-                        seconds: stats.trace.as_secs_f64(),
-                        paths: stats.paths,
-                        rays: stats.rays,
-                        busy_lanes: stats.busy_lanes,
-                        offered_lanes: stats.offered_lanes,
-                        rmse: film.error().map(|error| error.rmse),
-                    }),
+                    Ok(stats) => Ok(Run::of(&stats, &film)),
                     Err(RenderError::Cancelled) => return Err(Cancelled),
                     Err(error) => Err(error.to_string()),
                 }
@@ -207,6 +196,16 @@ impl Candidate {
             }
         }
     }
+}
+
+/// How many samples a run may take within `limit_seconds`: at most `samples`, at least `least`.
+pub fn affordable(samples: u64, least: u64, seconds_per_sample: f64, limit_seconds: f64) -> u64 {
+    let mut chosen = samples;
+    while chosen > least && chosen as f64 * seconds_per_sample > limit_seconds {
+        // Both halves of the film get the same number.
+        chosen = (chosen / 2).next_multiple_of(least);
+    }
+    chosen
 }
 
 fn prepared(choice: &BackendChoice, job: &RenderJob) -> Result<Runner, String> {

@@ -1,6 +1,8 @@
 //! The measured figures: runs, medians and ranges.
 
 use super::machine::Machine;
+use crate::film::Film;
+use crate::render::Stats;
 use crate::statistics::median;
 use serde::Serialize;
 
@@ -21,6 +23,8 @@ pub struct BenchFigures {
     pub scenes: Vec<SceneFigures>,
     /// Fields of growing size.
     pub scale: Vec<ScaleFigures>,
+    /// What leaving things out of kernels gains, by device.
+    pub features: Vec<DeviceFigures>,
     /// Reasons to doubt the figures.
     pub warnings: Vec<String>,
     /// Whether the user interrupted the measurement.
@@ -133,6 +137,54 @@ pub struct ScaleFigures {
     pub rays_per_second: Option<Spread>,
 }
 
+/// The gain of leaving things out of kernels, on one device.
+#[derive(Clone, Debug, Serialize)]
+pub struct DeviceFigures {
+    /// The device, with lanes and threads of a CPU.
+    pub device: String,
+    /// Stages and scenes in the order of the table.
+    pub rows: Vec<GainRow>,
+    /// Why it was not measured.
+    pub skipped: Option<String>,
+}
+
+/// A stage or scene, rendered with its own kernel and with the general one in turn.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct GainRow {
+    /// Id of the stage or name of the scene.
+    pub name: String,
+    /// Whether it is a stage of the book.
+    pub is_stage: bool,
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// Most rays per path.
+    pub max_depth: u32,
+    /// The sampler.
+    pub sampler: &'static str,
+    /// Samples per pixel of each run.
+    pub samples_per_pixel: u64,
+    /// What its own kernel has.
+    pub kernel: String,
+    /// What its own kernel leaves out, of what the general kernel has.
+    pub left_out: Vec<&'static str>,
+    /// All runs of its own kernel except the warm-up.
+    pub own_runs: Vec<Run>,
+    /// As many runs of the general kernel.
+    pub general_runs: Vec<Run>,
+    /// Paths per second of its own kernel.
+    pub own_paths_per_second: Option<Spread>,
+    /// Paths per second of the general kernel.
+    pub general_paths_per_second: Option<Spread>,
+    /// Time of the general kernel relative to its own, over the pairs of runs.
+    pub gain: Option<Spread>,
+    /// Whether the films of both kernels are equal to the bit; `None` if they were not compared.
+    pub same_bits: Option<bool>,
+    /// Why it was not measured.
+    pub skipped: Option<String>,
+}
+
 /// The spread of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
@@ -159,6 +211,20 @@ impl Spread {
     }
 }
 
+impl Run {
+    /// The figures of a pass that a renderer added to an empty film.
+    pub fn of(stats: &Stats, film: &Film) -> Self {
+        Run {
+            seconds: stats.trace.as_secs_f64().max(1e-9),
+            paths: stats.paths,
+            rays: stats.rays,
+            busy_lanes: stats.busy_lanes,
+            offered_lanes: stats.offered_lanes,
+            rmse: film.error().map(|error| error.rmse),
+        }
+    }
+}
+
 impl Row {
     /// Computes the row's figures from its runs.
     pub fn sum_up(&mut self) {
@@ -173,6 +239,17 @@ impl Row {
         let error = |run: &Run| run.rmse.filter(|rmse| *rmse > 0.0);
         let efficiency = |run: &Run| Some(1.0 / (error(run)?.powi(2) * run.seconds));
         self.efficiency = Spread::of(self.runs.iter().filter_map(efficiency)).map(|spread| spread.median);
+    }
+}
+
+impl GainRow {
+    /// Computes the row's figures from its runs.
+    pub fn sum_up(&mut self) {
+        let speeds = |runs: &[Run]| Spread::of(runs.iter().map(|run| run.paths as f64 / run.seconds));
+        self.own_paths_per_second = speeds(&self.own_runs);
+        self.general_paths_per_second = speeds(&self.general_runs);
+        let pairs = self.own_runs.iter().zip(&self.general_runs);
+        self.gain = Spread::of(pairs.map(|(own, general)| general.seconds / own.seconds));
     }
 }
 

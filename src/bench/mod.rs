@@ -1,6 +1,7 @@
 //! `weekender bench`: how fast this machine renders, compared with a plain C program.
 
 mod candidate;
+mod features;
 mod figures;
 mod machine;
 mod plot;
@@ -42,10 +43,12 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
         machine: Machine::look(),
         scenes: Vec::new(),
         scale: Vec::new(),
+        features: Vec::new(),
         warnings: Vec::new(),
         interrupted: false,
     };
     let measured = match options.scale.as_slice() {
+        _ if options.features => features::measure(options, &mut figures, cancel),
         [] => scenes(options, &mut figures, cancel),
         counts => fields(options, counts, &mut figures, cancel),
     };
@@ -148,8 +151,11 @@ fn warnings(figures: &BenchFigures) -> Vec<String> {
         .scale
         .iter()
         .filter_map(|row| Some((format!("field:{}", row.spheres), row.paths_per_second?)));
+    let gains = figures.features.iter().flat_map(|device| {
+        device.rows.iter().filter_map(|row| Some((format!("{}, {}", row.name, device.device), row.gain?)))
+    });
     let spreads: Vec<(String, f64)> =
-        rows.chain(fields).map(|(name, spread)| (name, spread.share())).collect();
+        rows.chain(fields).chain(gains).map(|(name, spread)| (name, spread.share())).collect();
     let wide = spreads.iter().filter(|(_, share)| *share > SPREAD_LIMIT);
     if let Some((name, share)) = wide.clone().max_by(|a, b| a.1.total_cmp(&b.1)) {
         warnings.push(format!(

@@ -1,6 +1,6 @@
 //! The measurements as text of at most 100 columns.
 
-use super::figures::{BenchFigures, Row, ScaleFigures, SceneFigures};
+use super::figures::{BenchFigures, DeviceFigures, GainRow, Row, ScaleFigures, SceneFigures, Spread};
 use super::machine::counted;
 
 /// Longest name of a row.
@@ -16,6 +16,10 @@ pub fn text(figures: &BenchFigures) -> String {
     if !figures.scale.is_empty() {
         lines.push(String::new());
         lines.extend(scale_lines(&figures.scale));
+    }
+    for device in &figures.features {
+        lines.push(String::new());
+        lines.extend(device_lines(device));
     }
     if figures.interrupted {
         lines.push(String::new());
@@ -47,10 +51,8 @@ fn row_line(row: &Row) -> String {
         return format!("{:NAME_WIDTH$} skipped: {reason}", shortened(&row.name));
     }
     let dash = || "-".to_owned();
-    let millions = |number: f64| format!("{:.*}", if number < 1e8 { 2 } else { 1 }, number / 1e6);
-    let paths = |part: fn(super::figures::Spread) -> f64| {
-        row.paths_per_second.map_or_else(dash, |spread| millions(part(spread)))
-    };
+    let paths =
+        |part: fn(Spread) -> f64| row.paths_per_second.map_or_else(dash, |spread| millions(part(spread)));
     line(
         &row.name,
         &[
@@ -64,6 +66,10 @@ fn row_line(row: &Row) -> String {
             row.efficiency.map_or_else(dash, |efficiency| format!("{efficiency:.2e}")),
         ],
     )
+}
+
+fn millions(number: f64) -> String {
+    format!("{:.*}", if number < 1e8 { 2 } else { 1 }, number / 1e6)
 }
 
 fn line(name: &str, cells: &[String; 8]) -> String {
@@ -100,9 +106,8 @@ fn scale_lines(rows: &[ScaleFigures]) -> Vec<String> {
     let mut lines = vec![title, joined(head.map(str::to_owned))];
     for row in rows {
         let dash = || "-".to_owned();
-        let millions = |spread: Option<super::figures::Spread>| {
-            spread.map_or_else(dash, |spread| format!("{:.2}", spread.median / 1e6))
-        };
+        let millions =
+            |spread: Option<Spread>| spread.map_or_else(dash, |spread| format!("{:.2}", spread.median / 1e6));
         lines.push(joined([
             row.spheres.to_string(),
             format!("{:.3}", row.generate_seconds),
@@ -118,9 +123,139 @@ fn scale_lines(rows: &[ScaleFigures]) -> Vec<String> {
     lines
 }
 
+/// Longest line of a table.
+const TEXT_WIDTH: usize = 100;
+
+fn device_lines(device: &DeviceFigures) -> Vec<String> {
+    let DeviceFigures { device: name, rows, skipped } = device;
+    if let Some(reason) = skipped {
+        return vec![format!("{name} skipped: {reason}")];
+    }
+    let runs = rows.iter().map(|row| row.own_runs.len()).max().unwrap_or(0);
+    let runs = counted(runs, "pair");
+    let mut lines = vec![
+        format!("Each scene's own kernel and the general one, {name}; {runs} of runs"),
+        gain_line("", ["size", "spp", "Mpaths/s", "general", "gain", "min", "max"].map(str::to_owned)),
+    ];
+    for (is_stage, heading) in [(true, "stages of the book"), (false, "scenes")] {
+        let group: Vec<&GainRow> = rows.iter().filter(|row| row.is_stage == is_stage).collect();
+        if !group.is_empty() {
+            lines.push(format!("-- {heading}"));
+            lines.extend(group.into_iter().flat_map(gain_lines));
+        }
+    }
+    lines
+}
+
+fn gain_lines(row: &GainRow) -> Vec<String> {
+    if let (Some(reason), None) = (&row.skipped, row.gain) {
+        return vec![format!("{} skipped: {reason}", row.name)];
+    }
+    let dash = || "-".to_owned();
+    let speed = |spread: Option<Spread>| spread.map_or_else(dash, |spread| millions(spread.median));
+    let gain = |part: fn(Spread) -> f64| row.gain.map_or_else(dash, |spread| format!("{:.2}", part(spread)));
+    let mut lines = vec![gain_line(
+        &row.name,
+        [
+            format!("{}x{}", row.width, row.height),
+            row.samples_per_pixel.to_string(),
+            speed(row.own_paths_per_second),
+            speed(row.general_paths_per_second),
+            gain(|spread| spread.median),
+            gain(|spread| spread.min),
+            gain(|spread| spread.max),
+        ],
+    )];
+    let left_out = if row.left_out.is_empty() { "nothing".to_owned() } else { row.left_out.join(", ") };
+    let [kernel, left_out] = [format!("kernel: {}", row.kernel), format!("left out: {left_out}")];
+    let together = format!("    {kernel}; {left_out}");
+    if together.chars().count() <= TEXT_WIDTH {
+        lines.push(together);
+    } else {
+        lines.extend([format!("    {kernel}"), format!("    {left_out}")]);
+    }
+    if row.same_bits == Some(false) {
+        lines.push("    the films differ".to_owned());
+    }
+    lines
+}
+
+fn gain_line(name: &str, cells: [String; 7]) -> String {
+    let widths = [10, 11, 11, 10, 8, 8, 8];
+    let cells = cells.iter().zip(widths).map(|(cell, width)| format!("{cell:>width$}"));
+    format!("{:NAME_WIDTH$}{}", shortened(name), cells.collect::<String>())
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::figures::Run;
     use super::*;
+
+    fn run(seconds: f64) -> Run {
+        Run { seconds, paths: 6_000_000, rays: 1, busy_lanes: 1, offered_lanes: 1, rmse: None }
+    }
+
+    fn row() -> GainRow {
+        let mut row = GainRow {
+            name: "three-spheres".to_owned(),
+            is_stage: true,
+            width: 200,
+            height: 113,
+            samples_per_pixel: 256,
+            kernel: "glass".to_owned(),
+            left_out: vec!["lens", "extremes"],
+            own_runs: vec![run(0.25), run(0.1), run(0.2)],
+            general_runs: vec![run(0.25), run(0.3), run(0.4)],
+            same_bits: Some(true),
+            ..GainRow::default()
+        };
+        row.sum_up();
+        row
+    }
+
+    #[test]
+    fn gains_are_those_of_pairs() {
+        let device = DeviceFigures { device: "avx2".to_owned(), rows: vec![row()], skipped: None };
+        assert_eq!(
+            device_lines(&device),
+            [
+                "Each scene's own kernel and the general one, avx2; 3 pairs of runs",
+                "                                        size        spp   Mpaths/s   general    gain     min     max",
+                "-- stages of the book",
+                "three-spheres                        200x113        256      30.00     20.00    2.00    1.00    3.00",
+                "    kernel: glass; left out: lens, extremes",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_row_says_what_went_wrong() {
+        let differing = GainRow { same_bits: Some(false), left_out: Vec::new(), ..row() };
+        let lines = gain_lines(&differing);
+        assert_eq!(lines[1..], ["    kernel: glass; left out: nothing", "    the films differ"]);
+        let failed = GainRow {
+            name: "book".to_owned(),
+            skipped: Some("out of memory".to_owned()),
+            ..GainRow::default()
+        };
+        assert_eq!(gain_lines(&failed), ["book skipped: out of memory"]);
+        let device = DeviceFigures {
+            device: "GPU".to_owned(),
+            rows: Vec::new(),
+            skipped: Some("no graphics adapter was found".to_owned()),
+        };
+        assert_eq!(device_lines(&device), ["GPU skipped: no graphics adapter was found"]);
+    }
+
+    #[test]
+    fn long_words_take_two_lines() {
+        let words = vec!["anchored", "eye on a surface", "cavity", "specks", "steep glass", "hierarchy"];
+        let kernel = "lambertian, metal, fuzz, glass, two roots, 5 spheres in constants".to_owned();
+        let lines = gain_lines(&GainRow { kernel, left_out: words, ..row() });
+        assert_eq!(lines.len(), 3);
+        assert!(lines[2].starts_with("    left out: anchored"), "{lines:?}");
+        assert!(lines.iter().all(|line| line.chars().count() <= TEXT_WIDTH), "{lines:?}");
+    }
 
     #[test]
     fn peak_memory_is_in_mib() {

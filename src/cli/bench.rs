@@ -8,8 +8,10 @@ use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_second
 use crate::backends::BackendError;
 use crate::chart::ChartFormat;
 use crate::recipe::Recipe;
-use crate::render::{RenderJob, SAMPLE_LIMIT, SamplerKind};
+use crate::render::{RenderJob, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use crate::render_cpu::{CpuError, Isa};
+use crate::scene::builtin::BuiltinScene;
+use crate::stages::Stage;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -22,10 +24,14 @@ pub(super) struct RawBench {
     #[arg(long, value_name = "A..B", value_parser = parse_counts, conflicts_with = "scene",
           help_heading = "Scenes")]
     pub scale: Option<Vec1<u64>>,
-    /// Width and height in pixels, each 1 to 16384 [default: the scene's]
+    /// Measure what leaving out of a kernel what a picture does not need gains, for all stages and built-in scenes
+    #[arg(long, conflicts_with_all = ["scale", "plot"], help_heading = "Scenes")]
+    pub features: bool,
+    /// Width and height in pixels, each 1 to 16384 [default: the scene's; with --features, 200 pixels across]
     #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Scenes")]
     pub size: Option<(u32, u32)>,
-    /// Most samples per pixel of a run [default: the scene's, but no more than 75 million paths]
+    /// Most samples per pixel of a run [default: the scene's, but no more than 75 million paths; with --features, as
+    /// many as --run-limit allows]
     #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
           allow_hyphen_values = true, help_heading = "Scenes")]
     pub samples: Option<u64>,
@@ -49,7 +55,8 @@ pub(super) struct RawBench {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1000),
           allow_hyphen_values = true, help_heading = "Measurement")]
     pub runs: Option<u64>,
-    /// Approximate time limit of a run in seconds; slow rows take fewer samples [default: 10, or 1 with --quick]
+    /// Approximate time limit of a run in seconds; slow rows take fewer samples [default: 10, or 1 with --quick; with
+    /// --features .4 and .1]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "Measurement")]
     pub run_limit: Option<f64>,
     /// Fewer samples and runs, for a first impression within a minute
@@ -77,6 +84,8 @@ pub struct BenchOptions {
     pub scenes: Vec<BenchScene>,
     /// Numbers of spheres in fields, ascending; if empty, scenes are measured.
     pub scale: Vec<u64>,
+    /// Whether each scene's own kernel is compared with the general one.
+    pub features: bool,
     /// Instruction levels, the most capable last; at least one.
     pub levels: Vec<Isa>,
     /// Number of threads of the rows with several threads.
@@ -104,6 +113,8 @@ pub struct BenchOptions {
 pub struct BenchScene {
     /// Its name.
     pub name: String,
+    /// Whether it is a stage of the book.
+    pub is_stage: bool,
     /// The job to render.
     pub job: RenderJob,
     /// Most samples per pixel of a run.
@@ -117,16 +128,36 @@ const DEFAULT_SCENES: [&str; 2] = ["three-spheres", "book"];
 const PATH_LIMIT: u64 = 75_000_000;
 const QUICK_PATH_LIMIT: u64 = 3_000_000;
 
+/// Width of pictures with `--features`, pixels.
+const FEATURES_WIDTH: u32 = 200;
+
 impl BenchOptions {
     /// Most samples per pixel of a run.
     pub fn samples_of(&self, recipe: &Recipe) -> u64 {
         let (width, height) = self.size.unwrap_or((recipe.settings.width, recipe.settings.height));
         let pixels = u64::from(width) * u64::from(height);
+        if self.features {
+            return self.samples.unwrap_or(SAMPLE_LIMIT);
+        }
         self.samples.unwrap_or_else(|| {
             let most = (self.path_limit / pixels).max(1);
             // Sobol points are best at powers of two.
             if recipe.samples_per_pixel <= most { recipe.samples_per_pixel } else { 1 << most.ilog2() }
         })
+    }
+
+    fn add(&mut self, recipe: Recipe, is_stage: bool) -> Result<(), CliError> {
+        let (name, samples) = (recipe.name.clone(), self.samples_of(&recipe));
+        let job = self.change(recipe)?;
+        job.check_memory(2)?;
+        self.scenes.push(BenchScene { name, is_stage, job, samples });
+        Ok(())
+    }
+
+    /// Whether the same job is measured already.
+    fn has(&self, recipe: &Recipe) -> Result<bool, CliError> {
+        let job = self.change(recipe.clone())?;
+        Ok(self.scenes.iter().any(|scene| scene.job == job))
     }
 
     /// The job of a recipe with the changes of the flags. The recipe's scene is not copied.
@@ -135,10 +166,20 @@ impl BenchOptions {
     /// See [`RenderJob::new`].
     pub fn change(&self, recipe: Recipe) -> Result<RenderJob, CliError> {
         let mut settings = recipe.settings;
-        (settings.width, settings.height) = self.size.unwrap_or((settings.width, settings.height));
+        let own_size = (settings.width, settings.height);
+        (settings.width, settings.height) = self.size.unwrap_or(match self.features {
+            true => (FEATURES_WIDTH, scaled_height(own_size)),
+            false => own_size,
+        });
         settings.sampler = self.sampler.unwrap_or(settings.sampler);
         Ok(RenderJob::new(recipe.scene, recipe.camera, settings, recipe.rules)?)
     }
+}
+
+/// The height that a picture of `own_size` has at [`FEATURES_WIDTH`].
+fn scaled_height((width, height): (u32, u32)) -> u32 {
+    let scaled = f64::from(height) * f64::from(FEATURES_WIDTH) / f64::from(width);
+    (scaled.round() as u32).clamp(1, SIZE_LIMIT)
 }
 
 /// Validates the flags of `weekender bench`.
@@ -159,11 +200,17 @@ pub(super) fn bench(raw: RawBench) -> Result<BenchOptions, CliError> {
     let mut options = BenchOptions {
         scenes: Vec::new(),
         scale: raw.scale.map_or_else(Vec::new, Vec::from),
+        features: raw.features,
         levels,
         threads: raw.threads.and_then(|threads| usize::try_from(threads).ok()).unwrap_or_else(cores),
         adapter: raw.adapter,
         runs: raw.runs.map_or(if raw.quick { 3 } else { 5 }, |runs| runs as usize),
-        run_limit_seconds: raw.run_limit.unwrap_or(if raw.quick { 1.0 } else { 10.0 }),
+        run_limit_seconds: raw.run_limit.unwrap_or(match (raw.features, raw.quick) {
+            (false, false) => 10.0,
+            (false, true) => 1.0,
+            (true, false) => 0.4,
+            (true, true) => 0.1,
+        }),
         json: raw.json.map(JsonTarget::from),
         plot: raw.plot,
         progress: raw.progress,
@@ -181,14 +228,23 @@ pub(super) fn bench(raw: RawBench) -> Result<BenchOptions, CliError> {
     if !options.scale.is_empty() {
         return Ok(options);
     }
-    let named = raw.scene.iter().map(String::as_str);
-    let names: Vec<&str> = if raw.scene.is_empty() { DEFAULT_SCENES.to_vec() } else { named.collect() };
-    for name in names {
+    let named: Vec<&str> = match raw.scene.as_slice() {
+        [] if options.features => BuiltinScene::ALL.iter().map(|scene| scene.name).collect(),
+        [] => DEFAULT_SCENES.to_vec(),
+        named => named.iter().map(String::as_str).collect(),
+    };
+    if options.features && raw.scene.is_empty() {
+        for stage in Stage::ALL {
+            options.add(stage.recipe(), true)?;
+        }
+    }
+    for name in named {
         let recipe = sources::scene(name)?;
-        let (name, samples) = (recipe.name.clone(), options.samples_of(&recipe));
-        let job = options.change(recipe)?;
-        job.check_memory(2)?;
-        options.scenes.push(BenchScene { name, job, samples });
+        // Some stages show a built-in scene.
+        let is_new = !options.features || !options.has(&recipe)?;
+        if is_new {
+            options.add(recipe, false)?;
+        }
     }
     Ok(options)
 }

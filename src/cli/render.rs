@@ -254,7 +254,7 @@ fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
 fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
     let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
     let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
-    let cpu = CpuOptions { isa, lanes, threads, low_priority: false, panics_after: raw.simulate_panic };
+    let cpu = CpuOptions { isa, lanes, threads, panics_after: raw.simulate_panic, ..CpuOptions::default() };
     let injections = [
         (raw.simulate_device_lost, Fault::Lost, "--simulate-device-lost"),
         (raw.simulate_out_of_memory, Fault::OutOfMemory, "--simulate-out-of-memory"),

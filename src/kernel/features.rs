@@ -24,18 +24,29 @@ pub mod parts {
     /// No part: every kernel has the code, or the CPU tracer checks the job at run time.
     pub const NONE: u32 = 0;
 
+    const WORDS: [(u32, &str); 5] = [
+        (GLASS, "glass"),
+        (LENS, "lens"),
+        (EXTREMES, "extremes"),
+        (HIERARCHY, "hierarchy"),
+        (RULES, STAGE_RULES),
+    ];
+
+    pub(super) const STAGE_RULES: &str = "stage rules";
+
     /// Describes in words what a kernel with these parts supports.
     pub fn describe(parts: u32) -> String {
-        let words = [
-            (GLASS, "glass"),
-            (LENS, "lens"),
-            (EXTREMES, "extremes"),
-            (HIERARCHY, "hierarchy"),
-            (RULES, "stage rules"),
-        ];
-        let present: Vec<&str> =
-            words.iter().filter(|(part, _)| parts & part != 0).map(|(_, word)| *word).collect();
+        let present = words_of(parts);
         if present.is_empty() { "opaque spheres, pinhole".to_owned() } else { present.join(", ") }
+    }
+
+    /// The words for the parts that a kernel with these parts leaves out.
+    pub fn left_out(parts: u32) -> Vec<&'static str> {
+        words_of(!parts)
+    }
+
+    fn words_of(parts: u32) -> Vec<&'static str> {
+        WORDS.iter().filter(|(part, _)| parts & part != 0).map(|(_, word)| *word).collect()
     }
 }
 
@@ -172,6 +183,18 @@ macro_rules! features {
                 )),*].concat()
             }
 
+            /// For each feature that is off: the part of the CPU's kernels that implements it, and the words for its
+            /// value 1.
+            fn words_off(&self) -> Vec<(u32, &'static str)> {
+                let switches = [$((
+                    last!(parts::NONE $(, parts::$part)?),
+                    self.$name == $off,
+                    word(true, &[$($($words),+)?]),
+                )),*];
+                let off = switches.into_iter().filter(|(_, is_off, _)| *is_off);
+                off.map(|(part, _, words)| (part, words)).collect()
+            }
+
             /// For each feature, its name and the words for its value.
             fn words(&self) -> Vec<(&'static str, &'static str)> {
                 vec![$((stringify!($name), word(self.$name, &[$($($words),+)?]))),*]
@@ -266,6 +289,16 @@ impl Features {
         let few = self.few_spheres.then(|| format!("{count} spheres in constants"));
         words.chain(few).collect::<Vec<_>>().join(", ")
     }
+
+    /// The words for what a kernel with exactly these features leaves out. The rules of the stages count as one.
+    pub fn left_out(&self) -> Vec<&'static str> {
+        let is_told = |(part, words): &(u32, &'static str)| {
+            !words.is_empty() && *part != parts::RULES && *words != "compressed hierarchy"
+        };
+        let off = self.words_off().into_iter().filter(is_told).map(|(_, words)| words);
+        let rules = (self.parts() & parts::RULES == 0).then_some(parts::STAGE_RULES);
+        off.chain(rules).collect()
+    }
 }
 
 fn occurs(job: &RenderJob, is_such: impl Fn(&Material) -> bool) -> bool {
@@ -329,5 +362,28 @@ mod tests {
         assert!(boxed.describe().ends_with("cavity, hierarchy, acne"), "{}", boxed.describe());
         let compressed = Features { cwbvh: true, ..boxed };
         assert!(compressed.describe().ends_with("cavity, compressed hierarchy, acne"));
+    }
+
+    #[test]
+    fn what_is_left_out_is_what_is_off() {
+        let features = Features { lens: false, cavity: false, ..Features::default() };
+        assert_eq!(
+            features.left_out(),
+            ["lens", "cavity", "specks", "steep glass", "hierarchy", "stage rules"]
+        );
+        let with_rule = Features { hierarchy: true, surface: SurfaceRule::Book, ..Features::default() };
+        assert_eq!(with_rule.left_out(), ["specks", "steep glass"]);
+    }
+
+    #[test]
+    fn each_part_is_either_present_or_left_out() {
+        assert_eq!(parts::describe(parts::GLASS), "glass");
+        assert_eq!(parts::left_out(parts::GLASS), ["lens", "extremes", "hierarchy", "stage rules"]);
+        assert_eq!(parts::left_out(parts::ALL), [""; 0]);
+        for combination in 0..=parts::ALL {
+            let left_out = parts::left_out(combination);
+            assert!(left_out.iter().all(|word| !parts::describe(combination).contains(word)));
+            assert_eq!(left_out.len() as u32 + combination.count_ones(), parts::ALL.count_ones());
+        }
     }
 }

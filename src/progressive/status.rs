@@ -78,6 +78,8 @@ pub struct Status {
     pub prepare: Duration,
     /// What the current kernel contains, in words.
     pub kernel: String,
+    /// What the current kernel leaves out.
+    pub left_out: Vec<&'static str>,
     /// Wall time of building the hierarchy, which is part of `prepare`.
     pub hierarchy: Duration,
     /// Wall time of all passes.

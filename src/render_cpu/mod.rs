@@ -21,7 +21,9 @@ pub use record::{PathRecorder, record_path};
 use crate::film::{Film, FilmError};
 use crate::kernel::{Real, parts};
 use crate::prepared::PreparedScene;
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats, TileOccupancy, panic_text};
+use crate::render::{
+    BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats, TileOccupancy, panic_text,
+};
 use broadcast::BroadcastScene;
 use kernels::Kernel;
 use rayon::prelude::*;
@@ -47,6 +49,8 @@ pub struct CpuOptions {
     pub threads: Option<usize>,
     /// Whether the threads yield to other work, such as a window. Linux only.
     pub low_priority: bool,
+    /// Whether every job gets the general kernel, which leaves nothing out, to measure the gain of leaving things out.
+    pub general: bool,
     /// Panics in the middle of a tile, after this many other tiles (fault injection).
     pub panics_after: Option<u64>,
 }
@@ -99,6 +103,8 @@ enum Prepared {
 pub struct CpuRenderer {
     /// Level and lane count; `None` for the reference.
     packets: Option<(Isa, usize)>,
+    /// Whether every job gets the general kernel.
+    general: bool,
     threads: rayon::ThreadPool,
     job: Option<RenderJob>,
     prepared: Option<Prepared>,
@@ -146,7 +152,8 @@ impl CpuRenderer {
             return Err(CpuError::Lanes { lanes, isa, available: isa.lane_counts().to_vec() });
         }
         let renderer = CpuRenderer::with_packets(Some((isa, lanes)), options.threads, options.low_priority)?;
-        Ok(CpuRenderer { tiles_to_panic: options.panics_after.map(AtomicU64::new), ..renderer })
+        let tiles_to_panic = options.panics_after.map(AtomicU64::new);
+        Ok(CpuRenderer { general: options.general, tiles_to_panic, ..renderer })
     }
 
     /// Creates the reference renderer: scalar, `f64`, with `threads` threads (`None`: one per core).
@@ -174,6 +181,7 @@ impl CpuRenderer {
             .build()
             .map(|threads| CpuRenderer {
                 packets,
+                general: false,
                 threads,
                 job: None,
                 prepared: None,
@@ -206,13 +214,24 @@ impl Renderer for CpuRenderer {
     }
 
     fn kernel(&self) -> String {
-        match (self.packets, &self.prepared) {
+        let needed = match &self.prepared {
+            Some(Prepared::Single(prepared, _)) => prepared.prepared.features.parts(),
+            Some(Prepared::Double(prepared, _)) => prepared.prepared.features.parts(),
+            None => return String::new(),
+        };
+        let (present, needed) = (self.kernel_contents().present, parts::describe(needed));
+        if needed == present { present } else { format!("{present} (needed: {needed})") }
+    }
+
+    fn kernel_contents(&self) -> KernelContents {
+        let present = match (self.packets, &self.prepared) {
             (Some((isa, lanes)), Some(Prepared::Single(prepared, _))) => {
-                parts::describe(kernels::offered(isa, lanes, prepared.prepared.features.parts()))
+                kernels::offered(isa, lanes, self.wanted_parts(&prepared.prepared))
             }
-            (_, Some(_)) => parts::describe(parts::ALL),
-            (_, None) => String::new(),
-        }
+            (_, Some(_)) => parts::ALL,
+            (_, None) => return KernelContents::default(),
+        };
+        KernelContents { present: parts::describe(present), left_out: parts::left_out(present) }
     }
 
     fn hierarchy_time(&self) -> Duration {
@@ -238,8 +257,8 @@ impl Renderer for CpuRenderer {
                 };
                 let prepared = self.threads.install(|| PreparedScene::renewed(old.zip(before), job));
                 self.messages = prepared.warnings().to_vec();
-                let needed = prepared.features.parts();
-                let kernel = kernels::kernel(isa, lanes, needed).ok_or_else(|| RenderError::Backend {
+                let wanted = self.wanted_parts(&prepared);
+                let kernel = kernels::kernel(isa, lanes, wanted).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
                     reason: format!("there is no kernel for {lanes} lanes of {isa}"),
                 })?;
@@ -305,6 +324,10 @@ impl Renderer for CpuRenderer {
 }
 
 impl CpuRenderer {
+    fn wanted_parts<R: Real>(&self, prepared: &PreparedScene<R>) -> u32 {
+        if self.general { parts::ALL } else { prepared.features.parts() }
+    }
+
     /// Like [`CpuRenderer::trace`], with the prepared scene at hand.
     fn trace_prepared(&self, pass: Pass, film: &mut Film) -> Vec<TracedTile> {
         match &self.prepared {

@@ -86,6 +86,7 @@ impl GpuRenderer {
             self.gpu.expect_compiling();
         }
         self.report.features = features.describe();
+        self.report.left_out = features.left_out();
         self.report.compile_time = kernel.compile_time;
         Ok(Loaded { job: job.clone(), scene, features, kernel, film })
     }

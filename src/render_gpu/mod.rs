@@ -29,7 +29,7 @@ pub use options::{
 pub use turns::TURN_LIMIT;
 
 use crate::film::Film;
-use crate::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
+use crate::render::{BackendInfo, KernelContents, RenderError, RenderJob, Renderer, Stats};
 use device::Gpu;
 use dispatches::{Broken, Dispatches};
 use kernel::Kernels;
@@ -210,6 +210,10 @@ impl Renderer for GpuRenderer {
     fn kernel(&self) -> String {
         let GpuReport { features, compile_time, timer, .. } = &self.report;
         format!("{features}; compiled in {:.3} s; dispatches timed by {timer}", compile_time.as_secs_f64())
+    }
+
+    fn kernel_contents(&self) -> KernelContents {
+        KernelContents { present: self.report.features.clone(), left_out: self.report.left_out.clone() }
     }
 
     fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {

@@ -161,6 +161,8 @@ pub enum GpuError {
 pub struct GpuReport {
     /// Description of the kernel in use.
     pub features: String,
+    /// What that kernel leaves out.
+    pub left_out: Vec<&'static str>,
     /// Time spent compiling that kernel.
     pub compile_time: Duration,
     /// Time spent building the hierarchy.

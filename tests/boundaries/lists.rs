@@ -75,6 +75,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         "bench",
         &[
             "scene",
+            "film",
             "render",
             "recipe",
             "chart",

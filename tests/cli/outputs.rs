@@ -9,7 +9,15 @@ fn the_default_picture_is_named_after_its_scene() {
     let output = render(directory.path(), &["--samples", "2"]);
     assert_eq!(names(directory.path()), ["three-spheres.png"]);
     let summary = text(&output.stdout);
-    for part in ["three-spheres, 32x18", "2 per pixel", "number of samples", "three-spheres.png", "threads"] {
+    for part in [
+        "three-spheres, 32x18",
+        "kernel   ",
+        "left out lens, ",
+        "2 per pixel",
+        "number of samples",
+        "three-spheres.png",
+        "threads",
+    ] {
         assert!(summary.contains(part), "{summary}");
     }
     assert!(output.stderr.is_empty(), "quiet when redirected: {}", text(&output.stderr));
@@ -128,6 +136,7 @@ fn json_has_its_keys() {
     ] {
         assert_eq!(json[key], value, "{key}");
     }
+    assert!(json["left_out"].as_array().unwrap().contains(&Value::from("lens")), "{}", json["left_out"]);
     for key in [
         "prepare_seconds",
         "trace_seconds",

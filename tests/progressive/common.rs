@@ -77,6 +77,7 @@ pub const CPU: BackendChoice = BackendChoice::Cpu(CpuOptions {
     lanes: None,
     threads: None,
     low_priority: false,
+    general: false,
     panics_after: None,
 });
 pub const FAILING: BackendChoice = BackendChoice::Reference { threads: None };

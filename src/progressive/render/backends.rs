@@ -50,6 +50,7 @@ impl Render {
                 self.status.backend = Some(ready.renderer.info());
                 self.status.say(ready.renderer.take_messages());
                 self.status.kernel = ready.renderer.kernel();
+                self.status.left_out = ready.renderer.kernel_contents().left_out;
                 self.status.hierarchy += ready.renderer.hierarchy_time();
                 self.status.prepare += ready.took;
                 self.choice = pending.choice;
@@ -125,6 +126,7 @@ impl Render {
             self.status.backend = Some(renderer.info());
             self.status.say(renderer.take_messages());
             self.status.kernel = renderer.kernel();
+            self.status.left_out = renderer.kernel_contents().left_out;
             self.status.hierarchy += renderer.hierarchy_time();
             self.is_prepared = true;
             self.status.phase = Phase::Tracing;
