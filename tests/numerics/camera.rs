@@ -1,7 +1,7 @@
 //! The camera: cases 31 to 34. (Book 1, sections 12 and 13.)
 //!
-//! That scene files refuse what cannot be rendered, with the line, is tested in tests/scene_files.rs, and that
-//! flags do in tests/cli.rs.
+//! That scene files refuse what cannot be rendered, with the line, is tested in tests/scene_files, and that
+//! flags do in tests/cli.
 
 use crate::common::*;
 use glam::{DMat3, DVec3};
@@ -34,7 +34,7 @@ fn expected_sky(camera: &Camera, width: u32, height: u32) -> Vec<[f64; 3]> {
 /// Whether an empty scene shows the sky that `camera` looks at.
 fn assert_sees_the_sky(camera: Camera, [width, height]: [u32; 2]) {
     let scene = Scene { sky: SKY, ..Scene::default() };
-    for mut renderer in [widest(), baseline()] {
+    for mut renderer in [widest(), portable()] {
         let film = render(&mut renderer, &job(&scene, camera, size(width, height)), 0..64);
         for (pixel, expected) in expected_sky(&camera, width, height).iter().enumerate() {
             let mean = film.mean(pixel);
@@ -92,7 +92,7 @@ fn case_33_lenses() {
             Ok(()) => {
                 assert!(is_valid, "{camera:?}");
                 let scene = three_spheres(LeftSphere::HollowGlass);
-                for mut renderer in [widest(), baseline()] {
+                for mut renderer in [widest(), portable()] {
                     let film = render(&mut renderer, &job(&scene, camera, size(16, 9)), 0..4);
                     assert_eq!(film.rejected(), 0);
                     // No light is brighter than the sky's 1, and the sky is somewhere to be seen.

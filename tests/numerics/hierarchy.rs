@@ -85,7 +85,7 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
     }
 }
 
-/// A hierarchy with every other sphere of one root alone.
+/// A hierarchy in which only the nearer root counts for every other sphere.
 struct Tree<L: Lanes> {
     hierarchy: Hierarchy<L::Real>,
     /// In the order of the leaves.
@@ -193,7 +193,7 @@ fn hierarchy_and_list_agree_on_a_hundred_scenes() {
     assert!(hits > rays / 4, "{hits}");
 }
 
-/// Packets of rays in all directions find what each ray finds by itself in the list.
+/// Packets of rays in all directions find the same hits as single rays that test the whole list.
 #[cfg(target_arch = "x86_64")]
 fn packets_agree(seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
     use fearless_simd::{Level, Simd};

@@ -20,7 +20,7 @@ const UNFUSED: Scalar<false> = Scalar;
 /// A sphere's number in these tests.
 const NUMBER: u32 = 7;
 
-/// What rays aimed at a sphere tell about the root that they find.
+/// Errors of the roots that rays aimed at a sphere find.
 #[derive(Debug, Default)]
 struct Aimed {
     hits: u32,
@@ -248,7 +248,7 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
         let (center, radius) = (random.in_box(100.0), random.log_within(1e-3, 1e3));
         let Some(point) = arrival(l, &mut random, center, radius) else { continue };
         let normal = vector::<Scalar<false>>(point.outward);
-        // Down to grazing, where the offsets of other tracers fail.
+        // Includes grazing angles, at which offsets along the normal, as other tracers use them, fail.
         let lift = random.log_within(1e-7, 1.0);
         let direction = perpendicular(normal, &mut random) + normal * lift;
         let mut rays = ray(l, DVec3::ZERO, direction);
@@ -271,7 +271,7 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
     }
 }
 
-/// The same in whole pictures: a path that leaves a lone sphere meets nothing more, whatever depth is allowed.
+/// The same in whole pictures: a path that leaves a lone sphere hits nothing more, whatever the depth.
 #[test]
 fn case_08_lone_spheres_are_met_once() {
     let mut renderer = widest();
@@ -417,7 +417,7 @@ fn case_19_a_thousand_internal_reflections() {
     }
 }
 
-/// The rules that these cases rest on: nothing but the finished tracer's.
+/// The rules of these cases are those of the finished tracer.
 #[test]
 fn the_acne_stage_alone_anchors_nothing() {
     let job = ground_job(1e5);

@@ -88,7 +88,7 @@ fn assert_twins<L: Lanes>(l: L) {
         for (which, found) in rng::pcg4d(l, [la, lb, lc, ld]).into_iter().enumerate() {
             same(found, "pcg4d", &|i| sampling::pcg4d([a[i], b[i], c[i], d[i]])[which]);
         }
-        // A whole draw: lane by lane its own pixel and index, at one bounce.
+        // A whole draw: each lane has its own pixel and index, all at one bounce.
         let (half, bounce, seed) = (a[0] & 1, b[0] % 50, c[0]);
         let index = |i: usize| d[i] >> 1 << 1 | half;
         let pixel = |i: usize| a[i] & 0x3FFF_3FFF;

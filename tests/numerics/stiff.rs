@@ -29,7 +29,7 @@ fn among_many(balls: &[Ball]) -> Vec<Ball> {
 const AT_BALL: Camera =
     Camera { look_from: DVec3::new(0.0, 0.0, 3.0), look_at: DVec3::ZERO, vfov_degrees: 20.0, ..Camera::BOOK };
 
-/// Renders as a list and with a hierarchy, checks that both are there and the same, and returns the film.
+/// Renders as a list and with a hierarchy, checks that both exist and give the same film, and returns it.
 fn as_list_and_hierarchy(job: &RenderJob, samples: u64) -> Film {
     let prepared = PreparedScene::<f32>::new(job);
     let [mut listed, mut boxed] = [job.new_film(), job.new_film()];
@@ -76,7 +76,7 @@ fn nearly_equal_balls_reflect_what_one_does() {
         let job = job(&under_white_sky(&among_many(&balls)), AT_BALL, size(16, 16));
         let mean = mean(&as_list_and_hierarchy(&job, 64));
         println!("offset {offset:e}: {mean}");
-        // Light that goes from one to another is lost; there is as much of it as the balls stand out.
+        // Light that travels between the balls is lost, in proportion to how far they stand out.
         assert!((mean - 0.5).abs() < 1e-5 + 2.0 * offset, "{offset:e}: {mean}");
     }
 }
@@ -105,7 +105,7 @@ fn of_copies_in_two_colours_the_first_is_seen() {
     }
 }
 
-/// Shells about one centre, and crowds of balls about one place, make no tree too deep to go through.
+/// Shells about one centre, and many balls in one place, do not make a tree too deep to traverse.
 #[test]
 fn shells_and_crowds_have_low_trees() {
     let ball = |center, radius| weekender::scene::Sphere { center, radius, material: 0 };
@@ -245,7 +245,7 @@ fn far_spheres_do_not_move_the_anchor() {
     assert_eq!(anchor(&detail), anchor(&among_many(&detail)));
 }
 
-/// One odd sphere, distance or eye does not make a list of all spheres.
+/// One extreme sphere, distance or eye does not put all spheres into the list.
 #[test]
 fn oddities_anchor_few_spheres() {
     let (scene, camera) = field(4000);
@@ -293,7 +293,7 @@ fn total_reflection_lasts() {
     let off = mean(&film) - mean(&exact);
     println!("total reflection: {:e} of {}", off, mean(&exact));
     assert!(mean(&exact) > 0.01 && off.abs() < 1e-6, "{off:e}");
-    // All of these are reflected for ever.
+    // All of these are reflected forever.
     let narrow = Camera { vfov_degrees: 60.0, ..side };
     let dark = render(&mut widest(), &crate::common::job(&scene, narrow, settings), 0..4);
     assert_eq!(mean(&dark), 0.0);
@@ -391,7 +391,7 @@ fn layers_too_thin_for_single_precision_are_told() {
     );
 }
 
-/// How thin a layer may be: printed, and held where no warning is given.
+/// How thin a layer may be: prints it, and checks thicknesses without a warning.
 #[test]
 fn layers_without_a_warning_are_right() {
     for thickness in [1e-7, 2e-7, 5e-7, 1e-6, 3e-6, 1e-5, 1e-4] {
@@ -421,7 +421,8 @@ fn crossing_balls_around_the_eye_are_told() {
     assert!(!is_told(0.5, 1.0), "outside, where no path is between them");
 }
 
-/// From afar a coat and what it coats have one distance, though both are small and their coordinates have digits to spare.
+/// From afar a coat and the ball in it are at the same rounded distance, although both are small and their coordinates are
+/// precise.
 #[test]
 fn coats_seen_from_afar_are_told_or_right() {
     let center = DVec3::new(0.188, 1.469, 2.204);
@@ -462,7 +463,7 @@ fn hidden_glass_seen_from_afar_is_told_or_right() {
     }
 }
 
-/// What an eye is close to is resolved there, even where a small ball lies near the far side of the same planet.
+/// Details close to the eye are resolved, even where a small ball lies near the far side of the same planet.
 #[test]
 fn a_planet_is_resolved_at_the_eye_whatever_lies_beyond() {
     let (radius, height) = (8.8e9, 5.6e4);
