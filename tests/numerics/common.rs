@@ -27,7 +27,7 @@ impl Random {
         x ^ (x >> 31)
     }
 
-    /// In `[0, 1)`.
+    /// Uniform in `[0, 1)`.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -74,7 +74,7 @@ pub fn normalised<L: Lanes>(l: L, d: V3<L::F>) -> V3<L::F> {
     d.scale(l.constant(1.0) / d.dot(d).sqrt())
 }
 
-/// A ray that starts on no sphere. `direction` may have any length.
+/// A ray that does not start on a sphere. `direction` may have any length.
 pub fn ray<L: Lanes>(l: L, origin: DVec3, direction: DVec3) -> Rays<L> {
     Rays {
         origin: v3(l, origin),
@@ -122,7 +122,7 @@ pub fn glass(refraction_index: f64) -> Material {
     Material::Dielectric { refraction_index }
 }
 
-/// A scene of spheres, each of its own material.
+/// A scene of spheres, each with its own material.
 pub fn scene(spheres: &[(DVec3, f64, Material)]) -> Scene {
     let mut scene = Scene::default();
     for (index, (center, radius, material)) in spheres.iter().enumerate() {
@@ -132,7 +132,7 @@ pub fn scene(spheres: &[(DVec3, f64, Material)]) -> Scene {
     scene
 }
 
-/// Settings of a picture of this size, one half, 50 rays a path.
+/// Settings of a picture of this size, one half, 50 rays per path.
 pub fn size(width: u32, height: u32) -> RenderSettings {
     RenderSettings { width, height, max_depth: 50, estimate_error: false, ..RenderSettings::default() }
 }
@@ -166,7 +166,7 @@ pub fn portable() -> CpuRenderer {
     packets(Isa::Portable, 1)
 }
 
-/// `f64`.
+/// The `f64` reference.
 pub fn reference() -> CpuRenderer {
     CpuRenderer::reference(THREADS).unwrap()
 }

@@ -13,7 +13,7 @@ use weekender::render_cpu::work::{RefillBlock, RefillOrder, TileStats, Work};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
 use weekender::scene::{Camera, Sky};
 
-/// Traces a prepared scene as it is, in one tile of at most 256 pixels a side.
+/// Traces a prepared scene without validating it, in one tile of at most 256 pixels a side.
 pub fn trace_tables(
     prepared: &PreparedScene<f32>,
     film: &mut Film,

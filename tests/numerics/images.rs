@@ -57,9 +57,9 @@ fn case_11_thin_shell() {
     }
 }
 
-/// The limit on the RMS applies to samples whose path is the same in both precisions. A path that rounding sends another
-/// way (at a random choice in glass, or at an outline) is off by about .1 and is counted as an outlier; one such sample in
-/// 1e4 makes an RMS of 1e-3 however good the others are.
+/// The limit on the RMS applies to samples whose path is the same in both precisions. A path that rounding sends
+/// another way (at a random choice in glass, or at an outline) is off by about .1 and is counted as an outlier; one
+/// such sample in 1e4 makes an RMS of 1e-3 however good the others are.
 #[test]
 fn case_12_single_against_double() {
     let scene = three_spheres(LeftSphere::HollowGlass);

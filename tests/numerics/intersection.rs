@@ -37,7 +37,7 @@ impl Aimed {
 }
 
 /// Aims `count` rays at the disk of radius `reach` radii around a sphere at `distance_away` from the origin, and
-/// compares with the exact roots of the very rays that the lanes hold.
+/// compares with the exact roots of the rays as the lanes hold them.
 fn aim<L: Lanes>(l: L, distance_away: f64, radius: f64, reach: f64, count: u32) -> Aimed {
     let mut random = Random::new(1);
     let number = l.splat_u(NUMBER);
@@ -129,8 +129,8 @@ fn ground_job(radius: f64) -> RenderJob {
     job(&scene, camera, size(16, 9))
 }
 
-/// The nearer root for a sphere whose top is the origin. `f.f - r^2` is written without the radius squared, so
-/// that `f64` resolves it also for a radius of 1e7.
+/// The nearer root for a sphere whose top is the origin. `f.f - r^2` is computed without squaring the radius, so
+/// that `f64` resolves it even for a radius of 1e7.
 fn exact_ground_root(origin: DVec3, direction: DVec3, radius: f64) -> Option<f64> {
     let a = direction.length_squared();
     let b = direction.dot(origin) + radius * direction.y;
@@ -229,7 +229,7 @@ fn case_07_direction_of_any_length() {
     assert!(largest <= 1e-5, "{largest:e}");
 }
 
-/// A ray arrives from outside somewhere on a sphere and is sent on.
+/// A ray from outside hits a sphere and is scattered.
 fn arrival<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> Option<SurfacePoint<L>> {
     let origin = center + random.direction() * radius * random.log_within(1.5, 1e3);
     let across = perpendicular(center - origin, random) * (0.95 * radius * random.unit().sqrt());
@@ -288,7 +288,7 @@ fn case_08_lone_spheres_are_met_once() {
     }
 }
 
-/// Enters through the surface as glass of index 1.5 makes it, and runs to the other side.
+/// A ray enters glass of index 1.5 and travels to the other side.
 fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> Option<f64> {
     let number = l.splat_u(NUMBER);
     let sphere = packed::<L>(center, radius);
@@ -349,8 +349,8 @@ fn case_09_chord_inside_a_tiny_sphere() {
     assert!(largest <= 1e-2, "{largest:e}");
 }
 
-/// Follows total reflection around the inside of a glass ball. Largest distance of a hit from the sphere over
-/// its radius, and largest change of the sine of the angle of incidence.
+/// Follows total reflection around the inside of a glass ball. Returns the largest distance of a hit from the sphere,
+/// relative to its radius, and the largest change of the sine of the angle of incidence.
 fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
     let mut random = Random::new(6);
     let number = l.splat_u(NUMBER);

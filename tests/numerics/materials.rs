@@ -183,7 +183,7 @@ fn grazing<const FUSED: bool>() {
             assert!(!bounced.refracts, "index {index} lets light through at a grazing angle");
             let bounced = vector::<Scalar<FUSED>>(bounced.direction);
             assert!((bounced - direction).length() < 1e-6, "{bounced}, not {direction}");
-            // And where the law is not asked whether it has a solution.
+            // `RefractOnly` does not check whether Snell's law has a solution: its direction is wrong, but finite.
             let wrong = scattered(DielectricLaws::RefractOnly);
             assert!(vector::<Scalar<FUSED>>(wrong.direction).is_finite());
         }
