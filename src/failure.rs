@@ -48,7 +48,8 @@ impl Failure {
         Failure::Run(error.into())
     }
 
-    /// Prints the failure to standard error (help goes to standard output) and returns the exit code: see [`EXIT_CODES`].
+    /// Prints the failure to standard error (help goes to standard output) and returns the exit code; see
+    /// [`EXIT_CODES`].
     pub fn report(&self) -> ExitCode {
         ExitCode::from(match self {
             Failure::CommandLine(error) if error.use_stderr() => {
@@ -88,7 +89,7 @@ impl fmt::Display for Failure {
 /// The message for a result that cannot be written to standard output.
 pub fn output_failure(error: &std::io::Error) -> String {
     format!(
-        "cannot write to standard output: {error}; keep its reader running, or write to a file on a disk with free space"
+        "cannot write to standard output: {error}; keep its reader running, or write to a disk with free space"
     )
 }
 

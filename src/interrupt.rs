@@ -108,8 +108,8 @@ impl Drop for Writing<'_> {
     }
 }
 
-/// Makes writes beyond the file size limit (`ulimit -f`) fail with an error. By default the system ends the program with
-/// SIGXFSZ.
+/// Makes writes beyond the file size limit (`ulimit -f`) fail with an error. By default the system ends the program
+/// with SIGXFSZ.
 pub fn survive_file_size_limit() {
     #[cfg(unix)]
     {

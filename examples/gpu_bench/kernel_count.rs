@@ -1,5 +1,5 @@
-//! Counts the operations of a kernel in naga's representation, after overrides are substituted and the branches that they
-//! decide are removed, as every driver's compiler does.
+//! Counts the operations of a kernel in naga's representation, after overrides are substituted and the branches that
+//! they decide are removed, as every driver's compiler does.
 
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
@@ -88,8 +88,8 @@ impl Counted {
         block.iter().map(of).sum()
     }
 
-    /// Operations of one turn of the path loop, with both sides of every branch. `trips` are the turns of the loops over
-    /// spheres.
+    /// Operations of one turn of the path loop, with both sides of every branch. `trips` are the turns of the loops
+    /// over spheres.
     pub fn turn(&self, trips: &[usize]) -> Cost {
         let mut trips = trips.iter().copied();
         let mut cost = Cost::default();
