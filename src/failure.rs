@@ -6,48 +6,50 @@ use std::fmt;
 use std::panic::PanicHookInfo;
 use std::process::ExitCode;
 
-/// Exit code for a failure on the way, and for two things that differ.
+/// Exit code for a failure during the run, and for two inputs that differ.
 pub const FAILED: u8 = 1;
 
-/// Exit code for what cannot be done, before anything was begun.
+/// Exit code for a request that cannot be carried out; nothing was started.
 pub const BAD_INPUT: u8 = 2;
 
-/// Exit code of a render that broke off, but whose samples up to then are in its files.
+/// Exit code of a render that stopped early; the samples until then are in its files.
 pub const BROKE_OFF: u8 = 3;
 
 /// Exit code after Ctrl-C: 128 and the number of SIGINT.
 pub const INTERRUPTED: u8 = 130;
 
-/// What `--help` says of them.
+/// The exit codes as `--help` explains them.
 pub const EXIT_CODES: &str = "\
-Exit codes: 0 done; 1 failed on the way (compare and diff: the two differ); 2 cannot be done, nothing was begun; \
-3 the render broke off, what it had rendered is in its files; 130 interrupted, what had been rendered is in its files";
+Exit codes: 0 success; 1 failure during the run (compare and diff: the inputs differ); 2 the request cannot be carried \
+out, nothing was started; 3 the render failed, but what it had rendered is saved; 130 interrupted, what had been \
+rendered is saved";
 
 /// Why the program ends without having done what was asked.
 #[derive(Debug)]
 pub enum Failure {
-    /// The command line cannot be understood, or asks for help.
+    /// The command line is invalid, or asks for help.
     CommandLine(clap::Error),
-    /// What was asked for cannot be done; nothing was begun.
+    /// The request cannot be carried out; nothing was started.
     Input(anyhow::Error),
-    /// Something failed on the way.
+    /// Something failed during the run.
     Run(anyhow::Error),
-    /// The render broke off, but what it had rendered is in its files.
+    /// The render failed, but what it had rendered is in its files.
     BrokeOff(anyhow::Error),
 }
 
 impl Failure {
-    /// A failure before anything was begun.
+    /// A failure before anything was started.
     pub fn input(error: impl Into<anyhow::Error>) -> Self {
         Failure::Input(error.into())
     }
 
-    /// A failure on the way.
+    /// A failure during the run.
     pub fn run(error: impl Into<anyhow::Error>) -> Self {
         Failure::Run(error.into())
     }
 
-    /// Says it on standard error (help goes to standard output) and returns the exit code: see [`EXIT_CODES`].
+    /// Prints the failure to standard error (help goes to standard output) and returns the exit code; see
+    /// [`EXIT_CODES`].
     pub fn report(&self) -> ExitCode {
         ExitCode::from(match self {
             Failure::CommandLine(error) if error.use_stderr() => {
@@ -84,23 +86,26 @@ impl fmt::Display for Failure {
     }
 }
 
-/// What is said where standard output does not take a result.
+/// The message for a result that cannot be written to standard output.
 pub fn output_failure(error: &std::io::Error) -> String {
-    format!("cannot write to standard output: {error}; keep its reader open, or name a place with room")
+    format!(
+        "cannot write to standard output: {error}; keep its reader running, or write to a disk with free space"
+    )
 }
 
-/// Has a panic say what a user can do with it. The hook itself cannot fail, whatever has become of standard error.
+/// Makes panics print a message that tells the user what to do. The hook itself cannot fail, even if standard error is
+/// closed.
 pub fn install_panic_hook() {
     std::panic::set_hook(Box::new(|panic| console::note(&fault_words(panic))));
 }
 
 fn fault_words(panic: &PanicHookInfo<'_>) -> String {
-    let reason = panic.payload_as_str().unwrap_or("no reason was given");
+    let reason = panic.payload_as_str().unwrap_or("no reason given");
     let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
     let thread = std::thread::current();
-    let thread = thread.name().unwrap_or("without a name");
+    let thread = thread.name().unwrap_or("(unnamed)");
     let mut words = format!(
-        "a fault of this program, in thread {thread}: {reason}{place}; please report it with the command that led to it"
+        "internal error in thread {thread}: {reason}{place}; please report it with the command that led to it"
     );
     let backtrace = Backtrace::capture();
     if backtrace.status() == BacktraceStatus::Captured {

@@ -8,11 +8,11 @@ pub struct HeatScale {
     /// The values at the two ends.
     limits: [f64; 2],
     is_logarithmic: bool,
-    /// Values that a legend names, and how.
+    /// Values with labels in a legend.
     pub marks: &'static [(f64, &'static str)],
 }
 
-/// From dark to bright; evenly spaced.
+/// Colours from dark to bright, evenly spaced.
 const COLOURS: [[f64; 3]; 7] = [
     [0.0, 0.0, 4.0],
     [40.0, 11.0, 84.0],
@@ -48,7 +48,7 @@ impl HeatScale {
         marks: &[(0.0, "0 %"), (0.25, "25"), (0.5, "50"), (0.75, "75"), (1.0, "100 %")],
     };
 
-    /// Where a value stands on the scale, `0..=1`.
+    /// Position of a value on the scale, `0..=1`.
     pub fn place(&self, value: f64) -> f64 {
         let [low, high] = self.limits;
         if value <= low {
@@ -66,7 +66,7 @@ impl HeatScale {
     }
 }
 
-/// The colour of a place on any scale, `0..=1`.
+/// The colour at a position on any scale, `0..=1`.
 pub fn colour_at(place: f64) -> [u8; 3] {
     let last = COLOURS.len() - 1;
     let along = place.clamp(0.0, 1.0) * last as f64;

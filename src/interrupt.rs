@@ -1,4 +1,4 @@
-//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first one asks for an orderly end. A later one ends the
+//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first one requests an orderly end. A later one ends the
 //! program immediately, but never while files are being written.
 
 use crate::console;
@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A second signal this soon is the first one's echo: `timeout` and shells signal a program and then its group.
+/// A second signal within this time is an echo of the first: `timeout` and shells signal a program and then its group.
 const ECHO: Duration = Duration::from_millis(500);
 
 /// Whether Ctrl-C has been pressed.
@@ -22,18 +22,18 @@ struct Shared {
 
 #[derive(Default)]
 struct State {
-    /// When the first came.
+    /// When the first signal arrived.
     since: Option<Instant>,
     /// What is being written, in words.
     writing: Option<String>,
 }
 
-/// What a signal leads to.
+/// The response to a signal.
 #[derive(Debug, PartialEq, Eq)]
 enum Answer {
-    /// Whoever looks at the flag sees it.
+    /// Only the flag is set.
     Nothing,
-    /// It is said.
+    /// A message is printed.
     Say(String),
     /// The program ends.
     Exit,
@@ -57,10 +57,10 @@ impl Shared {
 }
 
 impl Interrupt {
-    /// Listens from now on. Once a process.
+    /// Starts to handle signals. This can be done once per process.
     ///
     /// # Errors
-    /// If the system does not let it.
+    /// If the system refuses.
     pub fn install() -> Result<Self> {
         let shared = Arc::new(Shared::default());
         let seen = Arc::clone(&shared);
@@ -68,11 +68,11 @@ impl Interrupt {
             Answer::Nothing => {}
             Answer::Say(words) => console::note(&words),
             Answer::Exit => {
-                console::note("ended at once; what had not been written is lost");
+                console::note("ended at once; unsaved results are lost");
                 std::process::exit(i32::from(INTERRUPTED));
             }
         })
-        .context("cannot listen for Ctrl-C")?;
+        .context("cannot handle Ctrl-C")?;
         Ok(Interrupt(shared))
     }
 
@@ -82,17 +82,17 @@ impl Interrupt {
         Interrupt(Arc::default())
     }
 
-    /// Becomes `true` when an end is asked for.
+    /// Becomes `true` when an end is requested.
     pub fn flag(&self) -> &AtomicBool {
         &self.0.is_set
     }
 
-    /// Whether an end has been asked for.
+    /// Whether an end has been requested.
     pub fn is_set(&self) -> bool {
         self.0.is_set.load(Ordering::Relaxed)
     }
 
-    /// Until the result is dropped, signals do not end the program but are answered with what it writes.
+    /// Until the result is dropped, a signal does not end the program but prints a message that names `what`.
     pub fn while_writing(&self, what: impl Into<String>) -> Writing<'_> {
         self.0.state().writing = Some(what.into());
         Writing(&self.0)
@@ -108,12 +108,12 @@ impl Drop for Writing<'_> {
     }
 }
 
-/// Lets a write beyond the largest size allowed for files (`ulimit -f`) fail with an error, which can be dealt with;
-/// by default the system ends the program by SIGXFSZ.
+/// Makes writes beyond the file size limit (`ulimit -f`) fail with an error. By default the system ends the program
+/// with SIGXFSZ.
 pub fn survive_file_size_limit() {
     #[cfg(unix)]
     {
-        // The flag itself is of no interest: having a handler is enough. Without one, all is as it was.
+        // The flag is not used: having a handler is enough. If it cannot be installed, the default applies.
         let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::<AtomicBool>::default());
     }
 }

@@ -9,28 +9,28 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// One of a picture's layers.
+/// A layer of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// `(n + 1) / 2` of the normal where the camera's ray meets a surface; the sky where it meets none.
     Normals,
     /// The reflectance of the surface that the camera's ray meets, linear RGB; the sky where it meets none.
     Albedo,
-    /// Rays per path, the camera's included, in all three components.
+    /// Rays per path, including the camera ray, in all three components.
     RaysPerPath,
 }
 
 impl Layer {
-    /// All of them.
+    /// All layers.
     pub const ALL: [Layer; 3] = [Layer::Normals, Layer::Albedo, Layer::RaysPerPath];
 
-    /// The job of which this layer's paths are: the picture's, cut off where the layer sees no further.
+    /// The job whose paths this layer records: the picture's job with only as many rays per path as the layer needs.
     ///
     /// # Errors
-    /// If the settings of `job` cannot be, which they are not.
+    /// If the settings of `job` are invalid, which they never are.
     pub fn job(self, job: &RenderJob) -> Result<RenderJob, JobError> {
         let settings = *job.settings();
-        // What a surface takes of the light is seen in the ray after it.
+        // The albedo of a surface shows in the throughput of the next ray.
         let depth = match self {
             Layer::Normals => 1,
             Layer::Albedo => 2,
@@ -55,7 +55,7 @@ impl Layer {
                 let point = DVec3::from(first.origin) + hit.distance * direction;
                 ((point - sphere.center) / sphere.radius + 1.0) / 2.0
             }
-            // The camera's ray counts in full, so that the next one's throughput is what the surface left.
+            // The camera ray has throughput 1, so the next ray's throughput is the albedo.
             (_, Some(next)) => DVec3::from(next.throughput),
             (_, None) => scene.material_of(sphere).albedo().unwrap_or(DVec3::ONE),
         }
@@ -76,7 +76,7 @@ pub struct LayerImage {
 }
 
 impl LayerImage {
-    /// An empty one in the size of `job`.
+    /// An empty layer of the size of `job`.
     pub fn new(layer: Layer, job: &RenderJob) -> Self {
         let RenderSettings { width, height, .. } = *job.settings();
         LayerImage {
@@ -88,8 +88,8 @@ impl LayerImage {
         }
     }
 
-    /// Adds the next sample of each pixel. `paths` records [`Layer::job`] in this size. Returns false, with sums
-    /// that are of no use, if it was cancelled.
+    /// Adds the next sample of each pixel. `paths` records [`Layer::job`] in this size. Returns false if it was
+    /// cancelled; the sums are then invalid.
     pub fn add_sample(&mut self, paths: &PathRecorder, cancel: &AtomicBool) -> bool {
         let (layer, index, scene) = (self.layer, self.samples, paths.job().scene());
         self.sums.par_chunks_mut(self.width.max(1) as usize).enumerate().for_each(|(y, row)| {
@@ -105,7 +105,7 @@ impl LayerImage {
         !cancel.load(Ordering::Relaxed)
     }
 
-    /// The mean of a pixel, which must lie in the picture.
+    /// The mean of a pixel, which must be inside the picture.
     pub fn mean(&self, [x, y]: [u32; 2]) -> [f64; 3] {
         let count = self.samples.max(1) as f64;
         self.sums[y as usize * self.width as usize + x as usize].map(|sum| f64::from(sum) / count)

@@ -48,7 +48,7 @@ fn a_fault_leaves_a_whole_picture_and_a_warning() {
                 ["--device", device, "--samples", "64", flag, after, "--out", "broken.exr", "--json"];
             let Some(output) = run(&directory, &[&arguments[..], &["broken.json"]].concat()) else { return };
             let message = String::from_utf8_lossy(&output.stderr);
-            assert!(message.contains(word) && message.contains("goes on"), "{device} {flag}: {message}");
+            assert!(message.contains(word) && message.contains("continues"), "{device} {flag}: {message}");
             let film = checkpoint::load(&directory.path().join("broken.exr")).unwrap().film;
             assert_eq!((film.sample_count(), film.rejected()), (64, 0), "{device} {flag}");
             let parts = parts(&directory, "broken.json");

@@ -1,5 +1,5 @@
-//! Counts what a kernel computes, in naga's representation, after overrides are put in and the branches that they decide
-//! are cut, as every driver's compiler does.
+//! Counts the operations of a kernel in naga's representation, after overrides are substituted and the branches that
+//! they decide are removed, as every driver's compiler does.
 
 use naga::back::pipeline_constants::process_overrides;
 use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
@@ -16,12 +16,12 @@ pub struct Counted {
     info: ModuleInfo,
 }
 
-/// The cost of code: operations on single numbers. Moves, accesses, changes of sign and reads of memory are not among them.
+/// The cost of code: operations on single numbers, except moves, accesses, sign changes and memory reads.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
-    /// On floats, a fused multiply and add as one.
+    /// Operations on floats; a fused multiply and add counts as one.
     pub float: usize,
-    /// On integers and truth values.
+    /// Operations on integers and booleans.
     pub integer: usize,
     /// Square roots and divisions.
     pub special: usize,
@@ -57,7 +57,7 @@ impl Counted {
         let known = Known { constants: module.constants.clone(), globals: module.global_expressions.clone() };
         let entries = module.entry_points.iter_mut().map(|entry| &mut entry.function);
         for function in module.functions.iter_mut().map(|(_, function)| function).chain(entries) {
-            // What one pass finds lets the next find more.
+            // Each pass can find values that let the next one find more.
             for _ in 0..3 {
                 let mut body = std::mem::take(&mut function.body);
                 let mut stores = HashMap::new();
@@ -69,7 +69,7 @@ impl Counted {
         Ok(Counted { module, info: info.into_owned() })
     }
 
-    /// Operations of the entry point, with every function that it calls put in at every call.
+    /// Operations of the entry point, counting each function at every call.
     pub fn size(&self) -> usize {
         self.module.entry_points.iter().map(|entry| self.operations(&entry.function.body)).sum()
     }
@@ -88,7 +88,8 @@ impl Counted {
         block.iter().map(of).sum()
     }
 
-    /// A turn of the path loop with both sides of every branch. `trips` are the turns of the loops over spheres.
+    /// Operations of one turn of the path loop, with both sides of every branch. `trips` are the turns of the loops
+    /// over spheres.
     pub fn turn(&self, trips: &[usize]) -> Cost {
         let mut trips = trips.iter().copied();
         let mut cost = Cost::default();
@@ -128,7 +129,7 @@ impl Counted {
                     cost += self.cost(accept, function, info, trips);
                     cost += self.cost(reject, function, info, trips);
                 }
-                // Unrolled, a loop over spheres has no counter.
+                // An unrolled loop over spheres has no counter.
                 Statement::Loop { body, .. } => {
                     let count = trips.next().unwrap_or(1);
                     cost += self.cost(body, function, info, trips).times(count);
@@ -147,7 +148,7 @@ impl Counted {
             _ => (0, ScalarKind::Sint),
         };
         let (mut count, kind) = shape(handle);
-        // What is compared decides which unit compares.
+        // The type of the operands decides which unit compares.
         let mut kind_of_operands = kind;
         let mut is_special = false;
         match &function.expressions[handle] {
@@ -173,13 +174,13 @@ impl Counted {
     }
 }
 
-/// Values that are known once overrides are put in.
+/// Values that are known once overrides are substituted.
 struct Known {
     constants: Arena<naga::Constant>,
     globals: Arena<Expression>,
 }
 
-/// The values that are stored to a variable.
+/// The values that are stored in a variable.
 type Stores = HashMap<Handle<naga::LocalVariable>, Vec<Handle<Expression>>>;
 
 impl Known {
@@ -243,7 +244,7 @@ impl Known {
         }
     }
 
-    /// Replaces branches whose condition is known by the side that is taken, as every driver's compiler does.
+    /// Replaces each branch whose condition is known by the side that is taken, as every driver's compiler does.
     fn cut(&self, block: &mut Block, function: &Function, stores: &Stores) {
         let mut kept = Block::new();
         for (statement, span) in std::mem::take(block).span_into_iter() {

@@ -7,9 +7,9 @@
 //! `gpu_bench hierarchy SCENE...` prints the size of both hierarchies and how long they take to build.
 //! `gpu_bench adapter [adapter=NAME]` prints the adapter.
 //! `gpu_bench size SCENE...` prints how large each scene's kernel is, general and specialised.
-//! `gpu_bench work SCENE...` prints what a turn of the path loop computes, for scenes without a hierarchy.
-//! `gpu_bench passes SCENE WIDTH HEIGHT SAMPLES DEPTH PASSES [OPTION...]` prints what passes cost whose films are read at
-//! once, and whose films stay on the device.
+//! `gpu_bench work SCENE...` prints the operations of one turn of the path loop, for scenes without a hierarchy.
+//! `gpu_bench passes SCENE WIDTH HEIGHT SAMPLES DEPTH PASSES [OPTION...]` prints the cost of passes whose films are
+//! read at once, and of passes whose films stay on the device.
 //! `gpu_bench first SCENE WIDTH HEIGHT DEPTH [OPTION...]` prints the time from a change to its first picture.
 
 mod kernel_count;
@@ -188,11 +188,11 @@ fn size(scene: &str) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What a turn of the loop, one ray of each lane, costs a group of lanes that take different ways: both sides of every branch.
+/// The cost of one turn of the loop (one ray per lane) when lanes diverge: both sides of every branch.
 fn work(scene: &str) -> anyhow::Result<()> {
     let job = job(scene, [64, 36, 24])?;
     let prepared = PreparedScene::<f32>::new(&job);
-    anyhow::ensure!(prepared.hierarchy.is_none(), "the length of a traversal is not known beforehand");
+    anyhow::ensure!(prepared.hierarchy.is_none(), "the length of a traversal is not known in advance");
     let trips = [prepared.opaque.len(), prepared.two_root.len(), prepared.anchored.len()];
     let work =
         Counted::of(&prepared.features)?.turn(&trips.into_iter().filter(|n| *n > 0).collect::<Vec<_>>());
@@ -247,7 +247,7 @@ fn passes(arguments: &[String]) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// As the window does it: a scene is watched, and then becomes another.
+/// Measures as the window works: a scene is rendered for a while and then replaced by another.
 fn first(arguments: &[String]) -> anyhow::Result<()> {
     let [scene, width, height, depth, rest @ ..] = arguments else {
         anyhow::bail!("first needs SCENE WIDTH HEIGHT DEPTH");

@@ -216,49 +216,53 @@ impl Command {
             Command::Open => {
                 "Open a scene file (.toml), or restore the view of a .png, .ppm or .exr that Weekender wrote"
             }
-            Command::Save(OutputFormat::Png) => "8-bit picture from the film, which says how it was made",
-            Command::Save(OutputFormat::P6) => "The book's format, as bytes",
+            Command::Save(OutputFormat::Png) => {
+                "The picture with 8 bits per channel and a description of how it was made"
+            }
+            Command::Save(OutputFormat::P6) => "The book's picture format, in its binary form",
             Command::Save(OutputFormat::Exr) => {
-                "Linear picture with the exact sums: can be resumed and merged"
+                "Linear picture with the exact sums, which can be resumed and merged"
             }
             Command::SaveScene => "Scene, camera and settings as text",
-            Command::CopyCommand => "The command line that renders this picture; on the CPU to the bit",
-            Command::LoadReference => "A film (.exr) of the same size, for the view of the difference",
+            Command::CopyCommand => {
+                "The command line that renders this picture; on the CPU it is the same to the bit"
+            }
+            Command::LoadReference => "Choose a film (.exr) of the same size for the difference view",
             Command::CopyPlot => "The plot's points as CSV, on the clipboard",
             Command::SavePlot => "The plot's points as CSV: backend, samples, seconds, errors",
             Command::Quit => "Close the window",
             Command::Undo => "Take back the last change",
             Command::Redo => "Make the change again",
-            Command::Home => "Back to the camera and lens that the stage has",
-            Command::ResetAll => "Camera, lens, settings and stop conditions as the stage has them",
-            Command::AddBookmark => "Keep camera and lens to come back to",
+            Command::Home => "Reset camera and lens to the stage's values",
+            Command::ResetAll => "Reset camera, lens, settings and stop conditions to the stage's values",
+            Command::AddBookmark => "Save camera and lens to return to later",
             Command::Show(show) => show.help(),
-            Command::Wipe => "A divider to drag between this stage and its pair, or the next; same camera",
+            Command::Wipe => "Drag a divider between this stage and its pair or the next stage; same camera",
             Command::WipeDifference => "Where this stage and its pair differ, and by how much",
             Command::BookArithmetic => {
-                "A divider between this picture and the same by the book's own quadratic, with .001 as the smallest \
-                 distance"
+                "Drag a divider between this picture and one made with the book's own quadratic and its smallest \
+                 distance of .001"
             }
-            Command::Fit => "The whole picture, as large as there is room",
-            Command::ActualSize => "One pixel of the picture on one of the screen",
-            Command::ZoomIn => "Larger; Ctrl and the wheel zoom at the pointer",
-            Command::ZoomOut => "Smaller; Ctrl and the wheel zoom at the pointer",
+            Command::Fit => "The whole picture, as large as possible",
+            Command::ActualSize => "One pixel of the picture per pixel of the screen",
+            Command::ZoomIn => "Make the picture larger; Ctrl and the wheel zoom at the pointer",
+            Command::ZoomOut => "Make the picture smaller; Ctrl and the wheel zoom at the pointer",
             Command::Panels => "Nothing but the picture",
             Command::Controls => "Camera, lens, render, stop and output",
             Command::Info => "What the stage shows, and the pixel under the pointer",
             Command::Plot => "Estimated error against seconds",
-            Command::FullScreen => "The whole screen",
+            Command::FullScreen => "Fill the whole screen with the window",
             Command::Theme(_) => "Colours of the window",
-            Command::Pause => "Nothing is lost by a pause",
-            Command::Restart => "Throw the samples away and begin again",
-            Command::SwitchDevice => "The same picture goes on",
+            Command::Pause => "Pause or resume tracing; no samples are lost",
+            Command::Restart => "Discard all samples and render from the beginning",
+            Command::SwitchDevice => "The same picture continues on the other device",
             Command::Device(device) => device.help(),
             Command::PreviousStage => "One step back in the book",
-            Command::NextStage => "One step on in the book",
+            Command::NextStage => "One step forward in the book",
             Command::Stage(stage) => stage.what_is_new,
             Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
             Command::Book => "Opens the web browser",
-            Command::Palette => "Every command by its name",
+            Command::Palette => "Find any command by its name",
             Command::Help => "All keys, and what the mouse does",
         }
     }

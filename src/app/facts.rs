@@ -38,7 +38,7 @@ impl Facts {
     /// Why the document's camera has no effect, if so.
     pub fn no_rays(&self) -> Option<&'static str> {
         (self.document().rules().shading == Shading::ImageGradient)
-            .then_some("This stage sends no rays: its picture is computed from the pixel's place alone")
+            .then_some("This stage traces no rays: its picture depends only on the position of each pixel")
     }
 
     /// Whether the command's setting is active now.
@@ -67,9 +67,9 @@ impl Facts {
         let document = self.document();
         match command {
             Command::Undo if !self.can_undo => no("Nothing has been changed yet"),
-            Command::Redo if !self.can_redo => no("Nothing was taken back"),
+            Command::Redo if !self.can_redo => no("Nothing has been undone"),
             Command::Home if document.camera == document.origin.recipe.camera => {
-                no("This is the stage's camera")
+                no("This is already the stage's camera")
             }
             Command::Device(device) => device.unavailable(),
             Command::SwitchDevice => Device::Gpu.unavailable(),
@@ -80,10 +80,10 @@ impl Facts {
             Command::Wipe | Command::WipeDifference
                 if document.stage().is_none() && !document.origin.is_other_by_the_book() =>
             {
-                no("Nothing is there to compare this picture with; choose a stage of the book")
+                no("There is nothing to compare this picture with; choose a stage of the book")
             }
             Command::BookArithmetic if !document.origin.is_other_by_the_book() => {
-                no("This picture has the book's arithmetic already, or sends no rays; choose another")
+                no("This picture already has the book's arithmetic, or traces no rays; choose another")
             }
             Command::PreviousStage if neighbour(document, false).is_none() => no("This is the first stage"),
             Command::NextStage if neighbour(document, true).is_none() => no("This is the last stage"),
@@ -101,7 +101,7 @@ impl Facts {
                 None => no("Load a reference film first (File > Load reference film)"),
                 Some(film) if (film.width, film.height) != (settings.width, settings.height) => {
                     let [width, height] = [film.width, film.height];
-                    Some(format!("The reference film is {width}x{height}; set the picture's size to that"))
+                    Some(format!("The reference film is {width}x{height}; set the picture to that size"))
                 }
                 Some(_) => None,
             },
@@ -109,7 +109,7 @@ impl Facts {
                 self.no_rays().map(str::to_owned)
             }
             Show::Bounces if shading != Shading::Path => {
-                no("In this stage a ray sees no further than its first hit: each path is one ray")
+                no("In this stage rays end at their first hit, so each path is one ray")
             }
             Show::Occupancy => match self.model.remembered.device {
                 Device::Gpu => no("The graphics adapter traces without packets; switch to the CPU"),

@@ -102,7 +102,7 @@ fn read<T: Send + 'static>(
 ) {
     let work = move || work().map_err(|error| error.to_string());
     if let Err(error) = answers.ask("files", context, work) {
-        let reason = format!("the file cannot be read: the system gives no thread ({error})");
+        let reason = format!("the file cannot be read: no thread could be started ({error})");
         answers.answer(context).give(Err(reason));
     }
 }

@@ -80,17 +80,21 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
 /// Text about the current view.
 fn view_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let show = facts.model.view.show();
-    control(ui, About::new("View", "What is shown in the picture's place (Ctrl+1 to Ctrl+7)"), |ui| {
-        egui::ComboBox::from_id_salt("view")
-            .width(ui.available_width())
-            .selected_text(show.name())
-            .show_ui(ui, |ui| {
-                for show in Show::ALL {
-                    item(ui, facts, commands, Command::Show(show));
-                }
-            })
-            .response
-    });
+    control(
+        ui,
+        About::new("View", "What the window shows in place of the picture (Ctrl+1 to Ctrl+7)"),
+        |ui| {
+            egui::ComboBox::from_id_salt("view")
+                .width(ui.available_width())
+                .selected_text(show.name())
+                .show_ui(ui, |ui| {
+                    for show in Show::ALL {
+                        item(ui, facts, commands, Command::Show(show));
+                    }
+                })
+                .response
+        },
+    );
     if show != Show::Picture {
         ui.add(egui::Label::new(RichText::new(show.help()).small()).wrap());
         ui.add_space(6.0);
@@ -124,7 +128,7 @@ fn compare_ui(
         }
         if stage.pair.is_some() && stage.next().is_some_and(|next| Some(next.id) != stage.pair) {
             ui.checkbox(is_with_next, "Next stage")
-                .on_hover_text("Compare with the next stage of the book in place of the pair");
+                .on_hover_text("Compare with the next stage of the book instead of its pair");
         }
     });
 }

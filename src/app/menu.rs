@@ -222,7 +222,7 @@ fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let response = ui
         .add_enabled(can_pause, button)
         .on_hover_text(with_keys(ui, Command::Pause))
-        .on_disabled_hover_text("The picture is done; see Stop for when it ends");
+        .on_disabled_hover_text("The picture is done; the Stop panel sets when it ends");
     if response.clicked() {
         commands.push(Command::Pause);
     }
@@ -235,7 +235,7 @@ fn prediction(ui: &mut Ui, facts: &Facts) {
     let text = RichText::new(words).small();
     let galley = egui::WidgetText::from(text.clone()).into_galley(ui, None, f32::INFINITY, TextStyle::Small);
     if galley.size().x < ui.available_size_before_wrap().x {
-        ui.label(text).on_hover_text("From the estimates so far, within two deviations");
+        ui.label(text).on_hover_text("Predicted from the estimates so far, within two standard deviations");
     }
 }
 
@@ -259,7 +259,10 @@ fn device_button(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, device
     }
     let response = ui
         .add_enabled(unavailable.is_none(), button)
-        .on_hover_text(format!("{}. The same picture goes on. (G switches CPU and GPU)", device.long_help()))
+        .on_hover_text(format!(
+            "{}. The same picture continues. (G switches between CPU and GPU)",
+            device.long_help()
+        ))
         .on_disabled_hover_text(unavailable.unwrap_or_default())
         .accessible_name(Command::Device(device).name());
     if response.clicked() {

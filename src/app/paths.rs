@@ -146,7 +146,7 @@ impl Paths {
             let step = |ui: &mut Ui, label: &str, name: &str, to: Option<usize>| {
                 let button = egui::Button::new(label).small();
                 let response = ui.add_enabled(to.is_some(), button).on_hover_text(name);
-                response.on_disabled_hover_text("There is none").accessible_name(name).clicked()
+                response.on_disabled_hover_text("There is no such path").accessible_name(name).clicked()
             };
             let at = selected.unwrap_or(0);
             let [before, after] = [at.checked_sub(1), Some(at + 1).filter(|next| *next <= last)];
@@ -156,11 +156,11 @@ impl Paths {
             if step(ui, "›", "Path of the sample after", after) {
                 selected = after;
             }
-            let clear = ui.small_button("Clear").on_hover_text("Take the paths off the picture");
+            let clear = ui.small_button("Clear").on_hover_text("Remove the paths from the picture");
             is_cleared = clear.accessible_name("Clear paths").clicked();
         });
         if listed.document.camera != document.camera {
-            let text = "As the camera stood when they were listed; Alt-click lists anew.";
+            let text = "Listed with an earlier camera; Alt-click lists them again.";
             ui.add(egui::Label::new(RichText::new(text).small().color(weak)).wrap());
         }
         for (index, record) in listed.records.iter().enumerate() {
@@ -171,7 +171,7 @@ impl Paths {
                 .open(Some(selected == Some(index)))
                 .show(ui, |ui| list_rays(ui, record, document.scene()))
                 .header_response
-                .on_hover_text("One path of this pixel; the open one is drawn strongest");
+                .on_hover_text("One path of this pixel; the open one is drawn most clearly");
             if header.accessible_name(format!("Path of sample {index}")).clicked() {
                 selected = (selected != Some(index)).then_some(index);
             }
@@ -278,7 +278,7 @@ fn list_rays(ui: &mut Ui, record: &PathRecord, scene: &Scene) {
                 let (object, material) = names(scene, hit.sphere);
                 format!("{object}, {material}")
             }
-            None => "leaves to the sky".to_owned(),
+            None => "escapes to the sky".to_owned(),
         };
         ui.add(egui::Label::new(format!("{}  {what}", index + 1)).wrap());
         let mut lines = vec![("throughput", triple(ray.throughput))];

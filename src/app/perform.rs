@@ -52,7 +52,7 @@ impl Window {
                 let document = &self.model.document;
                 let name = format!("{} {}", document.origin.recipe.name, bookmarks.len() + 1);
                 bookmarks.push(Bookmark::new(name, &document.camera));
-                self.toasts.good("Bookmarked; it is in the Camera panel");
+                self.toasts.good("Bookmarked; see the Camera panel");
             }
             Command::Show(show) => self.model.view.choose(show),
             Command::Wipe => {
@@ -195,7 +195,7 @@ impl Window {
         context.copy_text(line);
         self.toasts.good(match &self.document().origin.source {
             Source::Embedded | Source::Extreme(_) => {
-                "Copied; the scene is in no file yet: save the scene file beside it"
+                "Copied; the scene has no file yet: save the scene file, which the command reads"
             }
             _ => "Copied: the command line that renders this picture",
         });

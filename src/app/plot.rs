@@ -55,17 +55,17 @@ fn header(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut V
     ui.horizontal_wrapped(|ui| {
         let title = "Estimated error (RMSE, linear radiance) against seconds; dots at 1, 2, 4, 8 … samples";
         ui.label(RichText::new(title).small().color(weak)).on_hover_text(
-            "Sobol points are even at powers of two; between two dots the error falls a little less",
+            "Sobol points are spread most evenly at powers of two; between two dots the error falls a little less",
         );
         if let Some(target) = target {
             ui.label(RichText::new("target").small());
             let number = DragValue::new(target).range(TARGETS).speed(1e-4).max_decimals(6);
             ui.add(number.update_while_editing(false))
                 .accessible_name("Target error")
-                .on_hover_text("The render ends here; the line in the plot can be dragged, too");
+                .on_hover_text("The render ends at this error; the line in the plot can be dragged, too");
         } else {
             let button = ui.add(egui::Button::new("Set a target").small());
-            if button.on_hover_text("End the render at an estimated error, which can be dragged").clicked() {
+            if button.on_hover_text("End the render at an estimated error; its line in the plot can be dragged").clicked() {
                 *target = Some(Stop::NOISE);
             }
         }
@@ -210,7 +210,7 @@ fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
     let [x, y] = logarithm(first);
     let across = logarithm(last)[0] - x;
     let ends = vec![[x, y], [x + across, y - 0.5 * across]];
-    let line = Line::new("half the error for 4 x the time", PlotPoints::from(ends));
+    let line = Line::new("4x the time, half the error", PlotPoints::from(ends));
     plot.line(line.color(color).style(LineStyle::dotted_dense()).width(1.0).allow_hover(false));
 }
 

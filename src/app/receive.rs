@@ -37,7 +37,7 @@ impl Window {
         while let Some(outcome) = self.files.references.take() {
             match outcome {
                 Ok((path, reference)) => self.take_reference(path, reference),
-                Err(reason) => self.toasts.bad(format!("No reference: {reason}")),
+                Err(reason) => self.toasts.bad(format!("Reference not loaded: {reason}")),
             }
         }
         while let Some(outcome) = self.dialogs.browsed() {
@@ -72,11 +72,11 @@ impl Window {
     fn go_on(&mut self, resumed: Resumed) {
         let path = resumed.path.display();
         if self.document().has_same_film(&resumed.begun) {
-            self.toasts.good(format!("Goes on with {path}"));
+            self.toasts.good(format!("Continuing {path}"));
             self.adopt(resumed.film);
         } else {
             self.toasts.bad(format!(
-                "Not resumed: the picture was changed before {path} had been read; open the file to go on with it"
+                "Not resumed: the picture was changed before {path} had been read; open the file to continue it"
             ));
         }
     }
@@ -86,10 +86,10 @@ impl Window {
         if (reference.width, reference.height) == (settings.width, settings.height) {
             self.model.view.reference = Some(Arc::new(reference));
             self.send(Command::Show(Show::Difference));
-            self.toasts.good(format!("Difference to {}", path.display()));
+            self.toasts.good(format!("Showing the difference from {}", path.display()));
         } else {
             self.toasts.bad(format!(
-                "No reference: {} is {}x{}, the picture {}x{}; set the picture's size to that",
+                "Reference not loaded: {} is {}x{} and the picture is {}x{}; set the picture to that size",
                 path.display(),
                 reference.width,
                 reference.height,

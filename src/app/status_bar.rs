@@ -37,7 +37,7 @@ fn bar(ui: &mut Ui, status: &Status, stop: Stop, is_paused: bool) {
 }
 
 fn who_label(ui: &mut Ui, who: &str, status: &Status) {
-    let mut help = String::from("Who traced which part of this picture");
+    let mut help = String::from("Which backend traced which part of this picture");
     for part in &status.contributions {
         let BackendInfo { name, device, lanes, threads } = &part.backend;
         help += &format!("\n{name} {device}: {} samples per pixel, {lanes} lanes", part.samples_per_pixel);
@@ -73,7 +73,7 @@ fn figure(ui: &mut Ui, text: &str, widest: &str, help: &str) {
 fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'static str, Cow<'static, str>)> {
     let samples = status.samples_per_pixel;
     let mut figures = vec![
-        (phase_word(&status.phase, is_paused), "preparing", "What the tracer is at".into()),
+        (phase_word(&status.phase, is_paused), "preparing", "What the tracer is doing".into()),
         (
             match stop.samples {
                 Some(planned) => format!("{} of {} spp", grouped(samples), grouped(planned)),
@@ -85,17 +85,17 @@ fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'stati
         (
             format!("{:.1} s", status.trace.as_secs_f64()),
             "0000.0 s",
-            "Seconds of tracing, pauses left out".into(),
+            "Seconds of tracing, without pauses".into(),
         ),
         (
             format!("{:.1} Mpaths/s", status.paths_per_second() / 1e6),
             "0000.0 Mpaths/s",
-            "Million paths finished per second of tracing".into(),
+            "Millions of paths finished per second of tracing".into(),
         ),
         (
             rays_per_path(status),
             "00.00 rays/path",
-            "Rays per path, the camera's included: how long paths are".into(),
+            "Rays per path, including the camera ray: how long paths are".into(),
         ),
     ];
     // Only the CPU has packets; the film may contain samples of other backends.
@@ -105,7 +105,7 @@ fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'stati
         figures.push((
             format!("{lanes} lanes {:.0} % full", 100.0 * share),
             "00 lanes 100 % full",
-            "Lanes of a packet, and how many of them traced a ray on average".into(),
+            "Lanes per packet, and the average share of them that were tracing a ray".into(),
         ));
     }
     figures.push((
@@ -118,12 +118,13 @@ fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'stati
 
 fn error_help(status: &Status) -> String {
     let uncertainty =
-        status.error.map_or_else(String::new, |error| format!(", {} by chance", error.uncertainty()));
-    let doubt = status.doubt.as_ref().map_or_else(String::new, |doubt| format!("\nIn doubt: {doubt}."));
+        status.error.map_or_else(String::new, |error| format!(", random deviation {}", error.uncertainty()));
+    let doubt = status.doubt.as_ref().map_or_else(String::new, |doubt| format!("\nDoubtful: {doubt}."));
     format!(
         "Error estimated from the two halves of the film{uncertainty}: root of the mean square over pixels and \
-         channels, linear radiance; and when the target will be reached, within two deviations.\n\
-         Against references the estimate was true within 1 %. What no path has found yet it cannot know.{doubt}"
+         channels, linear radiance; and when the target will be reached, within two standard deviations.\n\
+         Compared with references, the estimate was right to within 1 %. It knows nothing of light that no path has \
+         found yet.{doubt}"
     )
 }
 
@@ -166,7 +167,7 @@ fn rejected(ui: &mut Ui, status: &Status) {
     }
     // On a single row.
     ui.add(egui::Label::new(label).extend())
-        .on_hover_text("Samples that were NaN, infinite or negative and so were left out");
+        .on_hover_text("Samples that were left out because they were NaN, infinite or negative");
 }
 
 /// Which backends traced how many samples: first the full text, then ever shorter versions.

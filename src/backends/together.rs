@@ -103,7 +103,7 @@ impl Together {
             self.departed.extend((member.added > 0).then(|| (member.renderer.info(), member.added)));
             if !self.members.is_empty() {
                 let names: Vec<&str> = self.members.iter().map(|m| m.renderer.info().name).collect();
-                self.messages.push(format!("{error}; {} goes on with the same picture", names.join(", ")));
+                self.messages.push(format!("{error}; {} continues the same picture", names.join(", ")));
             }
             last = Some(error);
             self.messages.extend(member.renderer.take_messages());

@@ -91,8 +91,8 @@ impl Film {
         let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
         (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64).then(|| {
             format!(
-                "few pixels dominate the error estimate: in effect it rests on {pixels:.0} of {all} pixels, but needs \
-                 {PIXELS_IN_EFFECT_MIN:.0}; it may be wrong by a factor until there are more samples"
+                "a few pixels dominate the error estimate: it effectively rests on {pixels:.0} of {all} pixels, but needs \
+                 {PIXELS_IN_EFFECT_MIN:.0}; until there are more samples it may be far too low"
             )
         })
     }

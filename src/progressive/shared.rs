@@ -73,7 +73,7 @@ impl Shared {
     /// Notes that the render thread has died.
     pub(super) fn died(&self) {
         let mut status = lock(&self.status);
-        status.phase = Phase::Failed("the render thread broke off; its film is lost".to_owned());
+        status.phase = Phase::Failed("the render thread failed; its film is lost".to_owned());
         self.changed.notify_all();
         drop(status);
         self.give_notice();

@@ -84,10 +84,7 @@ fn guides(
     // From the upper left corner down to the edge of the chart.
     let end = times[1].min(times[0] * (errors[1] / bottom).powi(2));
     let at = |time: f64| errors[1] * (times[0] / time).sqrt();
-    guides.push(line(
-        "half the error for 4 x the time".to_owned(),
-        &[[times[0], at(times[0])], [end, at(end)]],
-    ));
+    guides.push(line("4x the time, half the error".to_owned(), &[[times[0], at(times[0])], [end, at(end)]]));
     if target > bottom && target < errors[1] {
         guides.push(line(format!("target: {target}"), &[[times[0], target], [times[1], target]]));
         for crossing in

@@ -111,6 +111,7 @@ fn suite(
         version: env!("CARGO_PKG_VERSION"),
         backends: suite.names(),
         seconds: 0.0,
+        chosen: chosen.len(),
         interrupted: false,
         cases: Vec::new(),
     };

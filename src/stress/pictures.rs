@@ -134,6 +134,7 @@ mod tests {
             version: "",
             backends: vec!["cpu".into()],
             seconds: 1.0,
+            chosen: 1,
             interrupted: false,
             cases: vec![CaseReport {
                 id: case.id.clone(),

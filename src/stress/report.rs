@@ -18,6 +18,9 @@ pub struct StressReport {
     pub backends: Vec<String>,
     /// Wall time of the run, seconds.
     pub seconds: f64,
+    /// Number of cases that were to be run.
+    #[serde(skip)]
+    pub chosen: usize,
     /// Whether the user interrupted the run.
     pub interrupted: bool,
     /// The cases, in the table's order.

@@ -86,17 +86,21 @@ pub fn summary(report: &StressReport) -> String {
         };
         report.cases.iter().filter(has_failed).count()
     };
+    let so_far =
+        if report.interrupted { format!(" run so far, of {},", report.chosen) } else { String::new() };
     let mut text = format!(
-        "\n{} of {} right on {} in {:.0} s; with the book's arithmetic, {} in f32 and {} in f64\n",
+        "\n{} of {}{} right on {} in {:.0} s; with the book's arithmetic, {} in f32 and {} in f64\n",
         count - wrong.len(),
         counted(count, "case"),
+        so_far,
         report.backends.join(", "),
         report.seconds,
         count - failures("f32"),
         count - failures("f64"),
     );
     if report.interrupted {
-        text.push_str("interrupted: the remaining cases were not run\n");
+        let missing = report.chosen.saturating_sub(count);
+        let _ = writeln!(text, "interrupted: {} not run", counted(missing, "case"));
     }
     text
 }
@@ -183,11 +187,12 @@ mod tests {
 
     #[test]
     fn documents_have_a_table_for_each_family() {
-        let report = StressReport {
+        let mut report = StressReport {
             schema: 1,
             version: "",
             backends: vec!["avx2".into()],
             seconds: 1.0,
+            chosen: 2,
             interrupted: false,
             cases: vec![case(Verdict::Right), case(Verdict::None("gone".into()))],
         };
@@ -196,5 +201,9 @@ mod tests {
         assert!(text.contains("| right |") && text.contains("| sse4.2 plain: **none** |"), "{text}");
         assert!(text.contains("Two surfaces at the same place tie"), "{text}");
         assert!(summary(&report).contains("1 of 2 cases right on avx2"), "{}", summary(&report));
+        (report.chosen, report.interrupted) = (5, true);
+        let text = summary(&report);
+        assert!(text.contains("1 of 2 cases run so far, of 5, right on avx2"), "{text}");
+        assert!(text.ends_with("interrupted: 3 cases not run\n"), "{text}");
     }
 }

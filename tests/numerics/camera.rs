@@ -1,7 +1,6 @@
 //! The camera: cases 31 to 34. (Book 1, sections 12 and 13.)
 //!
-//! That scene files refuse what cannot be rendered, with the line, is tested in tests/scene_files.rs, and that
-//! flags do in tests/cli.rs.
+//! tests/scene_files and tests/cli test that scene files and flags with invalid cameras are refused.
 
 use crate::common::*;
 use glam::{DMat3, DVec3};
@@ -11,7 +10,7 @@ use weekender::render_cpu::lanes::{Lanes, Reference, Scalar, Wide};
 use weekender::scene::builtin::{LeftSphere, three_spheres};
 use weekender::scene::{Camera, Scene, SceneError, Sky};
 
-/// A sky whose three channels tell which way a ray goes up.
+/// A sky whose three channels show how steeply a ray goes up.
 const SKY: Sky = Sky { bottom: DVec3::new(0.0, 1.0, 0.5), top: DVec3::new(1.0, 0.0, 0.5) };
 
 /// The picture of an empty scene, each pixel the mean over a fine grid.
@@ -34,7 +33,7 @@ fn expected_sky(camera: &Camera, width: u32, height: u32) -> Vec<[f64; 3]> {
 /// Whether an empty scene shows the sky that `camera` looks at.
 fn assert_sees_the_sky(camera: Camera, [width, height]: [u32; 2]) {
     let scene = Scene { sky: SKY, ..Scene::default() };
-    for mut renderer in [widest(), baseline()] {
+    for mut renderer in [widest(), portable()] {
         let film = render(&mut renderer, &job(&scene, camera, size(width, height)), 0..64);
         for (pixel, expected) in expected_sky(&camera, width, height).iter().enumerate() {
             let mean = film.mean(pixel);
@@ -92,10 +91,10 @@ fn case_33_lenses() {
             Ok(()) => {
                 assert!(is_valid, "{camera:?}");
                 let scene = three_spheres(LeftSphere::HollowGlass);
-                for mut renderer in [widest(), baseline()] {
+                for mut renderer in [widest(), portable()] {
                     let film = render(&mut renderer, &job(&scene, camera, size(16, 9)), 0..4);
                     assert_eq!(film.rejected(), 0);
-                    // No light is brighter than the sky's 1, and the sky is somewhere to be seen.
+                    // No pixel is brighter than the sky's 1, and the sky is visible somewhere.
                     let channels = || film.means().into_iter().flatten();
                     assert!(channels().all(|x| (0.0..=1.0).contains(&x)), "{camera:?}");
                     assert!(channels().any(|x| x > 0.3), "{camera:?}");

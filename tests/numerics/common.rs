@@ -12,7 +12,7 @@ use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa};
 use weekender::scene::{Camera, Material, Scene};
 use weekender::stages::Rules;
 
-/// Numbers for a test, the same every time (SplitMix64).
+/// Random numbers for a test, the same in every run (SplitMix64).
 pub struct Random(u64);
 
 impl Random {
@@ -27,7 +27,7 @@ impl Random {
         x ^ (x >> 31)
     }
 
-    /// In `[0, 1)`.
+    /// Uniform in `[0, 1)`.
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -69,12 +69,12 @@ pub fn v3<L: Lanes>(l: L, v: DVec3) -> V3<L::F> {
     splat3(l, v.to_array().map(L::Real::from_f64))
 }
 
-/// Length 1, by the division that the path loop makes.
+/// `v` scaled to length 1 by the same division as in the path loop.
 pub fn normalised<L: Lanes>(l: L, d: V3<L::F>) -> V3<L::F> {
     d.scale(l.constant(1.0) / d.dot(d).sqrt())
 }
 
-/// A ray that starts on no sphere. `direction` may have any length.
+/// A ray that does not start on a sphere. `direction` may have any length.
 pub fn ray<L: Lanes>(l: L, origin: DVec3, direction: DVec3) -> Rays<L> {
     Rays {
         origin: v3(l, origin),
@@ -89,7 +89,7 @@ pub fn packed<L: Lanes>(center: DVec3, radius: f64) -> [L::Real; 4] {
     [center.x, center.y, center.z, radius * radius].map(L::Real::from_f64)
 }
 
-/// The distance that a key stands for, or `None` where it loses against infinity.
+/// The distance that a key stands for; `None` for a miss.
 pub fn distance<L: Lanes>(key: L::Key) -> Option<f64> {
     let t = -first::<L>(L::from_key(key));
     (t.is_finite() && t.is_sign_positive()).then_some(t)
@@ -122,7 +122,7 @@ pub fn glass(refraction_index: f64) -> Material {
     Material::Dielectric { refraction_index }
 }
 
-/// A scene of spheres, each of its own material.
+/// A scene of spheres, each with its own material.
 pub fn scene(spheres: &[(DVec3, f64, Material)]) -> Scene {
     let mut scene = Scene::default();
     for (index, (center, radius, material)) in spheres.iter().enumerate() {
@@ -132,7 +132,7 @@ pub fn scene(spheres: &[(DVec3, f64, Material)]) -> Scene {
     scene
 }
 
-/// Settings of a picture of this size, one half, 50 rays a path.
+/// Settings of a picture of this size, one half, 50 rays per path.
 pub fn size(width: u32, height: u32) -> RenderSettings {
     RenderSettings { width, height, max_depth: 50, estimate_error: false, ..RenderSettings::default() }
 }
@@ -143,14 +143,14 @@ pub fn job(scene: &Scene, camera: Camera, settings: RenderSettings) -> RenderJob
     RenderJob::new(scene.clone(), camera, settings, Rules::FINISHED).unwrap()
 }
 
-/// As [`job`], with all samples through the centre of their pixel.
+/// Like [`job`], with all samples through the centre of their pixel.
 pub fn sharp_job(scene: &Scene, camera: Camera, settings: RenderSettings) -> RenderJob {
     RenderJob::new(scene.clone(), camera, settings, NO_ANTIALIASING).unwrap()
 }
 
 const THREADS: Option<usize> = Some(2);
 
-/// The fastest that this processor has.
+/// The fastest renderer that this processor can run.
 pub fn widest() -> CpuRenderer {
     CpuRenderer::new(CpuOptions { threads: THREADS, ..CpuOptions::default() }).unwrap()
 }
@@ -161,12 +161,12 @@ pub fn packets(isa: Isa, lanes: usize) -> CpuRenderer {
     CpuRenderer::new(options).unwrap()
 }
 
-/// Scalar `f32` without fused multiply and add: every processor has it.
-pub fn baseline() -> CpuRenderer {
+/// Scalar `f32` without fused multiply and add, which every processor can run.
+pub fn portable() -> CpuRenderer {
     packets(Isa::Portable, 1)
 }
 
-/// `f64`.
+/// The `f64` reference.
 pub fn reference() -> CpuRenderer {
     CpuRenderer::reference(THREADS).unwrap()
 }
@@ -210,7 +210,7 @@ pub struct Paired {
     pub rms: f64,
     /// Share of the samples with a channel that is off by more than 1e-3.
     pub outliers: f64,
-    /// Root mean square of the samples that are no outliers.
+    /// Root mean square of the samples that are not outliers.
     pub inlier_rms: f64,
     /// Root mean square of the pixels' means.
     #[expect(dead_code, reason = "printed")]

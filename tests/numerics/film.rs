@@ -1,4 +1,4 @@
-//! The exact sum: cases 23 to 25, through the tracer. (The film by itself: tests/film.rs.)
+//! The exact sum: cases 23 to 25, through the tracer. (The film by itself: tests/film.)
 
 use crate::common::*;
 use glam::DVec3;
@@ -13,7 +13,7 @@ use weekender::render_cpu::work::{RefillBlock, RefillOrder, TileStats, Work};
 use weekender::scene::builtin::{LeftSphere, empty, three_spheres};
 use weekender::scene::{Camera, Sky};
 
-/// Traces a prepared scene as it is, in one tile of at most 256 pixels a side.
+/// Traces a prepared scene without validating it, in one tile of at most 256 pixels a side.
 pub fn trace_tables(
     prepared: &PreparedScene<f32>,
     film: &mut Film,
@@ -56,7 +56,7 @@ fn case_24_another_order() {
     assert_eq!(in_parts, at_once);
 }
 
-/// A lone ball whose colour or sky is no number: each path that sees it is counted and left out, and no other.
+/// A lone ball, or its sky, has a colour that is NaN: exactly the paths that see it are counted and left out.
 #[test]
 fn case_25_not_a_number() {
     const SAMPLES: u64 = 4;
@@ -65,7 +65,7 @@ fn case_25_not_a_number() {
     let clean = PreparedScene::<f32>::new(&job);
     let mut expected = job.new_film();
     assert_eq!(trace_tables(&clean, &mut expected, 0..SAMPLES).rejected, 0);
-    assert_eq!(expected, render(&mut baseline(), &job, 0..SAMPLES), "the prepared are rendered as they are");
+    assert_eq!(expected, render(&mut portable(), &job, 0..SAMPLES), "the prepared are rendered as they are");
     let is_ball = |x: u32, y: u32| {
         let (o, d) = centre_ray(&Camera::BOOK, 64, 36, x, y);
         exact_roots(o, d, DVec3::new(0.0, 0.0, -1.0), 0.5).is_some()
@@ -95,13 +95,13 @@ fn case_25_not_a_number() {
         assert!(film.means().iter().flatten().all(|x| x.is_finite()));
     }
 
-    // Geometry that is no number is never hit; a sky that is none spoils every sample.
+    // Geometry that is NaN is never hit; a sky that is NaN spoils every sample.
     let mut prepared = clean.clone();
     prepared.opaque[0] = [f32::NAN; 4];
     let mut film = job.new_film();
     assert_eq!(trace_tables(&prepared, &mut film, 0..SAMPLES).rejected, 0);
     let bare = RenderJob::new(empty(), *job.camera(), *job.settings(), *job.rules()).unwrap();
-    assert_eq!(film, render(&mut baseline(), &bare, 0..SAMPLES));
+    assert_eq!(film, render(&mut portable(), &bare, 0..SAMPLES));
     let mut prepared = clean;
     prepared.sky_middle[1] = f32::INFINITY;
     let mut film = job.new_film();

@@ -1,5 +1,4 @@
-//! The hierarchy of boxes finds what testing every sphere finds: the same distance, bit for bit, on the same
-//! sphere.
+//! The hierarchy finds the same hits as testing every sphere: the same sphere at the same distance, bit for bit.
 
 use crate::common::*;
 use crate::film::trace_tables;
@@ -14,7 +13,7 @@ use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, near_root, nea
 use weekender::scene::Sphere;
 use weekender::scene::builtin::{BOOK_CAMERA, book};
 
-/// Spheres of sizes over many powers of ten, some touching, some at one place.
+/// Spheres with sizes over many powers of ten, some touching, some at the same place.
 fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> Vec<Sphere> {
     let mut spheres: Vec<Sphere> = Vec::with_capacity(count);
     for index in 0..count {
@@ -85,7 +84,7 @@ fn one_ray<L: Lanes>(l: L, random: &mut Random, spheres: &[Sphere], spread: f64)
     }
 }
 
-/// A hierarchy with every other sphere of one root alone.
+/// A hierarchy in which only the nearer root counts for every other sphere.
 struct Tree<L: Lanes> {
     hierarchy: Hierarchy<L::Real>,
     /// In the order of the leaves.
@@ -175,7 +174,7 @@ fn hierarchy_and_list_agree() {
     assert!(hits > 40_000, "{hits}");
 }
 
-/// A hundred scenes of any size, at scales from `1e-12` to `1e12`.
+/// A hundred scenes of various sizes, at scales from `1e-12` to `1e12`.
 #[test]
 fn hierarchy_and_list_agree_on_a_hundred_scenes() {
     let mut random = Random::new(11);
@@ -193,7 +192,7 @@ fn hierarchy_and_list_agree_on_a_hundred_scenes() {
     assert!(hits > rays / 4, "{hits}");
 }
 
-/// Packets of rays in all directions find what each ray finds by itself in the list.
+/// Packets of rays in all directions find the same hits as single rays that test the whole list.
 #[cfg(target_arch = "x86_64")]
 fn packets_agree(seed: u64, count: usize, spread: f64, radii: [f64; 2], ray_count: usize) -> u32 {
     use fearless_simd::{Level, Simd};
@@ -265,7 +264,7 @@ fn same_packets<L: Lanes<Real = f32>>(
     hits
 }
 
-/// The book's final picture with and without it.
+/// The book's final picture with and without the hierarchy.
 #[test]
 fn hierarchy_and_list_render_the_same_film() {
     let job = job(&book(), BOOK_CAMERA, RenderSettings { estimate_error: true, ..size(48, 27) });

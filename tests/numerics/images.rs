@@ -25,7 +25,7 @@ fn scaled(scale: f64) -> (Scene, Camera) {
 
 #[test]
 fn case_10_scaled_scenes() {
-    for (name, mut renderer) in [("widest", widest()), ("baseline", baseline())] {
+    for (name, mut renderer) in [("widest", widest()), ("portable", portable())] {
         let mut of = |scale: f64| {
             let (scene, camera) = scaled(scale);
             mean(&render(&mut renderer, &job(&scene, camera, size(160, 90)), 0..64))
@@ -50,21 +50,21 @@ fn case_11_thin_shell() {
     let camera = Camera { vfov_degrees: 50.0, ..Camera::BOOK };
     let job = job(&scene, camera, size(80, 80));
     let exact = mean(&render(&mut reference(), &job, 0..64));
-    for (name, mut renderer) in [("widest", widest()), ("baseline", baseline())] {
+    for (name, mut renderer) in [("widest", widest()), ("portable", portable())] {
         let difference = mean(&render(&mut renderer, &job, 0..64)) - exact;
         println!("case 11 {name}: mean {exact:.4}, difference {difference:.2e}");
         assert!(difference.abs() <= 0.005, "{name}: {difference} from {exact}");
     }
 }
 
-/// The limit of the RMS is that of the samples whose path is the same in both precisions. A path that rounding
-/// sends another way (a coin of the glass, an outline) is off by some .1 and is counted; one in 1e4 of those
-/// makes an RMS of 1e-3 however good the rest is.
+/// The limit on the RMS applies to samples whose path is the same in both precisions. A path that rounding sends
+/// another way (at a random choice in glass, or at an outline) is off by about .1 and is counted as an outlier; one
+/// such sample in 1e4 makes an RMS of 1e-3 however good the others are.
 #[test]
 fn case_12_single_against_double() {
     let scene = three_spheres(LeftSphere::HollowGlass);
     let job = job(&scene, Camera::BOOK, RenderSettings { max_depth: 24, ..size(160, 90) });
-    for (name, mut renderer) in [("widest", widest()), ("baseline", baseline())] {
+    for (name, mut renderer) in [("widest", widest()), ("portable", portable())] {
         let paired = paired(&job, 256, &mut renderer, &mut reference());
         println!("case 12 {name}: {paired:?}");
         assert!(paired.bias.abs() <= 2e-6, "{name}: {paired:?}");
@@ -73,8 +73,8 @@ fn case_12_single_against_double() {
     }
 }
 
-/// The numbers that a path draws are those of the scalar oracle: of an empty scene, each sample is the sky in
-/// the direction that [`numbers`] and the camera give.
+/// A path draws the same numbers as the scalar oracle: in an empty scene, each sample is the sky in the direction that
+/// [`numbers`] and the camera give.
 #[test]
 fn samples_are_those_of_the_oracle() {
     let (width, height) = (24, 16);
@@ -113,7 +113,7 @@ fn case_35_extreme_sizes() {
         let mut scalar = if widest_is_fused() {
             packets(*weekender::render_cpu::Isa::available().last().unwrap(), 1)
         } else {
-            baseline()
+            portable()
         };
         assert_eq!(render(&mut scalar, &job, 0..3), wide, "{width}x{height}");
     }
@@ -160,7 +160,7 @@ fn case_36_depth_1() {
     for y in 0..height {
         for x in 0..width {
             let (o, d) = centre_ray(&Camera::BOOK, width, height, x, y);
-            // How far inside the outline of the sphere that is met most centrally, in radii.
+            // How far the most central hit lies inside the outline of its sphere, in radii.
             let depth = scene
                 .spheres
                 .iter()
@@ -211,8 +211,8 @@ fn case_37_degenerate_scenes() {
     for (name, scene) in scenes {
         let settings = RenderSettings { max_depth: 1000, ..size(48, 27) };
         let job = job(&scene, Camera::BOOK, settings);
-        for mut renderer in [widest(), baseline(), reference()] {
-            // That none is rejected is seen to by `render`.
+        for mut renderer in [widest(), portable(), reference()] {
+            // `render` checks that no sample is rejected.
             let (film, stats) = render_with_stats(&mut renderer, &job, 0..8);
             assert!(mean(&film) > 0.0, "{name} is black");
             assert!(stats.rays <= 1000 * stats.paths, "{name}");
@@ -231,7 +231,7 @@ fn case_38_eye_inside_a_matte_sphere() {
     for eye in [DVec3::ZERO, DVec3::new(0.3, -0.5, 0.6), DVec3::new(0.0, 0.999_99, 0.0)] {
         let scene = scene(&[(DVec3::ZERO, 1.0, lambertian(0.9))]);
         let camera = Camera { look_from: eye, look_at: eye + DVec3::new(0.3, 0.1, -1.0), ..Camera::BOOK };
-        for mut renderer in [widest(), baseline(), reference()] {
+        for mut renderer in [widest(), portable(), reference()] {
             let (film, stats) = render_with_stats(&mut renderer, &job(&scene, camera, size(48, 27)), 0..16);
             assert!((0..48 * 27).all(|pixel| film.pixel_sum(pixel).0 == [0; 3]), "light gets in at {eye}");
             assert_eq!(stats.rays, 50 * stats.paths, "every path runs to its end inside");

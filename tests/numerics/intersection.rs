@@ -20,7 +20,7 @@ const UNFUSED: Scalar<false> = Scalar;
 /// A sphere's number in these tests.
 const NUMBER: u32 = 7;
 
-/// What rays aimed at a sphere tell about the root that they find.
+/// Errors of the roots that rays aimed at a sphere find.
 #[derive(Debug, Default)]
 struct Aimed {
     hits: u32,
@@ -37,7 +37,7 @@ impl Aimed {
 }
 
 /// Aims `count` rays at the disk of radius `reach` radii around a sphere at `distance_away` from the origin, and
-/// compares with the exact roots of the very rays that the lanes hold.
+/// compares with the exact roots of the rays as the lanes hold them.
 fn aim<L: Lanes>(l: L, distance_away: f64, radius: f64, reach: f64, count: u32) -> Aimed {
     let mut random = Random::new(1);
     let number = l.splat_u(NUMBER);
@@ -129,8 +129,8 @@ fn ground_job(radius: f64) -> RenderJob {
     job(&scene, camera, size(16, 9))
 }
 
-/// The nearer root for a sphere whose top is the origin. `f.f - r^2` is written without the radius squared, so
-/// that `f64` resolves it also for a radius of 1e7.
+/// The nearer root for a sphere whose top is the origin. `f.f - r^2` is computed without squaring the radius, so
+/// that `f64` resolves it even for a radius of 1e7.
 fn exact_ground_root(origin: DVec3, direction: DVec3, radius: f64) -> Option<f64> {
     let a = direction.length_squared();
     let b = direction.dot(origin) + radius * direction.y;
@@ -229,7 +229,7 @@ fn case_07_direction_of_any_length() {
     assert!(largest <= 1e-5, "{largest:e}");
 }
 
-/// A ray arrives from outside somewhere on a sphere and is sent on.
+/// A ray from outside hits a sphere and is scattered.
 fn arrival<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> Option<SurfacePoint<L>> {
     let origin = center + random.direction() * radius * random.log_within(1.5, 1e3);
     let across = perpendicular(center - origin, random) * (0.95 * radius * random.unit().sqrt());
@@ -248,7 +248,7 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
         let (center, radius) = (random.in_box(100.0), random.log_within(1e-3, 1e3));
         let Some(point) = arrival(l, &mut random, center, radius) else { continue };
         let normal = vector::<Scalar<false>>(point.outward);
-        // Down to grazing, where the offsets of other tracers fail.
+        // Includes grazing angles, at which offsets along the normal, as other tracers use them, fail.
         let lift = random.log_within(1e-7, 1.0);
         let direction = perpendicular(normal, &mut random) + normal * lift;
         let mut rays = ray(l, DVec3::ZERO, direction);
@@ -271,7 +271,7 @@ fn case_08_no_ray_meets_the_surface_that_it_leaves() {
     }
 }
 
-/// The same in whole pictures: a path that leaves a lone sphere meets nothing more, whatever depth is allowed.
+/// The same in whole pictures: a path that leaves a lone sphere hits nothing more, whatever the depth.
 #[test]
 fn case_08_lone_spheres_are_met_once() {
     let mut renderer = widest();
@@ -288,7 +288,7 @@ fn case_08_lone_spheres_are_met_once() {
     }
 }
 
-/// Enters through the surface as glass of index 1.5 makes it, and runs to the other side.
+/// A ray enters glass of index 1.5 and travels to the other side.
 fn chord_error<L: Lanes>(l: L, random: &mut Random, center: DVec3, radius: f64) -> Option<f64> {
     let number = l.splat_u(NUMBER);
     let sphere = packed::<L>(center, radius);
@@ -349,8 +349,8 @@ fn case_09_chord_inside_a_tiny_sphere() {
     assert!(largest <= 1e-2, "{largest:e}");
 }
 
-/// Follows total reflection around the inside of a glass ball. Largest distance of a hit from the sphere over
-/// its radius, and largest change of the sine of the angle of incidence.
+/// Follows total reflection around the inside of a glass ball. Returns the largest distance of a hit from the sphere,
+/// relative to its radius, and the largest change of the sine of the angle of incidence.
 fn drift<L: Lanes>(l: L, center: DVec3, radius: f64, sine: f64) -> [f64; 2] {
     let mut random = Random::new(6);
     let number = l.splat_u(NUMBER);
@@ -417,7 +417,7 @@ fn case_19_a_thousand_internal_reflections() {
     }
 }
 
-/// The rules that these cases rest on: nothing but the finished tracer's.
+/// The rules of these cases are those of the finished tracer.
 #[test]
 fn the_acne_stage_alone_anchors_nothing() {
     let job = ground_job(1e5);

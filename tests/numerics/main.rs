@@ -1,9 +1,9 @@
-//! What the arithmetic is held to. Each numbered test is a case of docs/numerics.md, with the tolerance given
+//! The required precision of the arithmetic. Each numbered test is a case of docs/numerics.md, with the tolerance given
 //! there; run with `--nocapture`, it prints what it measures.
 //!
 //! Single functions run in lanes of `f32`, with and without fused multiply and add, against closed forms in
-//! `f64`; whole pictures run in the widest packets against the `f64` reference, sample by sample. That the
-//! other widths render the same bits is the subject of [`parity`].
+//! `f64`; whole pictures run in the widest packets against the `f64` reference, sample by sample. The
+//! module [`parity`] tests that the other widths render the same bits.
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 

@@ -29,7 +29,7 @@ fn case_14_white_furnace() {
     }
 }
 
-/// A cosine lobe about `n` sees of a sky `middle + slope y` the radiance `middle + slope (2/3) n.y`; a single
+/// A cosine lobe about `n` under a sky `middle + slope y` receives the radiance `middle + slope (2/3) n.y`; a single
 /// direction's y has the variance `1/4 - 7/36 n.y^2`.
 #[test]
 fn case_15_matte_ball_under_the_sky() {
@@ -70,7 +70,7 @@ fn case_15_matte_ball_under_the_sky() {
 }
 
 /// With parallel light, Schlick's share averages to the integral of `(1 - c)^5 2 c`, 1/21. A path of two rays
-/// tells reflection (it reaches the white sky) from refraction (it is still inside).
+/// distinguishes reflection (it reaches the white sky) from refraction (it is still inside).
 #[test]
 fn case_16_refraction_index_1() {
     let steps = 100_000;
@@ -113,7 +113,7 @@ fn case_17_refraction_index_a_million() {
 }
 
 /// From 0.9 of the radius, a ray at the angle `a` to the axis arrives with the sine `0.9 sin a`. Above 1/1.5 it is
-/// reflected for ever at the same angle.
+/// reflected forever at the same angle.
 #[test]
 fn case_18_eye_in_glass() {
     let (width, height) = (96, 96);
@@ -162,7 +162,7 @@ fn grazing<const FUSED: bool>() {
                 inverse_index: l.constant(1.0 / index),
                 f0,
             };
-            // The largest coin there is.
+            // The largest random number below 1.
             let coin = l.splat(weekender::sampling::unit_float(u32::MAX));
             let zero = v3(l, DVec3::ZERO);
             let scattered = |laws: DielectricLaws| {
@@ -183,7 +183,7 @@ fn grazing<const FUSED: bool>() {
             assert!(!bounced.refracts, "index {index} lets light through at a grazing angle");
             let bounced = vector::<Scalar<FUSED>>(bounced.direction);
             assert!((bounced - direction).length() < 1e-6, "{bounced}, not {direction}");
-            // And where the law is not asked whether it has a solution.
+            // `RefractOnly` does not check whether Snell's law has a solution: its direction is wrong, but finite.
             let wrong = scattered(DielectricLaws::RefractOnly);
             assert!(vector::<Scalar<FUSED>>(wrong.direction).is_finite());
         }

@@ -1,8 +1,8 @@
 //! All packets of one class render the same bits. Levels with fused multiply and add are one class, those
 //! without are the other.
 //!
-//! At a level's own lane count the path loop is specialised for what the job needs, at the other lane counts
-//! there is only the general one; so equality over the widths is also case 39, on the CPU and to the bit.
+//! At a level's own lane count the path loop is specialised to the job; the other lane counts have only the general
+//! loop. Equality over the widths is therefore also case 39, on the CPU and to the bit.
 
 use crate::common::*;
 use std::collections::BTreeMap;
@@ -51,7 +51,7 @@ fn case_39_all_packets_render_the_same_scenes() {
     assert_parity(BuiltinScene::ALL.iter().map(|scene| Recipe::find(scene.name).unwrap()), 5);
 }
 
-/// Neither the cut into tiles, nor threads, nor passes show.
+/// Tiles, threads and passes do not change the picture.
 #[test]
 fn tiles_threads_and_passes_do_not_show() {
     let threaded = |threads| CpuRenderer::new(CpuOptions { threads: Some(threads), ..CpuOptions::default() });

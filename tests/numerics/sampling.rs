@@ -22,7 +22,7 @@ fn case_26_no_draw_repeats() {
     }
 }
 
-/// The mean of `n` independent samples has an `n`th of one sample's variance, whatever it is the mean of.
+/// The mean of `n` independent samples has 1/n of the variance of one sample, whatever is sampled.
 #[test]
 fn independent_samples_are_independent() {
     const SAMPLES: u32 = 64;
@@ -63,7 +63,7 @@ fn case_27_the_largest_number_is_below_1() {
     assert_eq!(sampling::unit_float(0), 0.0);
 }
 
-/// Every number of the lanes against the oracle, bit for bit.
+/// Compares every number of the lanes with the oracle, bit for bit.
 #[inline(always)]
 fn assert_twins<L: Lanes>(l: L) {
     let mut random = Random::new(9);
@@ -88,7 +88,7 @@ fn assert_twins<L: Lanes>(l: L) {
         for (which, found) in rng::pcg4d(l, [la, lb, lc, ld]).into_iter().enumerate() {
             same(found, "pcg4d", &|i| sampling::pcg4d([a[i], b[i], c[i], d[i]])[which]);
         }
-        // A whole draw: lane by lane its own pixel and index, at one bounce.
+        // A whole draw: each lane has its own pixel and index, all at one bounce.
         let (half, bounce, seed) = (a[0] & 1, b[0] % 50, c[0]);
         let index = |i: usize| d[i] >> 1 << 1 | half;
         let pixel = |i: usize| a[i] & 0x3FFF_3FFF;
@@ -137,8 +137,8 @@ fn lanes_draw_the_numbers_of_the_oracle() {
     }
 }
 
-/// The polynomial against the library's sine in `f64`: within two units of `2^-23`, each for itself
-/// and in the length of the two together.
+/// Compares the polynomials with the library's sine and cosine in `f64`: each, and the length of the vector of both, is
+/// within two units of `2^-23`.
 #[test]
 fn sine_and_cosine_of_turns() {
     let (mut largest, mut length) = (0.0_f64, 0.0_f64);
@@ -175,7 +175,7 @@ fn unit_vectors_have_length_1() {
 }
 
 proptest! {
-    /// Blocks cover the samples of a range once each, and their counters run through just those.
+    /// Blocks cover each sample of a range once, and their counters produce exactly these samples.
     #[test]
     fn blocks_cover_a_range_once(
         start in prop_oneof![0..2000_u64, SAMPLE_LIMIT - 2000..SAMPLE_LIMIT],

@@ -20,13 +20,13 @@ fn three(width: u32, height: u32, sampler: SamplerKind, seed: u32) -> RenderJob 
     job(&three_spheres(LeftSphere::HollowGlass), Camera::BOOK, settings)
 }
 
-/// What all small films approach.
+/// The picture that all small films approach.
 fn truth() -> &'static Film {
     static TRUTH: OnceLock<Film> = OnceLock::new();
     TRUTH.get_or_init(|| render(&mut widest(), &three(WIDTH, HEIGHT, SamplerKind::Sobol, 4242), 0..65_536))
 }
 
-/// Mean squared error against the truth, less the truth's own.
+/// Mean squared error against the truth, minus the truth's own error.
 fn squared_error(film: &Film, truth: &Film) -> f64 {
     let sum: f64 = (0..(WIDTH * HEIGHT) as usize)
         .flat_map(|pixel| {

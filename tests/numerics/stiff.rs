@@ -1,4 +1,4 @@
-//! Scenes that are stiff: copies, shells, an eye on a surface or far from the origin, angles near the critical one.
+//! Stiff scenes: copies, shells, an eye on a surface or far from the origin, angles near the critical angle.
 
 use crate::common::*;
 use crate::film::trace_tables;
@@ -19,17 +19,17 @@ fn under_white_sky(balls: &[Ball]) -> Scene {
     Scene { sky: WHITE, ..scene(balls) }
 }
 
-/// The balls and forty more far behind the eye, so many that there is a hierarchy.
+/// The balls and forty more far behind the eye, which is enough for a hierarchy.
 fn among_many(balls: &[Ball]) -> Vec<Ball> {
     let far = |i: u32| (DVec3::new(f64::from(i) - 20.0, 0.0, 500.0), 0.1, lambertian(0.5));
     balls.iter().copied().chain((0..40).map(far)).collect()
 }
 
-/// From 3 in front of the ball of radius 1 about the origin, so narrow that nothing else is seen.
+/// A camera 3 units from the unit ball at the origin, with a view so narrow that nothing else is visible.
 const AT_BALL: Camera =
     Camera { look_from: DVec3::new(0.0, 0.0, 3.0), look_at: DVec3::ZERO, vfov_degrees: 20.0, ..Camera::BOOK };
 
-/// Renders as a list and with a hierarchy, checks that both are there and the same, and returns the film.
+/// Renders as a list and with a hierarchy, checks that both exist and give the same film, and returns it.
 fn as_list_and_hierarchy(job: &RenderJob, samples: u64) -> Film {
     let prepared = PreparedScene::<f32>::new(job);
     let [mut listed, mut boxed] = [job.new_film(), job.new_film()];
@@ -76,7 +76,7 @@ fn nearly_equal_balls_reflect_what_one_does() {
         let job = job(&under_white_sky(&among_many(&balls)), AT_BALL, size(16, 16));
         let mean = mean(&as_list_and_hierarchy(&job, 64));
         println!("offset {offset:e}: {mean}");
-        // Light that goes from one to another is lost; there is as much of it as the balls stand out.
+        // Light that travels between the balls is lost, in proportion to how far they stand out.
         assert!((mean - 0.5).abs() < 1e-5 + 2.0 * offset, "{offset:e}: {mean}");
     }
 }
@@ -105,7 +105,7 @@ fn of_copies_in_two_colours_the_first_is_seen() {
     }
 }
 
-/// Shells about one centre, and crowds of balls about one place, make no tree too deep to go through.
+/// Shells about one centre, and many balls in one place, do not make a tree too deep to traverse.
 #[test]
 fn shells_and_crowds_have_low_trees() {
     let ball = |center, radius| weekender::scene::Sphere { center, radius, material: 0 };
@@ -164,7 +164,7 @@ fn an_eye_on_a_surface_sees_the_sky_before_it() {
     }
 }
 
-/// An eye on a surface is outside: what it looks at is the surface.
+/// An eye on a surface counts as outside.
 #[test]
 fn an_eye_on_a_surface_sees_it_from_outside() {
     for (radius, height) in [(0.5, 0.0), (1000.0, 0.0), (1000.0, 1e-12), (0.5, 1e-10)] {
@@ -232,7 +232,7 @@ fn a_scene_is_the_same_wherever_it_is() {
     }
 }
 
-/// A ground is seen from where the detail is, whatever lies far away.
+/// A ground is precise near its details, whatever lies far away.
 #[test]
 fn far_spheres_do_not_move_the_anchor() {
     let detail =
@@ -245,7 +245,7 @@ fn far_spheres_do_not_move_the_anchor() {
     assert_eq!(anchor(&detail), anchor(&among_many(&detail)));
 }
 
-/// One odd sphere, distance or eye does not make a list of all spheres.
+/// One extreme sphere, distance or eye does not put all spheres into the list.
 #[test]
 fn oddities_anchor_few_spheres() {
     let (scene, camera) = field(4000);
@@ -293,7 +293,7 @@ fn total_reflection_lasts() {
     let off = mean(&film) - mean(&exact);
     println!("total reflection: {:e} of {}", off, mean(&exact));
     assert!(mean(&exact) > 0.01 && off.abs() < 1e-6, "{off:e}");
-    // All of these are reflected for ever.
+    // All of these are reflected forever.
     let narrow = Camera { vfov_degrees: 60.0, ..side };
     let dark = render(&mut widest(), &crate::common::job(&scene, narrow, settings), 0..4);
     assert_eq!(mean(&dark), 0.0);
@@ -302,7 +302,7 @@ fn total_reflection_lasts() {
 #[test]
 fn steep_glass_is_right() {
     for index in [10.0, 100.0, 1e4, 1e6] {
-        // So near the centre that about half the rays meet the surface within the critical angle.
+        // So close to the centre that about half of the rays meet the surface below the critical angle.
         for offset in [0.0, 1.5 / index] {
             let eye = DVec3::new(offset, 0.0, 0.0);
             let camera =
@@ -314,7 +314,7 @@ fn steep_glass_is_right() {
             let exact = render(&mut reference(), &job, 0..64);
             let off = mean(&film) - mean(&exact);
             println!("index {index}, eye at {offset:e}: {:e} of {}", off, mean(&exact));
-            // Two paths of 65,536 may go another way: a direction is rounded by 6e-8, the critical sine is 1 / index.
+            // Two of 65,536 paths may diverge: a direction is rounded by 6e-8, and the critical sine is 1 / index.
             assert!(off.abs() <= 2.0 / 65_536.0, "index {index} at {offset}: {off:e}");
         }
     }
@@ -334,7 +334,7 @@ fn no_light_gets_into_a_closed_ball() {
                 let scene = under_white_sky(&[ground, ball, beside]);
                 let eye = at + DVec3::new(0.2, 0.1, -0.3);
                 assert_eq!(shown_mean(&job(&scene, inside(eye), settings), 16), 0.0, "{at} {sunk:e}");
-                // The eye near the wall.
+                // The eye is near the wall.
                 let eye = at + DVec3::Z * (1.0 - 1e-6);
                 assert_eq!(shown_mean(&job(&scene, inside(eye), settings), 4), 0.0, "{at} {sunk:e}");
             }
@@ -355,7 +355,7 @@ fn what_a_closed_ball_hides_is_left_out() {
     assert_eq!(prepared.anchored[0].roots(), Roots::Farther);
 }
 
-/// A copy that is covered closes nothing.
+/// A matte ball covered by identical glass does not count as a cavity.
 #[test]
 fn a_covered_ball_is_no_cavity() {
     let balls = [(DVec3::ZERO, 1.0, glass(1.5)), (DVec3::ZERO, 1.0, lambertian(0.5))];
@@ -391,7 +391,7 @@ fn layers_too_thin_for_single_precision_are_told() {
     );
 }
 
-/// How thin a layer may be: printed, and held where no warning is given.
+/// How thin a layer may be: prints it, and checks thicknesses without a warning.
 #[test]
 fn layers_without_a_warning_are_right() {
     for thickness in [1e-7, 2e-7, 5e-7, 1e-6, 3e-6, 1e-5, 1e-4] {
@@ -421,7 +421,8 @@ fn crossing_balls_around_the_eye_are_told() {
     assert!(!is_told(0.5, 1.0), "outside, where no path is between them");
 }
 
-/// From afar a coat and what it coats have one distance, though both are small and their coordinates have digits to spare.
+/// From afar a coat and the ball in it are at the same rounded distance, although both are small and their
+/// coordinates are precise.
 #[test]
 fn coats_seen_from_afar_are_told_or_right() {
     let center = DVec3::new(0.188, 1.469, 2.204);
@@ -440,7 +441,7 @@ fn coats_seen_from_afar_are_told_or_right() {
     }
 }
 
-/// Just above a power of two, the distances of surfaces are rounded most coarsely: glass that a matte ball hides would
+/// Just above a power of two, distances are rounded most coarsely: glass hidden by a matte ball could
 /// show through.
 #[test]
 fn hidden_glass_seen_from_afar_is_told_or_right() {
@@ -462,7 +463,7 @@ fn hidden_glass_seen_from_afar_is_told_or_right() {
     }
 }
 
-/// What an eye is close to is resolved there, even where a small ball lies near the far side of the same planet.
+/// Details close to the eye are resolved, even where a small ball lies near the far side of the same planet.
 #[test]
 fn a_planet_is_resolved_at_the_eye_whatever_lies_beyond() {
     let (radius, height) = (8.8e9, 5.6e4);
@@ -482,8 +483,8 @@ fn a_planet_is_resolved_at_the_eye_whatever_lies_beyond() {
     assert!(found.bias.abs() < 1e-5, "{found:?}");
 }
 
-/// Where glass touches a ball hundreds of times larger, a ray that leaves the glass may start below the ball's surface: it
-/// meets it all the same. With two rays the ground is black from within, and what is bright has leaked.
+/// Where glass touches a ball hundreds of times larger, a ray that leaves the glass may start below the ball's surface,
+/// and must hit it nevertheless. With two rays per path the ground is black from inside; bright pixels have leaked.
 #[test]
 fn nothing_leaks_where_glass_touches_the_ground() {
     let (eye, radius, ground) = (DVec3::new(0.3, 0.2, -0.1), 10.3, 4073.8);
@@ -499,7 +500,7 @@ fn nothing_leaks_where_glass_touches_the_ground() {
     }
 }
 
-/// A picture of something small is as sharp as its single precision allows, wherever the origin of the world is.
+/// A picture of something small is as sharp as single precision allows, wherever the origin is.
 #[test]
 fn small_balls_near_the_origin_are_where_they_are() {
     let center = DVec3::new(-0.000_118, 0.001_18, 0.002_05);
@@ -514,7 +515,7 @@ fn small_balls_near_the_origin_are_where_they_are() {
     assert!(found.bias.abs() < 4e-6, "{found:?}");
 }
 
-/// What the eye is nearest to need not be what it looks at.
+/// The surface nearest to the eye need not be the one that it looks at.
 #[test]
 fn a_small_ball_beside_a_larger_one_is_where_it_is() {
     let small = DVec3::new(0.014_095_8, 0.034_369_6, 0.036_614_1);
@@ -534,7 +535,7 @@ fn a_small_ball_beside_a_larger_one_is_where_it_is() {
     }
 }
 
-/// Far balls: the normal at a hit has length 1, however coarsely the distance is rounded.
+/// On far balls, the normal at a hit has length 1 however coarsely the distance is rounded.
 #[test]
 fn specks_are_shaded_as_balls_are() {
     for radius in [1e-4, 1e-6, 1e-8] {

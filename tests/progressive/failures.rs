@@ -48,7 +48,7 @@ fn a_panic_keeps_the_film_and_another_backend_goes_on() {
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
     let [message] = status.messages.as_slice() else { unreachable!("{:?}", status.messages) };
-    assert!(message.contains("a slip of the tracer") && message.contains("goes on"), "{message}");
+    assert!(message.contains("a slip of the tracer") && message.contains("continues"), "{message}");
     assert_eq!(progressive.finish(), Some(expected(100)));
 }
 
@@ -133,7 +133,7 @@ fn a_member_that_panics_leaves_its_samples_to_the_others() {
     together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
     assert!(film == expected(64));
     let said = together.take_messages().join("; ");
-    assert!(said.contains("a slip of the tracer") && said.contains("cpu goes on"), "{said}");
+    assert!(said.contains("a slip of the tracer") && said.contains("cpu continues"), "{said}");
 }
 
 /// A panic of the real tracer in the middle of a tile.

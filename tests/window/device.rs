@@ -58,7 +58,7 @@ fn a_pause_outlasts_a_move_of_the_camera() {
     let run = harness.state().status().run;
     harness.key_press(Key::Space);
     until(&mut harness, "more samples", |window| window.status().samples_per_pixel > 8);
-    assert_eq!(harness.state().status().run, run, "the same film goes on");
+    assert_eq!(harness.state().status().run, run, "the same film continues");
 }
 
 #[test]

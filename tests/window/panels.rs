@@ -237,7 +237,7 @@ fn controls_take_no_value_that_cannot_be() {
 fn a_control_has_one_tooltip() {
     let mut harness = open("--stage defocus --size 32x18");
     for (name, help) in [
-        ("Look from x", "The eye, scene units (look_from)"),
+        ("Look from x", "Position of the eye, scene units (look_from)"),
         ("Width", "Width, pixels"),
         ("Field of view", "From the lower to the upper edge, degrees (vfov)"),
         ("Device", "Who traces."),

@@ -77,7 +77,7 @@ impl Dialogs {
     pub fn browsed(&mut self) -> Option<Result<(Purpose, PathBuf), &'static str>> {
         match self.browsed.take()? {
             (_, Chosen::NoDialog) => {
-                Some(Err("The system has shown no file dialog; type the file's name in the box"))
+                Some(Err("The system's file dialog cannot be shown; type the file's name in the box"))
             }
             (purpose, Chosen::Path(path)) => {
                 if matches!(self.open, Some(Dialog::Path(_))) {

@@ -87,7 +87,7 @@ impl PathBox {
             let is_browsing = self.browsing.strong_count() > 0;
             let browse = ui
                 .add_enabled(!is_browsing, egui::Button::new("Browse…"))
-                .on_hover_text("The system's own dialog, where there is one")
+                .on_hover_text("The system's file dialog, if there is one")
                 .on_disabled_hover_text("The system's dialog is open");
             if browse.clicked() {
                 self.browse(browsed, ui.ctx());
@@ -106,11 +106,11 @@ impl PathBox {
         let path = path?;
         let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         match (self.purpose.is_saving(), path.exists()) {
-            (true, true) => Some(format!("{} is there and will be replaced", whole.display())),
+            (true, true) => Some(format!("{} exists and will be replaced", whole.display())),
             (true, false) if whole == path => Some("A new file".to_owned()),
             (true, false) => Some(whole.display().to_string()),
             (false, true) => None,
-            (false, false) => Some(format!("{} is not there", whole.display())),
+            (false, false) => Some(format!("{} does not exist", whole.display())),
         }
     }
 

@@ -38,7 +38,7 @@ pub fn adapter() -> Result<&'static AdapterInfo, String> {
         (None, Some(unfit)) => {
             Err(format!("{} cannot be used: {}", unfit.name, unfit.lacks.as_deref().unwrap_or_default()))
         }
-        (None, None) => Err("No graphics adapter was found; the CPU does everything".to_owned()),
+        (None, None) => Err("No graphics adapter was found; everything runs on the CPU".to_owned()),
     }
 }
 
@@ -85,9 +85,9 @@ impl Device {
         match self {
             Device::Cpu => "Trace on the processor, in packets of as many rays as it has lanes",
             Device::Gpu => "Trace on the graphics adapter",
-            Device::Both => "Let processor and graphics adapter work on one picture",
+            Device::Both => "Trace one picture on processor and graphics adapter together",
             Device::Reference => {
-                "Trace in double precision, one ray at a time: slow, and what rounding is measured against"
+                "Trace in double precision, one ray at a time: slow, but the reference for rounding errors"
             }
         }
     }
@@ -96,8 +96,11 @@ impl Device {
     pub fn long_help(self) -> String {
         match (self, adapter()) {
             (Device::Gpu | Device::Both, Ok(adapter)) => {
-                let note =
-                    if adapter.is_software { ", which computes on the processor and is slower" } else { "" };
+                let note = if adapter.is_software {
+                    ", a software adapter, which runs on the processor and is slower"
+                } else {
+                    ""
+                };
                 format!("{} ({}{note})", self.help(), adapter.name)
             }
             _ => self.help().to_owned(),

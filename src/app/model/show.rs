@@ -51,18 +51,18 @@ impl Show {
     /// A description of the view.
     pub fn help(self) -> &'static str {
         match self {
-            Show::Picture => "The film, as it will be saved",
+            Show::Picture => "The film as it will be saved",
             Show::Normals => "Which way surfaces face: x red, y green, z blue",
             Show::Albedo => {
-                "What surfaces reflect, without light and shadow; glass takes nothing and is white"
+                "What surfaces reflect, without light and shadow; glass absorbs nothing and is white"
             }
-            Show::Bounces => "How many rays a path takes, the camera's included: where the time goes",
+            Show::Bounces => "How many rays a path has, including the camera ray: where the time goes",
             Show::Error => "Standard error of each pixel's mean, linear radiance: where the noise is",
             Show::Occupancy => {
-                "How full the packets were, tile by tile: a lane whose tile has no more work waits until the \
-                 last one there is done"
+                "How full the packets were in each tile: a lane that has run out of work waits for the last lane \
+                 of its tile"
             }
-            Show::Difference => "Distance from a loaded film, linear radiance",
+            Show::Difference => "Difference from a loaded film, linear radiance",
         }
     }
 

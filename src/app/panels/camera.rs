@@ -35,7 +35,12 @@ pub(super) fn ui(
     let disabled_reason = facts.no_rays();
     let speed = (camera.look_from.distance(camera.look_at) * 0.005).max(1e-4);
     let about = |name, help| About::new(name, help).disabled_if(disabled_reason);
-    vector(ui, about("Look from", "The eye, scene units (look_from)"), &mut camera.look_from, speed);
+    vector(
+        ui,
+        about("Look from", "Position of the eye, scene units (look_from)"),
+        &mut camera.look_from,
+        speed,
+    );
     vector(
         ui,
         about("Look at", "A point in the middle of the picture, scene units (look_at)"),
@@ -44,7 +49,7 @@ pub(super) fn ui(
     );
     vector(
         ui,
-        about("Up", "What is up in the picture; its length does not matter (vup)"),
+        about("Up", "The direction that is up in the picture; its length does not matter (vup)"),
         &mut camera.vup,
         0.01,
     );
@@ -64,7 +69,7 @@ fn bookmarks_ui(
     let mut chosen = None;
     let mut removed = None;
     ui.horizontal_wrapped(|ui| {
-        if ui.button("Bookmark").on_hover_text("Keep camera and lens to come back to (Ctrl+B)").clicked() {
+        if ui.button("Bookmark").on_hover_text("Save camera and lens to return to later (Ctrl+B)").clicked() {
             commands.push(Command::AddBookmark);
         }
         ui.add_enabled_ui(!bookmarks.is_empty(), |ui| {

@@ -35,16 +35,16 @@ pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
     });
     camera.defocus_angle_degrees = camera.defocus_angle_degrees.min(178.9);
     let pinhole = (camera.defocus_angle_degrees == 0.0)
-        .then_some("A pinhole is sharp everywhere: open the defocus angle");
+        .then_some("A pinhole is sharp everywhere: set a defocus angle above 0");
     let disabled_reason = no_rays.or(pinhole);
     let mut follows = camera.focus_distance.is_none();
-    let about = About::new("Focus on Look at", "Keep the point that is looked at sharp");
+    let about = About::new("Focus on Look at", "Keep the point that the camera looks at in focus");
     if check(ui, about.disabled_if(disabled_reason), &mut follows).changed() {
         camera.focus_distance = (!follows).then(|| camera.effective_focus_distance());
     }
     let about = About::new(
         "Focus distance",
-        "Distance to the plane that is sharp, scene units (focus_distance). A click on the picture sets it too",
+        "Distance to the plane in focus, scene units (focus_distance). A click on the picture sets it too",
     );
     let mut distance = camera.effective_focus_distance();
     let slider = slider(ui, about.disabled_if(disabled_reason), &mut distance, 0.01..=1000.0, |slider| {

@@ -60,7 +60,7 @@ fn group(
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let button = ui
                     .add_enabled(is_changed, egui::Button::new("Reset").small())
-                    .on_hover_text("As the stage has it")
+                    .on_hover_text("Reset to the stage's values")
                     .on_disabled_hover_text("Nothing here differs from the stage")
                     .accessible_name(format!("Reset {}", name.to_lowercase()));
                 if button.clicked() {

@@ -27,19 +27,18 @@ pub(super) fn ui(ui: &mut Ui, settings: &mut RenderSettings, remembered: &mut Re
     let rules = facts.document().rules();
     let shading = rules.shading;
     let no_rays = facts.no_rays();
-    let one_ray =
-        (shading != Shading::Path).then_some("In this stage a ray sees no further than its first hit");
-    let no_chance = (!rules.antialiasing && shading != Shading::Path)
-        .then_some("In this stage nothing depends on chance");
+    let one_ray = (shading != Shading::Path).then_some("In this stage rays end at their first hit");
+    let no_chance =
+        (!rules.antialiasing && shading != Shading::Path).then_some("In this stage nothing is random");
 
     let mut depth = u64::from(settings.max_depth);
-    let about = About::new("Depth", "Most rays of a path, the camera's included (max_depth)");
+    let about = About::new("Depth", "Largest number of rays per path, including the camera ray (max_depth)");
     whole(ui, about.disabled_if(no_rays.or(one_ray)), &mut depth, 1..=u64::from(DEPTH_LIMIT), 0.2);
     settings.max_depth = u32::try_from(depth).unwrap_or(DEPTH_LIMIT);
 
     let about = About::new(
         "Sampler",
-        "Where random numbers come from: Sobol points need fewer samples, independent ones are the book's",
+        "Source of the random numbers: Sobol points need fewer samples, independent numbers are the book's",
     );
     control(ui, about.disabled_if(no_chance), |ui| {
         ComboBox::from_id_salt("sampler")
@@ -53,18 +52,21 @@ pub(super) fn ui(ui: &mut Ui, settings: &mut RenderSettings, remembered: &mut Re
             .response
     });
     let mut seed = u64::from(settings.seed);
-    let about = About::new("Seed", "Chooses among pictures that differ in noise alone");
+    let about = About::new("Seed", "Pictures with different seeds differ only in their noise");
     whole(ui, about.disabled_if(no_chance), &mut seed, 0..=u64::from(u32::MAX), 0.05);
     settings.seed = u32::try_from(seed).unwrap_or(u32::MAX);
     let about = About::new(
         "Estimate error",
-        "Keep the samples in two halves, whose difference tells the error; off takes half the memory",
+        "Keep the samples in two halves, whose difference shows the error; without it, the film takes half the memory",
     );
     check(ui, about, &mut settings.estimate_error);
 }
 
 fn device(ui: &mut Ui, chosen: &mut Device) {
-    let about = About::new("Device", "Who traces. Switching does not restart: the same film goes on (G)");
+    let about = About::new(
+        "Device",
+        "What traces. Switching does not restart the render: the same film continues (G)",
+    );
     control(ui, about, |ui| {
         ComboBox::from_id_salt("device")
             .width(ui.available_width())
@@ -87,11 +89,11 @@ fn device(ui: &mut Ui, chosen: &mut Device) {
 fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
     let scalar = (remembered.device == Device::Reference).then_some("The reference traces one ray at a time");
     let not_cpu =
-        (remembered.device == Device::Gpu).then_some("The graphics adapter has lanes and threads of its own");
+        (remembered.device == Device::Gpu).then_some("The graphics adapter has its own lanes and threads");
     let word = |count: Option<usize>| count.map_or_else(|| "automatic".to_owned(), |count| count.to_string());
     let about = About::new(
         "Lanes",
-        "Rays in a packet. Switching does not restart: the samples are the same to the bit",
+        "Rays per packet. Switching does not restart the render: the samples are the same to the bit",
     );
     control(ui, about.disabled_if(not_cpu.or(scalar)), |ui| {
         ComboBox::from_id_salt("lanes")
@@ -106,7 +108,7 @@ fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
     });
     let about = About::new(
         "Threads",
-        "Threads that trace. Automatic leaves a core to the window where there are more than two",
+        "Threads that trace. Automatic leaves one core to the window if there are more than two",
     );
     control(ui, about.disabled_if(not_cpu), |ui| {
         ComboBox::from_id_salt("threads")

@@ -21,7 +21,7 @@ fn reset(document: &mut Document) {
 pub(super) fn ui(ui: &mut Ui, stop: &mut Stop, facts: &Facts) {
     let document = facts.document();
     let one_half = (!document.settings.estimate_error)
-        .then_some("The film has one half, which tells no error: switch on Estimate error");
+        .then_some("The error cannot be estimated from a film with one half: switch on Estimate error");
     let usual = document.origin.recipe.samples_per_pixel;
 
     let mut has_samples = stop.samples.is_some();
@@ -29,7 +29,7 @@ pub(super) fn ui(ui: &mut Ui, stop: &mut Stop, facts: &Facts) {
     row(
         ui,
         "Samples",
-        "Samples per pixel; without it the picture goes on without end",
+        "Samples per pixel; without a limit the render does not end by itself",
         None,
         &mut has_samples,
         |ui| {

@@ -58,7 +58,7 @@ impl Render {
                 self.sizer.restart();
             }
             Err(reason) => {
-                self.status.say(vec![format!("{reason}; the {} goes on", self.choice.name())]);
+                self.status.say(vec![format!("{reason}; the {} continues", self.choice.name())]);
             }
         }
     }
@@ -87,7 +87,7 @@ impl Render {
         match BackendChoice::fallback(&self.failed) {
             Some(fallback) => {
                 let name = fallback.words();
-                self.status.say(vec![format!("{error}; {name} goes on with the same picture")]);
+                self.status.say(vec![format!("{error}; {name} continues the same picture")]);
                 self.change_backend(fallback);
             }
             None => self.status.phase = Phase::Failed(error.to_string()),
@@ -112,7 +112,7 @@ impl Render {
             match (guarded(choice.name(), make)?, &backend) {
                 (Ok(renderer), _) => dismiss(backend.replace((self.choice.clone(), renderer))),
                 (Err(error), Some((old, _))) => {
-                    self.status.messages.push(format!("{error}; the {} goes on", old.name()));
+                    self.status.messages.push(format!("{error}; the {} continues", old.name()));
                     self.choice = old.clone();
                 }
                 (Err(error), None) => {

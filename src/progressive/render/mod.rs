@@ -207,7 +207,7 @@ impl Render {
         }
         if self.requested != *self.film.samples() {
             let reason = format!(
-                "of {} samples per pixel that it was to trace the film has {}",
+                "it was to trace {} samples per pixel, but the film holds {}",
                 self.requested.count(),
                 self.film.sample_count()
             );

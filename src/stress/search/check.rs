@@ -17,11 +17,11 @@ use std::time::Instant;
 /// By how much a mean may differ apart from noise, linear radiance.
 const TOLERANCE: f64 = 1e-5;
 
-/// A difference is looked at again with this many times the samples. Wherever rounding differs, chaotic paths part by
-/// chance, a few in a thousand in glass; a wrong picture stays wrong whatever the seed.
+/// A difference is looked at again with this many times the samples. Where rounding differs, chaotic paths diverge at
+/// random, a few in a thousand in glass; a wrong picture stays wrong whatever the seed.
 const SECOND_LOOK: f64 = 64.0;
 
-/// About how long a second look may take, seconds; it takes fewer samples if need be.
+/// About how long a second look may take, seconds; it takes fewer samples if necessary.
 const SECOND_LOOK_TIME: f64 = 5.0;
 
 /// Seeds of the second looks, added to the scene's. If few pixels have most of the noise, one look is not enough.

@@ -21,7 +21,7 @@ use std::time::{Duration, Instant};
 /// Where failures are saved unless `--out` says otherwise.
 const DIRECTORY: &str = "stress";
 
-/// Interval of progress lines when there is no terminal.
+/// Interval of progress lines without a terminal.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
 
 /// Time limit for shrinking one scene.
@@ -95,7 +95,7 @@ fn save(path: &Path, recipe: &Recipe, check: Check, reason: &str, [seed, number]
 
 fn saved_text(recipe: &Recipe, check: Check, reason: &str, [seed, number]: [u32; 2]) -> String {
     format!(
-        "# Found by weekender stress --search, seed {seed}, scene {number}, shrunk as far as it still fails.\n\
+        "# Found by weekender stress --search, seed {seed}, scene {number}, shrunk as far as the failure allows.\n\
          # What failed: {}: {}\n\n{}",
         check.name(),
         reason.replace('\n', " "),
