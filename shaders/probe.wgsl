@@ -84,7 +84,12 @@ fn probe(@builtin(global_invocation_id) id: vec3u) {
             put3(base, 9u, speck.outward);
         }
         case PROBE_SCATTER: {
-            let surface = Surface(f(base, 0u), f(base, 1u), f(base, 2u), f(base, 3u));
+            var record: ShadingRecord;
+            record.weight = f(base, 0u);
+            record.refraction_index = f(base, 1u);
+            record.inverse_index = f(base, 2u);
+            record.f0 = f(base, 3u);
+            let surface = surface_of(record);
             let front = words[base + 14u] != 0u;
             let incidence = incidence_of(f(base, 13u));
             let coin = f(base, 15u);

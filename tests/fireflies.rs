@@ -29,7 +29,7 @@ fn cage(ball: f64, seed: u32) -> RenderJob {
         max_depth: 50,
         sampler: SamplerKind::Independent,
         seed,
-        estimate_error: true,
+        ..RenderSettings::default()
     };
     RenderJob::new(scene, camera, settings, Rules::default()).unwrap()
 }

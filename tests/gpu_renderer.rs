@@ -352,9 +352,8 @@ fn many_spheres_and_large_radiance() {
         width: 64,
         height: 36,
         max_depth: 10,
-        sampler: SamplerKind::Sobol,
-        seed: 0,
         estimate_error: false,
+        ..RenderSettings::default()
     };
     let job = RenderJob::new(scene, camera, settings, Rules::default()).unwrap();
     let (a, b) = (rendered(&mut gpu, &job, 1), rendered(&mut cpu(), &job, 1));

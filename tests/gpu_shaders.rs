@@ -139,23 +139,28 @@ fn layouts_agree() {
 /// A record as the host writes it has the length that the shaders expect, and the order of its fields.
 #[test]
 fn words_are_those_of_the_fields() {
-    let record = ShadingRecord {
+    let vectors = ShadingRecord {
         reference: [1.0, 2.0, 3.0],
-        curvature: 4.0,
         albedo: [5.0, 6.0, 7.0],
+        inward: [13.0, 14.0, 15.0],
+        ..ShadingRecord::default()
+    };
+    let record = ShadingRecord {
+        curvature: 4.0,
         weight: 8.0,
         radius: 9.0,
         refraction_index: 10.0,
         inverse_index: 11.0,
         f0: 12.0,
-        inward: [13.0, 14.0, 15.0],
         anchoring: 16.0,
+        ..vectors
     };
     let expected: Vec<f32> = (1..=16).map(|number| number as f32).collect();
     assert_eq!(RecordColumns::from(record).0[..16], expected);
     let words = words_of(&[record, record]);
     assert_eq!(words.len() * 4, 2 * size_of::<ShadingRecord<f32>>());
-    assert_eq!(words[16..], expected.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
+    let second = &words[words.len() / 2..];
+    assert_eq!(second[..16], expected.iter().map(|x| x.to_bits()).collect::<Vec<_>>());
     let job = records::layouts().into_iter().find(|(name, ..)| name == "Job").unwrap();
     let camera = CameraTable { tau: 2.0, size: [3.0, 4.0], ..CameraTable::default() };
     let words = words_of(&[camera]);

@@ -77,13 +77,13 @@ pub fn departure(job: &RenderJob, path: &PathRecord, bounce: usize) -> Option<De
     let sphere = job.scene().spheres.get(hit.sphere)?;
     let material = job.scene().material_of(sphere);
     Some(match (path.rays.get(bounce + 1), material) {
-        (Some(_), Material::Lambertian { .. }) => Departure::Scattered,
-        (Some(_), Material::Metal { .. }) => Departure::Reflected,
-        (Some(next), Material::Dielectric { .. }) => {
+        (Some(next), material) if material.is_transparent() => {
             let outward = glam::DVec3::from(next.origin) - sphere.center;
             let side = |ray: &RecordedRay| glam::DVec3::from(ray.direction).dot(outward) > 0.0;
             if side(ray) == side(next) { Departure::Refracted } else { Departure::Reflected }
         }
+        (Some(_), Material::Lambertian { .. }) => Departure::Scattered,
+        (Some(_), _) => Departure::Reflected,
         (None, _) if bounce + 1 >= job.settings().max_depth as usize => Departure::CutOff,
         (None, Material::Metal { .. }) if job.rules().shading == Shading::Path => Departure::Absorbed,
         (None, _) => Departure::Shown,

@@ -3,7 +3,7 @@
 
 use crate::kernel::HALF_EPSILON;
 use crate::render::RenderJob;
-use crate::scene::{Material, Scene, Sphere};
+use crate::scene::{Scene, Sphere};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -180,11 +180,12 @@ fn unresolved(layer: Layer, job: &RenderJob, origin: DVec3) -> Option<Unresolved
         HALF_EPSILON * (LAYER_UNITS * coordinate).max(DISTANCE_UNITS * distance)
     });
     let limit = limits[0].max(limits[1]);
-    let is_glass = |sphere: &Sphere| matches!(job.scene().material_of(sphere), Material::Dielectric { .. });
+    let is_transparent = |sphere: &Sphere| job.scene().material_of(sphere).is_transparent();
     // The margin is far above what rounding can move the eye by.
     let reach = |sphere: &Sphere| sphere.radius * (1.0 + 1e-5) + job.camera().lens_radius();
-    let has_inside =
-        |sphere: &Sphere| is_glass(sphere) || sphere.center.distance(job.camera().look_from) <= reach(sphere);
+    let has_inside = |sphere: &Sphere| {
+        is_transparent(sphere) || sphere.center.distance(job.camera().look_from) <= reach(sphere)
+    };
     let ratio = if spheres.iter().any(has_inside) { TRAPPING_CLOSING_RATIO } else { CLOSING_RATIO };
     let is_thin = layer.thickness < limit;
     let closes = layer.opening < limit && layer.thickness < ratio * limit;
@@ -285,6 +286,7 @@ fn cells_near(number: f64) -> [Option<f64>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Material;
 
     fn scene(spheres: impl IntoIterator<Item = (DVec3, f64)>) -> Scene {
         let mut scene = Scene::default();

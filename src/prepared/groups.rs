@@ -4,7 +4,7 @@
 use super::facts::Facts;
 use crate::kernel::{HALF_EPSILON, Roots};
 use crate::render::RenderJob;
-use crate::scene::{Camera, Material, Sphere};
+use crate::scene::{Camera, Sphere};
 use crate::stages::SurfaceRule;
 use glam::DVec3;
 
@@ -104,7 +104,7 @@ impl Groups {
     pub fn of(job: &RenderJob, facts: &Facts) -> Self {
         let (scene, eye) = (job.scene(), Eye::of(job.camera()));
         let is_exact = job.rules().surface == SurfaceRule::Exact;
-        let is_opaque = |s: &Sphere| !matches!(scene.material_of(s), Material::Dielectric { .. });
+        let is_opaque = |s: &Sphere| !scene.material_of(s).is_transparent();
         let uncovered = || {
             let listed = scene.spheres.iter().enumerate();
             listed.filter(|(index, _)| !is_exact || !facts.covers(*index as u32))

@@ -100,17 +100,9 @@ impl Blocks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::SamplerKind;
 
     fn settings(estimate_error: bool) -> RenderSettings {
-        RenderSettings {
-            width: 1,
-            height: 1,
-            max_depth: 1,
-            sampler: SamplerKind::Sobol,
-            seed: 0,
-            estimate_error,
-        }
+        RenderSettings { width: 1, height: 1, max_depth: 1, estimate_error, ..RenderSettings::default() }
     }
 
     /// Reversed sample indices within a half.

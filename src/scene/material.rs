@@ -78,6 +78,14 @@ impl Material {
         }
     }
 
+    /// Whether rays can enter a sphere of this material.
+    pub fn is_transparent(&self) -> bool {
+        match self {
+            Material::Dielectric { .. } => true,
+            Material::Lambertian { .. } | Material::Metal { .. } => false,
+        }
+    }
+
     /// The book's name for this kind of material.
     pub fn kind(&self) -> &'static str {
         match self {

@@ -44,7 +44,8 @@ pub fn job_of(
     sampler: SamplerKind,
     estimate_error: bool,
 ) -> RenderJob {
-    let settings = RenderSettings { width, height, max_depth, sampler, seed: 3, estimate_error };
+    let settings = RenderSettings { width, height, max_depth, sampler, seed: 3, ..RenderSettings::default() };
+    let settings = RenderSettings { estimate_error, ..settings };
     RenderJob::new(scene.clone(), camera, settings, Rules::default()).unwrap()
 }
 

@@ -11,7 +11,7 @@ use glam::DVec3;
 use gpu_common::gpu;
 use weekender::film::FIXED_POINT_MAX;
 use weekender::kernel::{AnchoredSphere, CameraTable, PROBE_STRIDE};
-use weekender::render::{RenderJob, RenderSettings, SamplerKind};
+use weekender::render::{RenderJob, RenderSettings};
 use weekender::render_cpu::camera::{lens_ray, pinhole_ray, screen};
 use weekender::render_cpu::lanes::{Lanes, Scalar, Single, V3, Wide, Word};
 use weekender::render_cpu::material::{Surface, incidence_of, reflectance, refracted, scatter};
@@ -41,9 +41,8 @@ fn job(laws: DielectricLaws) -> RenderJob {
         width: 640,
         height: 360,
         max_depth: 4,
-        sampler: SamplerKind::Sobol,
-        seed: 0,
         estimate_error: false,
+        ..RenderSettings::default()
     };
     let camera = Camera {
         look_from: DVec3::new(3.0, 2.0, 5.0),

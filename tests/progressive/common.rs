@@ -6,7 +6,7 @@ use std::time::Duration;
 use weekender::backends::BackendChoice;
 use weekender::film::{Film, PixelSum};
 use weekender::progressive::{Factory, Plan, Progressive, RenderRequest};
-use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
+use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, Stats};
 use weekender::render_cpu::CpuOptions;
 use weekender::scene::{Camera, Scene};
 use weekender::stages::Rules;
@@ -87,14 +87,7 @@ pub fn other_cpu() -> BackendChoice {
 }
 
 pub fn job(width: u32) -> RenderJob {
-    let settings = RenderSettings {
-        width,
-        height: 2,
-        max_depth: 5,
-        sampler: SamplerKind::Sobol,
-        seed: 0,
-        estimate_error: true,
-    };
+    let settings = RenderSettings { width, height: 2, max_depth: 5, ..RenderSettings::default() };
     RenderJob::new(Scene::default(), Camera::default(), settings, Rules::default()).unwrap()
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use weekender::recipe::Recipe;
 use weekender::recipe::file::{parse, to_toml};
-use weekender::scene::Material;
+use weekender::scene::Parameter;
 
 /// The least that a file must contain.
 pub const CAMERA: &str = "[camera]\nlook_from = [0, 0, 3]\nlook_at = [0, 0, 0]\nvfov_degrees = 40\n";
@@ -34,10 +34,11 @@ pub fn bits(recipe: &Recipe) -> Vec<u64> {
     numbers.extend([camera.vfov_degrees, camera.defocus_angle_degrees]);
     numbers.extend(camera.focus_distance);
     for named in &scene.materials {
-        match named.material {
-            Material::Lambertian { albedo } => numbers.extend(vector(albedo)),
-            Material::Metal { albedo, fuzz } => numbers.extend([vector(albedo), vec![fuzz]].concat()),
-            Material::Dielectric { refraction_index } => numbers.push(refraction_index),
+        for (_, parameter) in named.material.parameters() {
+            match parameter {
+                Parameter::Number(number) => numbers.push(number),
+                Parameter::Colour(colour) => numbers.extend(vector(colour)),
+            }
         }
     }
     for sphere in &scene.spheres {

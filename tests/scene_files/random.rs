@@ -99,13 +99,10 @@ fn camera() -> impl Strategy<Value = Camera> {
 fn recipe() -> impl Strategy<Value = Recipe> {
     let settings =
         (1..=16_384_u32, 1..=16_384_u32, 1..=10_000_u32, any::<bool>(), any::<u32>(), any::<bool>())
-            .prop_map(|(width, height, max_depth, is_sobol, seed, estimate_error)| RenderSettings {
-                width,
-                height,
-                max_depth,
-                sampler: if is_sobol { SamplerKind::Sobol } else { SamplerKind::Independent },
-                seed,
-                estimate_error,
+            .prop_map(|(width, height, max_depth, is_sobol, seed, estimate_error)| {
+                let sampler = if is_sobol { SamplerKind::Sobol } else { SamplerKind::Independent };
+                let numbers = RenderSettings { width, height, max_depth, seed, ..RenderSettings::default() };
+                RenderSettings { sampler, estimate_error, ..numbers }
             });
     (any::<String>(), scene(), camera(), settings, rules(), 1..=1_u64 << 32).prop_map(
         |(name, scene, camera, settings, rules, samples_per_pixel)| Recipe {

@@ -4,6 +4,7 @@ use super::common::{CAMERA, assert_round_trip};
 use std::path::Path;
 use weekender::recipe::Recipe;
 use weekender::recipe::file::{load, parse, to_picture_toml, to_toml};
+use weekender::render::{RenderSettings, SamplerKind, SettingValue};
 use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::{Rules, Stage};
 
@@ -31,6 +32,29 @@ fn the_example_scenes_are_valid() {
         count += 1;
     }
     assert!(count >= 10);
+}
+
+/// Each setting is read from the key and in the form in which it is written.
+#[test]
+fn every_setting_is_read_back() {
+    let settings_of = |text: &str| parse(text, "x").unwrap_or_else(|error| panic!("{error}")).settings;
+    for named in RenderSettings::NAMED {
+        let other = match (named.value)(&settings_of(CAMERA)) {
+            SettingValue::Number(number) => SettingValue::Number(number + 1),
+            SettingValue::Switch(is_on) => SettingValue::Switch(!is_on),
+            SettingValue::Name(name) => {
+                let names = SamplerKind::ALL.map(SamplerKind::name);
+                SettingValue::Name(names.into_iter().find(|other| *other != name).expect("two samplers"))
+            }
+        };
+        let text = match other {
+            SettingValue::Number(number) => number.to_string(),
+            SettingValue::Switch(is_on) => is_on.to_string(),
+            SettingValue::Name(name) => format!("{name:?}"),
+        };
+        let read = settings_of(&format!("{CAMERA}[render]\n{} = {text}\n", named.key));
+        assert_eq!((named.value)(&read), other, "{}", named.key);
+    }
 }
 
 /// The text of a large scene stays readable, with one line per sphere.

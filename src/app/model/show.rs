@@ -2,6 +2,8 @@
 
 use crate::heat::HeatScale;
 use crate::layers::Layer;
+use crate::progressive::{ReferenceMeans, View};
+use std::sync::Arc;
 
 /// A view of the film.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -73,6 +75,18 @@ impl Show {
             Show::Albedo => Some(Layer::Albedo),
             Show::Bounces => Some(Layer::RaysPerPath),
             Show::Picture | Show::Error | Show::Occupancy | Show::Difference => None,
+        }
+    }
+
+    /// The view for resolving the film; `reference` is the loaded film, if any.
+    pub fn of_film(self, reference: Option<&Arc<ReferenceMeans>>) -> View {
+        match (self, reference) {
+            (Show::Error, _) => View::StandardError,
+            (Show::Occupancy, _) => View::Occupancy,
+            (Show::Difference, Some(reference)) => View::Difference(Arc::clone(reference)),
+            (Show::Difference, None) | (Show::Picture | Show::Normals | Show::Albedo | Show::Bounces, _) => {
+                View::Picture
+            }
         }
     }
 

@@ -116,12 +116,9 @@ impl ViewState {
 
     /// The view for resolving the film; `other` is the film of the second picture, once there is one.
     pub fn of_film(&self, other: Option<&Arc<ReferenceMeans>>) -> View {
-        match (self.mode, other, self.show, &self.reference) {
-            (Some(Mode::Difference), Some(other), ..) => View::Difference(Arc::clone(other)),
-            (_, _, Show::Error, _) => View::StandardError,
-            (_, _, Show::Difference, Some(reference)) => View::Difference(Arc::clone(reference)),
-            (_, _, Show::Occupancy, _) => View::Occupancy,
-            _ => View::Picture,
+        match (self.mode, other) {
+            (Some(Mode::Difference), Some(other)) => View::Difference(Arc::clone(other)),
+            _ => self.show.of_film(self.reference.as_ref()),
         }
     }
 

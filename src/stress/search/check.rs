@@ -2,7 +2,7 @@
 
 use crate::film::Film;
 use crate::recipe::Recipe;
-use crate::scene::{Material, Scene, Sphere};
+use crate::scene::{Scene, Sphere};
 use crate::stress::backend::{Backend, Traced};
 use crate::stress::families::build::moved;
 use crate::stress::far::with_far_spheres;
@@ -224,11 +224,10 @@ fn extent(recipe: &Recipe) -> f64 {
 
 fn without_copies(recipe: &Recipe) -> Option<Recipe> {
     let mut scene = Scene::clone(&recipe.scene);
-    let is_glass = |material: &Material| matches!(material, Material::Dielectric { .. });
     let all = recipe.scene.spheres.clone();
     let mut kept = Vec::new();
     for sphere in &all {
-        if is_glass(scene.material_of(sphere)) || !kept.contains(sphere) {
+        if scene.material_of(sphere).is_transparent() || !kept.contains(sphere) {
             kept.push(*sphere);
         }
     }
