@@ -119,7 +119,7 @@ fn samples_that_were_asked_for_and_not_added_are_missed() {
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(64)));
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Samples));
-    assert!(status.messages.iter().any(|said| said.contains("of 64 samples")), "{:?}", status.messages);
+    assert!(status.messages.iter().any(|said| said.contains("trace 64 samples")), "{:?}", status.messages);
     assert_eq!(progressive.finish(), Some(expected(64)));
 }
 

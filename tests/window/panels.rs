@@ -240,7 +240,7 @@ fn a_control_has_one_tooltip() {
         ("Look from x", "Position of the eye, scene units (look_from)"),
         ("Width", "Width, pixels"),
         ("Field of view", "From the lower to the upper edge, degrees (vfov)"),
-        ("Device", "Who traces."),
+        ("Device", "What traces."),
     ] {
         let at = control(&harness, name).rect().center();
         harness.event(egui::Event::PointerMoved(at));
