@@ -134,7 +134,14 @@ fn free_of_group() -> Option<u64> {
     let groups = fs::read_to_string("/proc/self/cgroup").ok()?;
     let of_own = groups.lines().filter_map(|line| line.splitn(3, ':').nth(2));
     // Within a container, the process's own group is the visible root, whatever its name outside.
-    of_own.chain(["/"]).flat_map(|group| [free_of_group_v2(group), free_of_group_v1(group)]).flatten().min()
+    let all = of_own.flat_map(with_parents).chain(["/"]);
+    all.flat_map(|group| [free_of_group_v2(group), free_of_group_v1(group)]).flatten().min()
+}
+
+/// A control group and those that contain it, whose limits hold as well. The root, `/`, is left out.
+fn with_parents(group: &str) -> impl Iterator<Item = &str> {
+    let groups = std::iter::successors(Some(group), |group| group.rsplit_once('/').map(|(parent, _)| parent));
+    groups.filter(|group| group.starts_with('/') && *group != "/")
 }
 
 fn free_of_group_v2(group: &str) -> Option<u64> {
@@ -165,6 +172,16 @@ fn file_cache(stat: &str) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn limits_of_containing_groups_hold_as_well() {
+        let all = |group| with_parents(group).collect::<Vec<_>>();
+        assert_eq!(
+            all("/user.slice/user-1.slice/a.scope"),
+            ["/user.slice/user-1.slice/a.scope", "/user.slice/user-1.slice", "/user.slice"]
+        );
+        assert!(all("/").is_empty() && all("").is_empty());
+    }
 
     #[test]
     fn what_does_not_fit_is_refused_with_the_numbers_and_a_remedy() {

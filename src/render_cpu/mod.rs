@@ -67,7 +67,7 @@ pub enum CpuError {
         available: Vec<Isa>,
     },
     /// The level has no kernel for this lane count.
-    #[error("{lanes} lanes cannot be had at level {isa}; it has {}", list(available))]
+    #[error("level {isa} has no {lanes} lanes; choose one of {}", list(available))]
     Lanes {
         /// The requested lane count.
         lanes: usize,

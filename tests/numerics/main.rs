@@ -13,6 +13,7 @@ mod film;
 mod hierarchy;
 mod images;
 mod intersection;
+mod layers;
 mod materials;
 mod parity;
 mod sampling;

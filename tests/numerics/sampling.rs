@@ -195,14 +195,11 @@ proptest! {
             prop_assert_eq!(block.first % block.count, 0);
             let (mut counter, step) = block.counter(&settings);
             for _ in 0..block.count {
-                seen.push(match sampler {
-                    SamplerKind::Independent => {
-                        prop_assert_eq!(counter % halves, block.half);
-                        u64::from(counter)
-                    }
-                    SamplerKind::Sobol => {
-                        u64::from(counter.reverse_bits()) * u64::from(halves) + u64::from(block.half)
-                    }
+                seen.push(if sobol {
+                    u64::from(counter.reverse_bits()) * u64::from(halves) + u64::from(block.half)
+                } else {
+                    prop_assert_eq!(counter % halves, block.half);
+                    u64::from(counter)
                 });
                 counter = counter.wrapping_add(step);
             }
