@@ -297,32 +297,12 @@ fn lock_directory(path: &Path) -> Option<File> {
 #[expect(clippy::single_range_in_vec_init, reason = "a list of one range is meant")]
 mod tests {
     use super::*;
-    use crate::film::fixed_point;
 
-    /// A film whose sample `i` has the radiance `(i + pixel) / 100` in each pixel.
+    /// A black film with these samples.
     fn film(samples: &[Range<u64>]) -> Film {
         let mut film = Film::new(3, 2, 2);
-        for range in samples {
-            for i in range.clone() {
-                for (pixel, sum) in film.halves_mut()[(i % 2) as usize].iter_mut().enumerate() {
-                    sum.add(fixed_point([(i as f64 + pixel as f64) / 100.0; 3]).unwrap());
-                }
-            }
-            film.record(range.clone(), 0).unwrap();
-        }
+        samples.iter().for_each(|range| film.record(range.clone(), 0).unwrap());
         film
-    }
-
-    fn same(_: &str, _: &str) -> Result<(), String> {
-        Ok(())
-    }
-
-    fn put(path: &Path, samples: &[Range<u64>]) {
-        checkpoint::save(path, &film(samples), &Description::new("r")).unwrap();
-    }
-
-    fn at(path: &Path) -> Film {
-        checkpoint::load(path).unwrap().film
     }
 
     /// Another run may write again between the first look at its samples and the lock.
@@ -330,17 +310,19 @@ mod tests {
     fn samples_that_come_in_two_turns_before_the_own_are_told_apart() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("g.exr");
-        put(&path, &[0..2]);
+        let description = Description::new("r");
+        let same = |_: &str, _: &str| Ok(());
+        checkpoint::save(&path, &film(&[0..2]), &description).unwrap();
         let mut place = SharedFile::new(&path);
         let mine = film(&[0..2, 100..102]);
         for theirs in [200..202, 200..204] {
-            put(&path, &[0..2, theirs]);
+            checkpoint::save(&path, &film(&[0..2, theirs]), &description).unwrap();
             let joined = place.joined(&mine).unwrap().unwrap_or_else(|| mine.clone());
-            let verdict = place.consider(&joined, &Description::new("r"), &same);
+            let verdict = place.consider(&joined, &description, &same);
             assert!(matches!(verdict, Ok(Verdict::Added(_))));
         }
-        let saved = place.save(&mine, &Description::new("r"), &same).unwrap();
+        let saved = place.save(&mine, &description, &same).unwrap();
         assert!(!saved.is_elsewhere, "{saved:?}");
-        assert!(at(&path) == film(&[0..2, 100..102, 200..204]));
+        assert!(checkpoint::load(&path).unwrap().film == film(&[0..2, 100..102, 200..204]));
     }
 }
