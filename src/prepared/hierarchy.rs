@@ -18,7 +18,11 @@ use std::time::Duration;
 pub const DEPTH_LIMIT: usize = STACK_SIZE;
 
 /// Most spheres in a leaf.
-const LEAF_SPHERES: u32 = 8;
+const LEAF_SPHERES: u32 = 12;
+
+/// What a packet's visit of a node costs, in tests of a sphere. Higher costs make fuller leaves. The number was chosen by
+/// measurement; between 5 and 8, packets differ by less than 3 %, and one lane prefers 5.
+const VISIT_COST: f32 = 5.0;
 
 /// The nodes of a hierarchy, root first, and the order of its spheres.
 #[derive(Clone, Debug)]
@@ -109,11 +113,16 @@ impl<R> Hierarchy<R> {
     }
 }
 
-/// Build parameters of obvhs for this many spheres.
+/// Build parameters of obvhs for this many spheres: the best tree that is built within some .1 s on one core.
 fn params(spheres: usize, max_prims_per_leaf: u32) -> BvhBuildParams {
-    let preset =
-        if spheres <= 100_000 { BvhBuildParams::medium_build() } else { BvhBuildParams::fast_build() };
-    BvhBuildParams { max_prims_per_leaf, ..preset }
+    let preset = match spheres {
+        0..=1_000 => BvhBuildParams::medium_build(),
+        1_001..=20_000 => BvhBuildParams::very_slow_build(),
+        20_001..=200_000 => BvhBuildParams::slow_build(),
+        _ => BvhBuildParams::fast_build(),
+    };
+    // A split box would list its sphere twice.
+    BvhBuildParams { pre_split: false, max_prims_per_leaf, collapse_traversal_cost: VISIT_COST, ..preset }
 }
 
 /// The axis along which two sibling boxes are farthest apart, in bits 30 and 31. Bit 29 is set if the second box comes
