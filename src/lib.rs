@@ -14,6 +14,7 @@ pub mod compare;
 pub mod console;
 pub mod describe;
 pub mod diff;
+pub mod explain;
 pub mod failure;
 pub mod files;
 pub mod film;

@@ -101,6 +101,10 @@ pub enum Command {
     Plot,
     /// Full screen.
     FullScreen,
+    /// Explain the next ray of the highlighted path.
+    NextRay,
+    /// Explain the previous ray of the highlighted path.
+    PreviousRay,
     /// Use this colour theme.
     Theme(Theme),
     /// Pause or continue.
@@ -152,7 +156,7 @@ impl Command {
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
         all.extend(self::Show::ALL.map(Show));
         all.extend([Wipe, WipeDifference, Fit, ActualSize, ZoomIn, ZoomOut]);
-        all.extend([Panels, Controls, Info, Plot, FullScreen]);
+        all.extend([NextRay, PreviousRay, Panels, Controls, Info, Plot, FullScreen]);
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Pause, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
@@ -195,6 +199,8 @@ impl Command {
             Command::Info => "Stage and pixel panel".into(),
             Command::Plot => "Error plot".into(),
             Command::FullScreen => "Full screen".into(),
+            Command::NextRay => "Next ray of the path".into(),
+            Command::PreviousRay => "Previous ray of the path".into(),
             Command::Theme(theme) => format!("{} theme", theme.name()),
             Command::Pause => "Pause or go on".into(),
             Command::Restart => "Start again".into(),
@@ -252,6 +258,9 @@ impl Command {
             Command::Info => "What the stage shows, and the pixel under the pointer",
             Command::Plot => "Estimated error against seconds",
             Command::FullScreen => "Fill the whole screen with the window",
+            Command::NextRay | Command::PreviousRay => {
+                "Go through the highlighted path ray by ray, with the reason for each direction"
+            }
             Command::Theme(_) => "Colours of the window",
             Command::Pause => "Pause or resume tracing; no samples are lost",
             Command::Restart => "Discard all samples and render from the beginning",
@@ -335,6 +344,8 @@ impl Command {
             Command::Info => key(Key::I),
             Command::Plot => key(Key::P),
             Command::FullScreen => key(Key::F11),
+            Command::NextRay => key(Key::ArrowRight),
+            Command::PreviousRay => key(Key::ArrowLeft),
             Command::Pause => key(Key::Space),
             Command::Restart => key(Key::R),
             Command::SwitchDevice => key(Key::G),

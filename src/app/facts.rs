@@ -20,6 +20,8 @@ pub struct Facts {
     pub can_undo: bool,
     /// Whether there is a change to redo.
     pub can_redo: bool,
+    /// Whether there is a list of paths.
+    pub has_paths: bool,
     /// Why the document cannot be rendered, if so.
     pub invalid: Option<String>,
 }
@@ -68,6 +70,9 @@ impl Facts {
         match command {
             Command::Undo if !self.can_undo => no("Nothing has been changed yet"),
             Command::Redo if !self.can_redo => no("Nothing has been undone"),
+            Command::NextRay | Command::PreviousRay if !self.has_paths => {
+                no("No paths are listed; Alt-click a pixel first")
+            }
             Command::Home if document.camera == document.origin.recipe.camera => {
                 no("This is already the stage's camera")
             }

@@ -27,11 +27,12 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
         return false;
     }
     let is_focused = context.memory(|memory| memory.focused().is_some());
+    let keys_of_controls = [Key::Tab, Key::Space, Key::ArrowLeft, Key::ArrowRight];
     for command in by_modifiers() {
         let Some(shortcut) = command.shortcut() else { continue };
-        // In a focused control, Tab moves on and Space presses it.
+        // In a focused control, Tab moves on, Space presses it and arrows change it.
         let is_plain = shortcut.modifiers == Modifiers::NONE;
-        if is_focused && is_plain && matches!(shortcut.logical_key, Key::Tab | Key::Space) {
+        if is_focused && is_plain && keys_of_controls.contains(&shortcut.logical_key) {
             continue;
         }
         // In a long frame a key can have been pressed several times.

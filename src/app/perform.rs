@@ -54,6 +54,8 @@ impl Window {
                 bookmarks.push(Bookmark::new(name, &document.camera));
                 self.toasts.good("Bookmarked; see the Camera panel");
             }
+            Command::NextRay => self.paths.step(true),
+            Command::PreviousRay => self.paths.step(false),
             Command::Show(show) => self.model.view.choose(show),
             Command::Wipe => {
                 let is_by_book = self.document().stage().is_none();

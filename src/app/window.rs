@@ -210,6 +210,11 @@ impl Window {
         self.model.is_full_screen
     }
 
+    /// The ray of the highlighted path that is explained, counted from 1, and the number of its rays.
+    pub fn explained_ray(&self) -> Option<[usize; 2]> {
+        self.paths.position()
+    }
+
     /// The number of listed paths.
     pub fn listed_paths(&self) -> usize {
         self.paths.len()
@@ -236,6 +241,7 @@ impl Window {
             status: self.main.status().clone(),
             can_undo: self.changes.can_undo(self.document()),
             can_redo: self.changes.can_redo(self.document()),
+            has_paths: self.paths.len() > 0,
             invalid: self.invalid.clone(),
             model: self.model.clone(),
         }

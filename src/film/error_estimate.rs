@@ -52,20 +52,21 @@ impl Film {
         let weight = (count_a / count) * (count_b / count);
         let (mut square_sum, mut relative_sum, mut fourth_power_sum) = (0.0, 0.0, 0.0);
         for (a, b) in half_a.iter().zip(half_b) {
-            let (mut squares, mut relative) = ([0.0; 3], [0.0; 3]);
+            let (mut squares, mut references) = ([0.0; 3], [0.0; 3]);
             for channel in 0..3 {
                 let (a, b) = (a.0[channel], b.0[channel]);
                 let mean = (a + b) as f64 * scale;
                 let difference = a as f64 * scale_a - b as f64 * scale_b;
-                let square = difference * difference * weight;
-                squares[channel] = square;
-                relative[channel] = square / (mean * mean + 1e-2);
+                squares[channel] = difference * difference * weight;
+                references[channel] = mean * mean + 1e-2;
             }
+            // One division instead of three, which take longer than all the rest.
+            let ([x, y, z], [u, v, w]) = (squares, references);
+            relative_sum += (x * v * w + y * u * w + z * u * v) / (u * v * w);
             // The channels of a pixel share their noise.
             let of_pixel = squares.iter().sum::<f64>();
             square_sum += of_pixel;
             fourth_power_sum += of_pixel * of_pixel;
-            relative_sum += relative.iter().sum::<f64>();
         }
         let pixels = half_a.len() as f64;
         let [square, fourth_power] = [square_sum / (3.0 * pixels), fourth_power_sum / (9.0 * pixels)];

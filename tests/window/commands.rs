@@ -113,6 +113,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         // The next two belong to the window system; the others belong to the viewport and are tested there.
         Command::Quit | Command::Book | Command::FullScreen => true,
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
+        Command::NextRay | Command::PreviousRay => true,
     }
 }
 

@@ -195,6 +195,21 @@ fn the_wheel_and_keys_move_and_clicks_aim() {
     control(&harness, "Path of sample 3").click_accesskit();
     harness.run_steps(30);
     assert!(is_open(&harness, 3) && !is_open(&harness, 1));
+    // The arrow keys go through the rays of the open path.
+    let rays = |harness: &Harness<'_, Window>| harness.state().explained_ray().expect("a path is open");
+    let [first, count] = rays(&harness);
+    assert_eq!(first, 1);
+    for expected in (2..=count).chain([count]) {
+        harness.key_press(Key::ArrowRight);
+        harness.run_steps(3);
+        assert_eq!(rays(&harness)[0], expected);
+    }
+    for expected in (1..count).rev().chain([1]) {
+        harness.key_press(Key::ArrowLeft);
+        harness.run_steps(3);
+        assert_eq!(rays(&harness)[0], expected);
+    }
+    assert!(harness.query_by_label_contains(&format!("ray 1 of {count}")).is_some());
     // The figures above may get another row at this moment; then the control moves and does not react.
     for _ in 0..10 {
         control(&harness, "Paths listed").set_value_accesskit(64.0);

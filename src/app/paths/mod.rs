@@ -1,0 +1,155 @@
+//! The paths of one pixel: listed, gone through ray by ray, and drawn over the picture.
+
+mod list;
+mod paint;
+
+use super::answers::Answers;
+use super::model::document::Document;
+use crate::explain::{Step, steps};
+use crate::render_cpu::{Isa, PathRecord, PathRecorder};
+use eframe::egui;
+
+/// The largest number of paths in the list.
+const COUNT_LIMIT: u64 = 64;
+
+/// A recorded path and its explanation, ray by ray.
+struct Path {
+    record: PathRecord,
+    /// What each ray does, and the same in words.
+    steps: Vec<(Step, String)>,
+}
+
+/// Paths of a pixel, recorded by a background thread.
+pub struct Listed {
+    number: u64,
+    pixel: [u32; 2],
+    /// The document when they were recorded.
+    document: Document,
+    /// The paths of samples 0, 1, 2 and so on.
+    paths: Vec<Path>,
+}
+
+/// The list of paths.
+pub struct Paths {
+    count: u64,
+    /// The number of the newest query.
+    number: u64,
+    is_waiting: bool,
+    listed: Option<Listed>,
+    /// The sample whose path is highlighted.
+    selected: Option<usize>,
+    /// The ray of that path that is explained.
+    ray: usize,
+    /// The list is new and the panel should scroll to it.
+    is_new: bool,
+    answers: Answers<Listed>,
+}
+
+impl Default for Paths {
+    fn default() -> Self {
+        Paths {
+            count: 16,
+            number: 0,
+            is_waiting: false,
+            listed: None,
+            selected: None,
+            ray: 0,
+            is_new: false,
+            answers: Answers::default(),
+        }
+    }
+}
+
+impl Paths {
+    /// Lists the paths of a pixel. A background thread records them.
+    pub fn list(&mut self, document: &Document, pixel: [u32; 2], context: &egui::Context) {
+        // An invalid document is reported elsewhere.
+        let Ok(job) = document.job(1) else { return };
+        self.number += 1;
+        let (number, count, document) = (self.number, self.count, document.clone());
+        let record = move || {
+            let isa = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
+            let recorder = PathRecorder::new(&job, isa, None);
+            let path = |sample| {
+                let record = recorder.record(pixel, sample);
+                let told = |step: Step| {
+                    let sentence = step.sentence(&job);
+                    (step, sentence)
+                };
+                let steps = steps(&job, pixel, sample, &record).into_iter().map(told).collect();
+                Path { record, steps }
+            };
+            Listed { number, pixel, document, paths: (0..count).map(path).collect() }
+        };
+        self.is_waiting = self.answers.ask("paths", context, record).is_ok();
+    }
+
+    /// Takes recorded paths.
+    fn learn(&mut self, listed: Listed) {
+        if listed.number == self.number {
+            self.is_waiting = false;
+            self.is_new = self.listed.as_ref().is_none_or(|old| old.pixel != listed.pixel);
+            let last = listed.paths.len().saturating_sub(1);
+            self.selected = if self.is_new { Some(0) } else { self.selected.map(|index| index.min(last)) };
+            self.ray = 0;
+            self.listed = Some(listed);
+        }
+    }
+
+    /// Removes the paths from the picture.
+    pub fn forget(&mut self) {
+        self.number += 1;
+        (self.listed, self.is_waiting) = (None, false);
+    }
+
+    /// Takes recorded paths. Lists them again if a change affects the random numbers; if only the camera moves, the
+    /// existing paths stay.
+    pub fn follow(&mut self, document: &Document, context: &egui::Context) {
+        while let Some(listed) = self.answers.take() {
+            self.learn(listed);
+        }
+        let Some(listed) = &self.listed else { return };
+        if self.is_waiting || listed.document.settings == document.settings {
+            return;
+        }
+        let [x, y] = listed.pixel;
+        if x < document.settings.width && y < document.settings.height {
+            let before = Document { camera: listed.document.camera, ..document.clone() };
+            self.list(&before, [x, y], context);
+        } else {
+            self.forget();
+        }
+    }
+
+    /// The number of listed paths.
+    pub fn len(&self) -> usize {
+        self.listed.as_ref().map_or(0, |listed| listed.paths.len())
+    }
+
+    /// The path that is highlighted.
+    fn selected(&self) -> Option<&Path> {
+        self.listed.as_ref()?.paths.get(self.selected?)
+    }
+
+    /// Highlights the path of a sample, or none.
+    fn select(&mut self, sample: Option<usize>) {
+        if sample != self.selected {
+            (self.selected, self.ray) = (sample, 0);
+        }
+    }
+
+    /// Explains the next or the previous ray of the highlighted path; of the first path if none is highlighted.
+    pub fn step(&mut self, is_forward: bool) {
+        if self.selected().is_none() {
+            self.select(Some(0));
+            return;
+        }
+        let last = self.selected().map_or(0, |path| path.steps.len().saturating_sub(1));
+        self.ray = if is_forward { (self.ray + 1).min(last) } else { self.ray.saturating_sub(1) };
+    }
+
+    /// The explained ray, counted from 1, and the number of rays of its path.
+    pub fn position(&self) -> Option<[usize; 2]> {
+        self.selected().map(|path| [self.ray + 1, path.steps.len()])
+    }
+}

@@ -1,0 +1,7 @@
+//! What recorded paths do, in words and numbers, and how packets of lanes trace them over time.
+
+mod step;
+mod timeline;
+
+pub use step::{Event, Lobe, Step, steps};
+pub use timeline::{Activity, Timeline, timeline};

@@ -1,0 +1,231 @@
+//! A path step by step: what each ray meets, and how the next ray's direction was chosen.
+
+use crate::record::{PathRecord, RecordedRay};
+use crate::render::RenderJob;
+use crate::sampling::{numbers, unit_float};
+use crate::scene::{Material, Sphere};
+use crate::stages::{DielectricLaws, Diffuse, Rules, Shading};
+use glam::DVec3;
+
+/// One ray of a path and what happens at its end.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Start of the ray, scene units.
+    pub origin: DVec3,
+    /// Unit direction of the ray.
+    pub direction: DVec3,
+    /// Factor by which light that arrives along the ray contributes to the pixel, linear RGB.
+    pub throughput: DVec3,
+    /// Where and what the ray hits; `None` if it leaves the scene.
+    pub hit: Option<Hit>,
+    /// What happens there.
+    pub event: Event,
+}
+
+/// The end of a ray on a sphere.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    /// Index of the sphere in the scene.
+    pub sphere: usize,
+    /// The point, scene units.
+    pub point: DVec3,
+    /// Unit normal on the side that the ray comes from.
+    pub normal: DVec3,
+    /// Whether the ray comes from outside the sphere.
+    pub is_outside: bool,
+}
+
+/// What happens at the end of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Event {
+    /// The ray leaves the scene, and the path collects light of the sky.
+    Sky,
+    /// The surface is shown by a colour, and the path ends: stages before light is transported.
+    Shown,
+    /// The path has as many rays as it may have, and ends without light.
+    Limit,
+    /// The fuzzy reflection points into the metal, which absorbs it.
+    Absorbed(Lobe),
+    /// The path goes on in a direction drawn from the lobe.
+    Scattered(Lobe),
+}
+
+/// The directions that the next ray was chosen from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    /// A uniform direction on the side of the normal.
+    Hemisphere,
+    /// The normal plus a uniform unit vector.
+    Lambertian,
+    /// The mirrored direction plus `fuzz` times a uniform unit vector.
+    Metal {
+        /// The mirrored unit direction.
+        mirrored: DVec3,
+        /// Length of the random part, `0..=1`.
+        fuzz: f64,
+    },
+    /// One of two directions.
+    Glass {
+        /// The mirrored unit direction.
+        mirrored: DVec3,
+        /// The refracted unit direction; `None` where Snell's law has no solution.
+        refracted: Option<DVec3>,
+        /// The probability of reflection: 1 where Snell's law has no solution, as far as the rules know it.
+        reflectance: f64,
+        /// The random number in `[0, 1)`; the ray is reflected if it is less than `reflectance`.
+        coin: f64,
+        /// Whether the ray was refracted.
+        refracts: bool,
+    },
+}
+
+/// Explains the path of sample `index` of a pixel, ray by ray. `record` must be that path of `job`.
+pub fn steps(job: &RenderJob, [x, y]: [u32; 2], index: u64, record: &PathRecord) -> Vec<Step> {
+    let step = |(bounce, ray): (usize, &RecordedRay)| {
+        let (origin, direction) = (DVec3::from(ray.origin), DVec3::from(ray.direction));
+        let hit = ray.hit.map(|hit| {
+            let sphere = job.scene().spheres[hit.sphere];
+            let point = hit.position.map_or(origin + direction * hit.distance, DVec3::from);
+            hit_of(&sphere, hit.sphere, point, direction)
+        });
+        let numbers = numbers(job.settings(), x | y << 16, index as u32, bounce as u32 + 1);
+        let next = record.rays.get(bounce + 1).map(|next| DVec3::from(next.direction));
+        let event = match hit {
+            None => Event::Sky,
+            Some(hit) => event_of(job, &hit, direction, next, bounce, f64::from(unit_float(numbers[0]))),
+        };
+        Step { origin, direction, throughput: DVec3::from(ray.throughput), hit, event }
+    };
+    record.rays.iter().enumerate().map(step).collect()
+}
+
+fn hit_of(sphere: &Sphere, number: usize, point: DVec3, direction: DVec3) -> Hit {
+    let outward = (point - sphere.center).normalize_or_zero();
+    let is_outside = direction.dot(outward) < 0.0;
+    Hit { sphere: number, point, normal: if is_outside { outward } else { -outward }, is_outside }
+}
+
+/// What happens at a hit. `next` is the direction of the path's next ray, if it has one.
+fn event_of(
+    job: &RenderJob,
+    hit: &Hit,
+    direction: DVec3,
+    next: Option<DVec3>,
+    bounce: usize,
+    coin: f64,
+) -> Event {
+    if job.rules().shading != Shading::Path {
+        return Event::Shown;
+    }
+    let material = job.scene().materials[job.scene().spheres[hit.sphere].material].material;
+    let lobe = lobe_of(&material, job.rules(), hit, direction, next, coin);
+    match next {
+        Some(_) => Event::Scattered(lobe),
+        None if bounce + 1 >= job.settings().max_depth as usize => Event::Limit,
+        None => Event::Absorbed(lobe),
+    }
+}
+
+fn lobe_of(
+    material: &Material,
+    rules: &Rules,
+    hit: &Hit,
+    direction: DVec3,
+    next: Option<DVec3>,
+    coin: f64,
+) -> Lobe {
+    let cosine = (-direction.dot(hit.normal)).clamp(0.0, 1.0);
+    let mirrored = (direction + hit.normal * (2.0 * cosine)).normalize_or_zero();
+    match *material {
+        Material::Lambertian { .. } if rules.diffuse == Diffuse::Hemisphere => Lobe::Hemisphere,
+        Material::Lambertian { .. } => Lobe::Lambertian,
+        Material::Metal { .. } => Lobe::Metal { mirrored, fuzz: material.effective_fuzz() },
+        Material::Dielectric { refraction_index } => {
+            let ratio = if hit.is_outside { 1.0 / refraction_index } else { refraction_index };
+            let across = direction + hit.normal * cosine;
+            let refracted_sine2 = ratio * ratio * across.length_squared();
+            let refracted = (refracted_sine2 <= 1.0)
+                .then(|| across * ratio - hit.normal * (1.0 - refracted_sine2).max(0.0).sqrt());
+            let f0 = ((1.0 - refraction_index) / (1.0 + refraction_index)).powi(2);
+            let reflectance = match rules.dielectric {
+                DielectricLaws::RefractOnly => 0.0,
+                _ if refracted.is_none() => 1.0,
+                DielectricLaws::TotalReflection => 0.0,
+                DielectricLaws::Schlick => f0 + (1.0 - f0) * (1.0 - cosine).powi(5),
+            };
+            let refracts = next.is_some_and(|next| next.dot(hit.normal) < 0.0);
+            Lobe::Glass { mirrored, refracted, reflectance, coin, refracts }
+        }
+    }
+}
+
+impl Step {
+    /// What happens at the end of the ray, in one or two sentences.
+    pub fn sentence(&self, job: &RenderJob) -> String {
+        let Some(hit) = self.hit else {
+            return "The ray leaves the scene and brings back the light of the sky.".to_owned();
+        };
+        let angle = (-self.direction.dot(hit.normal)).clamp(-1.0, 1.0).acos().to_degrees();
+        match self.event {
+            Event::Sky | Event::Shown => {
+                "The surface is hit. This stage shows it in a colour and ends the path here.".to_owned()
+            }
+            Event::Limit => {
+                let limit = job.settings().max_depth;
+                format!("This is the last of {limit} rays that a path may have: it ends here and brings no light.")
+            }
+            Event::Absorbed(_) => {
+                "Metal: the fuzzy reflection points into the surface, so the ray is absorbed.".to_owned()
+            }
+            Event::Scattered(Lobe::Hemisphere) => {
+                "Matte: the new direction is any direction above the surface, all equally likely.".to_owned()
+            }
+            Event::Scattered(Lobe::Lambertian) => {
+                "Matte: the new direction is the normal plus a random unit vector, so directions near the normal are \
+                 more likely."
+                    .to_owned()
+            }
+            Event::Scattered(Lobe::Metal { fuzz: 0.0, .. }) => {
+                format!("Mirror: the ray arrives at {angle:.0}° to the normal and leaves at the same angle.")
+            }
+            Event::Scattered(Lobe::Metal { fuzz, .. }) => format!(
+                "Metal: the ray is mirrored at {angle:.0}°, then moved by a random vector of length {fuzz}, its fuzz."
+            ),
+            Event::Scattered(Lobe::Glass { refracted, reflectance, coin, refracts, .. }) => {
+                self.glass_sentence(job.rules(), &hit, angle, refracted, reflectance, coin, refracts)
+            }
+        }
+    }
+
+    fn glass_sentence(
+        &self,
+        rules: &Rules,
+        hit: &Hit,
+        angle: f64,
+        refracted: Option<DVec3>,
+        reflectance: f64,
+        coin: f64,
+        refracts: bool,
+    ) -> String {
+        let from = if hit.is_outside { "from outside" } else { "from inside" };
+        let arrival = format!("Glass: the ray arrives {from}, at {angle:.0}°.");
+        let inner =
+            refracted.map(|direction| (-direction.dot(hit.normal)).clamp(-1.0, 1.0).acos().to_degrees());
+        match (rules.dielectric, inner) {
+            (DielectricLaws::RefractOnly, None) => {
+                format!("{arrival} Snell's law has no solution; this stage refracts all the same, wrongly.")
+            }
+            (_, None) => format!("{arrival} Snell's law has no solution: total reflection."),
+            (DielectricLaws::Schlick, Some(inner)) => {
+                let chance =
+                    format!("Schlick says {:.1} % reflect; the coin is {coin:.3}", 100.0 * reflectance);
+                if refracts {
+                    format!("{arrival} {chance}: refracted, to {inner:.0}°.")
+                } else {
+                    format!("{arrival} {chance}: reflected.")
+                }
+            }
+            (_, Some(inner)) => format!("{arrival} It is refracted, to {inner:.0}°."),
+        }
+    }
+}
