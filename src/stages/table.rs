@@ -198,8 +198,9 @@ pub(super) const STAGES: &[Stage] = &[
         what_is_new: "A path is cut off after four bounces and then brings nothing.",
         why: "A path between two surfaces could go on for ever. A limit bounds the work, and costs the light \
               of the longest paths.",
-        look_for: "The crevice where the ball meets the ground is darker than before: light gets out of there \
-                   only after many bounces.",
+        look_for: "Almost nothing: each bounce halves the light, so little is left after four. Only the crevice where \
+                   the ball meets the ground gets darker, by a step or two of 255. With a limit of two rays the \
+                   underside of the ball loses half of its light.",
         pair: Some("shadow-acne"),
         setup: HALF_ENERGY_LIMITED,
     },
@@ -228,8 +229,9 @@ pub(super) const STAGES: &[Stage] = &[
                       likely than grazing ones, in proportion to the cosine.",
         why: "Paper and chalk look equally bright from every side. That is Lambert's law, and sampling by it \
               spares the weight that the hemisphere would need.",
-        look_for: "Shadows are less heavy, since more rays go up to the sky. Yet all of it is too dark: a grey \
-                   of 50 % is shown without regard to how a display works.",
+        look_for: "Shadows are heavier: where the ball covers the sky overhead, it blocks the directions that now \
+                   count most. The top of the ball is brighter, its underside darker. Yet all of it is too dark: a \
+                   grey of 50 % is shown without regard to how a display works.",
         pair: Some("lambertian-gamma"),
         setup: Setup { rules: LINEAR, ..PATHS },
     },
@@ -289,8 +291,8 @@ pub(super) const STAGES: &[Stage] = &[
         section_title: "Fuzzy Reflection",
         chapter_title: METAL,
         title: "Brushed metal",
-        what_is_new: "The end of the reflected ray is moved within a small sphere, of radius 0.3 on the left and \
-                      1 on the right.",
+        what_is_new: "The end of the reflected ray is moved to a random point of a small sphere around it, of radius \
+                      0.3 on the left and 1 on the right.",
         why: "Real metal is rough at a small scale and scatters about the mirror direction. The sphere's radius \
               is a plain dial for how much.",
         look_for: "Reflections blur with distance: what nearly touches the metal stays clear. At fuzz 1 little \
