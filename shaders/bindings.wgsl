@@ -14,6 +14,24 @@
 
 @group(2) @binding(0) var<storage, read_write> words: array<u32>;
 
+fn load_words(base: u32) -> vec3u {
+    return vec3u(words[base], words[base + 1u], words[base + 2u]);
+}
+
+fn load_vector(base: u32) -> vec3f {
+    return bitcast<vec3f>(load_words(base));
+}
+
+fn store_words(base: u32, v: vec3u) {
+    words[base] = v.x;
+    words[base + 1u] = v.y;
+    words[base + 2u] = v.z;
+}
+
+fn store_vector(base: u32, v: vec3f) {
+    store_words(base, bitcast<vec3u>(v));
+}
+
 fn sphere_at(number: u32) -> vec4f {
     if FEW_SPHERES {
         return job.few_spheres[number];

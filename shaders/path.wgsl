@@ -77,7 +77,7 @@ fn trace(position: vec2u, slot: u32, aside: u32) -> Traced {
                 break;
             }
             if RECORD {
-                record_ray(words[2] + traced.rays, path, nearest);
+                record_ray(words[RECORD_HEAD_RAY_COUNT] + traced.rays, path, nearest);
             }
             traced.rays++;
         }

@@ -21,7 +21,7 @@ fn path_trace(
     let in_film = corner + within;
     if number < order.tile_count && in_film.x < job.width && in_film.y < order.row_count {
         let position = vec2u(in_film.x, in_film.y + order.first_row);
-        let aside = order.first_aside + (number * WORKGROUP_SIZE + thread) * ASIDE_STRIDE;
+        let aside = order.first_aside + (number * WORKGROUP_SIZE + thread) * ASIDE_WORDS;
         let traced = trace(position, in_film.y * job.width + in_film.x, aside);
         atomicAdd(&group_rays, traced.rays);
         atomicAdd(&group_finished, traced.finished);

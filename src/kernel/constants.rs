@@ -61,17 +61,8 @@ constants! {
     /// Stack entries of a traversal of the compressed hierarchy.
     pub const CWBVH_STACK_SIZE: usize = 24;
 
-    /// Words per thread for a path that the GPU puts aside: see shaders/aside.wgsl.
-    pub const ASIDE_STRIDE: u32 = 17;
-
     /// Words of a probe's input and output.
     pub const PROBE_STRIDE: usize = 18;
-
-    /// Words before the rays in a recorded path.
-    pub const RECORD_HEADER: usize = 4;
-
-    /// Words per ray in a recorded path.
-    pub const RECORD_STRIDE: usize = 12;
 
     /// Stands for "no sphere" where a sphere's number is expected.
     pub const NONE: u32 = u32::MAX;

@@ -2,6 +2,7 @@
 //!
 //! - [`records`]: the structs that a prepared scene holds and shaders read. One declaration generates the Rust
 //!   types for `f32` and `f64`, the named loads of the CPU's packets and the WGSL structs.
+//! - [`packed`]: the records that shaders read and write word by word.
 //! - [`constants`] and [`tags`]: numbers, and enumerations that shaders represent as numbers.
 //! - [`features`]: what a job needs from a kernel. They select the variant on the CPU and the pipeline overrides on the
 //!   GPU, and provide the words of summaries.
@@ -10,6 +11,7 @@
 
 pub mod constants;
 pub mod features;
+pub mod packed;
 pub mod real;
 pub mod record;
 pub mod records;
@@ -17,6 +19,7 @@ pub mod tags;
 
 pub use constants::*;
 pub use features::{Features, SortedSpheres, parts};
+pub use packed::{GpuAside, GpuRecordHead, GpuRecordedRay, word_count};
 pub use real::Real;
 pub use record::{Columns, Field, Record, Shared, words_of};
 pub use records::*;
@@ -24,7 +27,7 @@ pub use tags::{Roots, Tag};
 
 /// All shared declarations in WGSL: constants, tags, overrides and structs.
 pub fn wgsl() -> String {
-    let constants = constants::wgsl() + &tags::wgsl();
+    let constants = constants::wgsl() + &tags::wgsl() + &packed::wgsl();
     let overrides = Features::default().wgsl();
     let structs = records::wgsl();
     [constants, overrides, structs].join("\n")

@@ -65,6 +65,7 @@ macro_rules! shared {
 shared! {
     u32 = "u32", self => [*self];
     [u32; 2] = "vec2u", self => *self;
+    [u32; 3] = "vec3u", self => *self;
     [u32; 4] = "vec4u", self => *self;
     f32 = "f32", self => [self.to_bits()];
     [f32; 2] = "vec2f", self => self.map(f32::to_bits);

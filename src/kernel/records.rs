@@ -43,6 +43,12 @@ pub const RECORD_COLUMNS: usize = SHADING_COLUMNS.next_multiple_of(GROUP);
 /// Number of columns that are gathered at once.
 pub const GROUP: usize = 4;
 
+/// The group of columns that only anchored spheres need.
+pub const ANCHORED_GROUP: usize = column_of!(ShadingRecord, inward) / GROUP;
+
+const _: () = assert!(column_of!(ShadingRecord, inward) % GROUP == 0);
+const _: () = assert!(column_of!(ShadingRecord, anchoring) / GROUP == ANCHORED_GROUP);
+
 /// A [`ShadingRecord`] as numbers, gathered by column. In `f32` it is aligned to a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]

@@ -2,7 +2,7 @@
 
 use super::device::Gpu;
 use super::failed;
-use super::layout::{ASIDE_STRIDE, GpuBlock, GpuDispatch, WORKGROUP_SIZE};
+use super::layout::{GpuAside, GpuBlock, GpuDispatch, WORKGROUP_SIZE};
 use super::readback::{DispatchResult, Receipt};
 use super::schedule::Budget;
 use super::turns::{TURN_LIMIT, turns_over_lists};
@@ -24,7 +24,7 @@ const GROUPS_ACROSS: u32 = 32_768;
 const THREAD_LIMIT: u64 = 1 << 20;
 
 /// Bytes in which a thread puts its path aside.
-const ASIDE_SIZE: u64 = 4 * ASIDE_STRIDE as u64;
+const ASIDE_SIZE: u64 = size_of::<GpuAside>() as u64;
 
 /// Each time samples are missing, dispatches shrink by this many bits.
 pub(super) const CAUTION_SHIFT: u32 = 3;

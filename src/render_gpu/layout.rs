@@ -1,10 +1,10 @@
 //! Fills the device's records, which are declared in [`crate::kernel::records`].
 
+use crate::kernel::{AnchoredSphere, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 pub use crate::kernel::{
-    ASIDE_STRIDE, GpuBlock, GpuCounters, GpuCwbvhNode, GpuDispatch, GpuDispatchCounters, GpuJob, GpuPixelSum,
+    GpuAside, GpuBlock, GpuCounters, GpuCwbvhNode, GpuDispatch, GpuDispatchCounters, GpuJob, GpuPixelSum,
     WORKGROUP_SIZE,
 };
-use crate::kernel::{AnchoredSphere, UNIFORM_ANCHORED, UNIFORM_SPHERES};
 use crate::prepared::PreparedScene;
 use crate::prepared::cwbvh::CwBvhNode;
 use crate::render::RenderSettings;

@@ -91,11 +91,11 @@ impl GpuRenderer {
             loop {
                 this.gpu.queue.write_buffer(&buffers.order, 0, bytemuck::bytes_of(&order));
                 words = this.run(loaded, &buffers, &kernel, &words, 1)?;
-                match record::is_aside(&mut words, pixel, settings.max_depth, &mut rays) {
+                match record::is_aside(&words, settings.max_depth, &mut rays) {
                     Some(true) => order.resumes = 1,
                     Some(false) => {
                         let (index, origin) = (&loaded.scene.scene_index, loaded.scene.prepared.origin);
-                        return Ok(record::from_words(&words, index, origin));
+                        return Ok(record::from_words(&words, settings.max_depth, index, origin));
                     }
                     None => return Err(failed(dispatches::stuck(1))),
                 }

@@ -1,15 +1,12 @@
 //! The shading records of the spheres that were hit.
 
 use super::Packet;
-use crate::kernel::{Columns, GROUP, NONE, RECORD_COLUMNS, parts};
+use crate::kernel::{ANCHORED_GROUP, Columns, GROUP, NONE, RECORD_COLUMNS, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
 use crate::render_cpu::lanes::{Lanes, Unsigned, V3, WideU};
 
 /// Column groups of a record.
 const GROUPS: usize = RECORD_COLUMNS / GROUP;
-
-/// The first group that only anchored spheres need.
-const ANCHORED_GROUP: usize = 3;
 
 /// The record of the sphere that each lane has hit. Fields are loaded by name: [`crate::kernel::LoadShading`].
 pub(super) struct HitRecords<L: Lanes> {
