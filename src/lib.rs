@@ -17,6 +17,7 @@ pub mod diff;
 pub mod failure;
 pub mod files;
 pub mod film;
+pub mod gallery;
 pub mod heat;
 pub mod interrupt;
 pub mod kernel;

@@ -71,6 +71,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "files",
         ],
     ),
+    ("gallery", &["stages", "suggest"]),
     (
         "bench",
         &[
