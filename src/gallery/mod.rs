@@ -1,7 +1,21 @@
-//! The figures: the book's stages as pictures with captions, alone or side by side.
+//! The figures: the book's stages as pictures with captions, alone or side by side. `weekender gallery` renders them.
 
 mod figures;
+mod fingerprint;
+mod page;
 mod panels;
+mod program;
+mod progress;
+mod quality;
+mod rendering;
+mod still;
+
+pub use fingerprint::{FingerprintError, Fingerprints};
+pub use program::run;
+pub use progress::StillProgress;
+pub use quality::{Quality, is_about_pixels};
+pub use rendering::{Event, Order, Outcome, Work, render};
+pub use still::{INDEX, Still, Stills};
 
 use crate::stages::Stage;
 use crate::suggest::similar_names;

@@ -52,14 +52,14 @@ pub(super) const RED_SPHERE: Panel = Panel {
 pub(super) const NORMALS: Panel = Panel {
     stage: stage("normals"),
     label: "Normals as colours",
-    alt: "A ball in soft colours: green at the top, pink on the right, blue in the middle, dark blue at the bottom \
-          left.",
+    alt: "A ball in the colours of its normals: turquoise at the top, pink on the right, blue in the middle, \
+          violet at the bottom.",
 };
 
 pub(super) const NORMALS_WORLD: Panel = Panel {
     stage: stage("normals-world"),
     label: "Two spheres",
-    alt: "The ball in the colours of its normals, resting on ground that is light green all over.",
+    alt: "The ball in the colours of its normals, on ground that is light green all over.",
 };
 
 pub(super) const ALIASED: Panel = Panel {
@@ -89,7 +89,7 @@ pub(super) const DIFFUSE_LIMITED: Panel = Panel {
 pub(super) const SHADOW_ACNE: Panel = Panel {
     stage: stage("shadow-acne"),
     label: "Every distance above 0 counts",
-    alt: "The matte ball and the ground, darker than they should be, with fine speckles and rings all over.",
+    alt: "The matte ball and the ground, much darker than they should be, with fine vertical lines below the ball.",
 };
 
 pub(super) const LAMBERTIAN_LINEAR: Panel = Panel {
@@ -114,8 +114,8 @@ pub(super) const GAMUT: Panel = Panel {
 pub(super) const METAL: Panel = Panel {
     stage: stage("metal"),
     label: "Polished",
-    alt: "A matte blue ball between a silver and a golden ball, which mirror it, the yellow ground and the sky \
-          sharply.",
+    alt: "A matte blue ball between a silver and a golden ball, which mirror it, the yellow-green ground and the \
+          sky sharply.",
 };
 
 pub(super) const METAL_FUZZY: Panel = Panel {
@@ -127,14 +127,15 @@ pub(super) const METAL_FUZZY: Panel = Panel {
 pub(super) const GLASS_REFRACT: Panel = Panel {
     stage: stage("glass-refract"),
     label: "Refraction only",
-    alt: "A glass ball on the left that shows the scene upside down, with a dark band towards its edge; a blue ball in \
-          the middle and a golden one on the right.",
+    alt: "A glass ball on the left that shows the scene upside down up to its very edge: ground above, sky below. \
+          A blue ball in the middle and a golden one on the right.",
 };
 
 pub(super) const GLASS_TIR: Panel = Panel {
     stage: stage("glass-tir"),
     label: "Total reflection",
-    alt: "A bubble of air on the left: its middle can be seen through, and its rim mirrors sky and ground.",
+    alt: "A bubble of air on the left: its middle can be seen through, and its rim mirrors the sky, the ground and \
+          the blue ball.",
 };
 
 pub(super) const GLASS_SCHLICK: Panel = Panel {
@@ -152,7 +153,7 @@ pub(super) const HOLLOW_GLASS: Panel = Panel {
 pub(super) const THREE_SPHERES: Panel = Panel {
     stage: stage("three-spheres"),
     label: "All materials",
-    alt: "A hollow glass ball, a matte blue ball and a golden metal ball in a row on yellow ground.",
+    alt: "A hollow glass ball, a matte blue ball and a golden metal ball in a row on yellow-green ground.",
 };
 
 pub(super) const FOV_WIDE: Panel = Panel {
@@ -170,7 +171,7 @@ pub(super) const FOV_NARROW: Panel = Panel {
 pub(super) const VIEW_DISTANT: Panel = Panel {
     stage: stage("view-distant"),
     label: "90 degrees",
-    alt: "The three balls from above and from the left, small in the middle of wide yellow ground.",
+    alt: "The three balls from above and from the left, small in the middle of wide yellow-green ground.",
 };
 
 pub(super) const VIEW_CLOSE: Panel = Panel {
