@@ -67,7 +67,7 @@ pub(super) const FIGURES: &[Figure] = &[
         id: "bounce-limit",
         title: "A limit on bounces",
         caption: "A path that is cut off brings no light. With four bounces, the crevice under the ball becomes \
-                  darker; everything else stays as it was.",
+                  darker; everything else hardly changes.",
         panels: &[Panel { label: "At most 49 bounces", ..DIFFUSE }, DIFFUSE_LIMITED],
     },
     Figure {

@@ -1,7 +1,7 @@
 //! `index.html`: the figures with captions, chapter by chapter. It needs no server, script or network.
 
 use super::quality::is_about_pixels;
-use super::{Figure, Panel, Still, Stills};
+use super::{Figure, Panel, Stills};
 use crate::stages::{BOOK_URL, Stage};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -71,7 +71,9 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
     };
     html! {
         figure.figure id={ "figure-" (figure.id) } {
-            div class=(class) { @for panel in figure.panels { (shown_panel(panel, stills)) } }
+            div class=(class) { @for panel in figure.panels {
+                    (shown_panel(panel, figure.panels.len() > 1, stills))
+                } }
             figcaption {
                 h3 { a href={ "#figure-" (figure.id) } { (figure.title) } }
                 p { (figure.caption) }
@@ -83,7 +85,8 @@ fn shown(figure: &Figure, stills: &Stills) -> Markup {
     }
 }
 
-fn shown_panel(panel: &Panel, stills: &Stills) -> Markup {
+/// The panel; `is_labelled` if it has neighbours.
+fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
     let class = if is_about_pixels(panel.stage) { "panel pixels" } else { "panel" };
     html! {
         div class=(class) data-stage=(panel.stage.id) {
@@ -92,19 +95,13 @@ fn shown_panel(panel: &Panel, stills: &Stills) -> Markup {
                     a href=(still.file) {
                         img src=(still.file) width=(still.width) height=(still.height) alt=(panel.alt) loading="lazy";
                     }
-                    (facts(panel, still))
+                    p.facts {
+                        @if is_labelled { strong { (panel.label) } " " }
+                        (still.settings_words()) "; " (still.time_words()) ", " (still.error_words())
+                    }
                 }
                 None => p.missing { "Not rendered yet: " code { "--only " (panel.stage.id) } }
             }
-        }
-    }
-}
-
-fn facts(panel: &Panel, still: &Still) -> Markup {
-    html! {
-        p.facts {
-            strong { (panel.label) }
-            " " (still.settings_words()) "; " (still.time_words()) ", " (still.error_words())
         }
     }
 }
@@ -128,7 +125,7 @@ fn footer(stills: &Stills) -> Markup {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gallery::Quality;
+    use crate::gallery::{Quality, Still};
 
     #[test]
     fn every_figure_is_on_the_page_with_what_is_known_of_its_pictures() {

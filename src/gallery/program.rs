@@ -33,7 +33,7 @@ pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
         backend: &options.backend,
     };
     let index = options.out.join("index.html");
-    if fs::exists(&options.out).unwrap_or(true) {
+    if options.out.is_dir() {
         check_writable(&index).map_err(Failure::input)?;
     }
     let mut progress = StillProgress::new(options.progress);
