@@ -41,6 +41,17 @@ pub fn counted(number: u64, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
+/// A time such as `3.2 s`, `4 min 05 s` or `2 h 03 min`.
+pub fn seconds(seconds: f64) -> String {
+    let whole = seconds.round() as u64;
+    match whole {
+        0..60 => format!("{seconds:.1} s"),
+        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
+        3600..864_000 => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
+        _ => format!("{} days", whole / 86_400),
+    }
+}
+
 /// The backend. If there were several, the current one comes first, each with its samples, and earlier runs come last.
 fn backend_words(film: &Film, status: &Status) -> Option<String> {
     let words =
@@ -79,6 +90,12 @@ fn camera_words(camera: &Camera) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_are_short() {
+        let found = [0.0, 59.4, 245.0, 7385.0, 1e7].map(seconds);
+        assert_eq!(found, ["0.0 s", "59.4 s", "4 min 05 s", "2 h 03 min", "115 days"]);
+    }
 
     #[test]
     fn all_who_rendered_are_named() {

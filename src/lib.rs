@@ -18,6 +18,7 @@ pub mod explain;
 pub mod failure;
 pub mod files;
 pub mod film;
+pub mod gallery;
 pub mod heat;
 pub mod interrupt;
 pub mod kernel;

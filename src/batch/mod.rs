@@ -29,7 +29,7 @@ use keeping::Keeper;
 use progress::Progress;
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use summary::{Summary, SummaryJson};
 
 /// Renders and writes everything that the options ask for.
@@ -150,14 +150,14 @@ impl Begun<'_> {
         let keeper = |place: &SharedPlace| Keeper::new(render, place.clone(), held_before, seconds_before);
         let mut keeper = self.places.checkpoint.as_ref().map(keeper);
         let mut progress = Progress::new(self.options.progress, render);
-        progressive.start(RenderRequest {
+        let request = RenderRequest {
             job: render.job.clone(),
             backend: self.options.backend.clone(),
             renderer,
             plan: render.plan.clone(),
             film,
-        });
-        let mut status = self.watch(progressive, &mut progress, keeper.as_mut());
+        };
+        let mut status = self.watch(progressive, request, &mut progress, keeper.as_mut());
         let names: Vec<String> = [render.checkpoint.as_ref(), Some(&render.out)]
             .into_iter()
             .flatten()
@@ -190,20 +190,20 @@ impl Begun<'_> {
 
     fn watch(
         &self,
-        progressive: &Progressive,
+        progressive: &mut Progressive,
+        request: RenderRequest,
         progress: &mut Progress,
         mut keeper: Option<&mut Keeper>,
     ) -> Status {
         let mut is_stopping = false;
         let mut told = 0;
-        loop {
-            let status = progressive.wait(Duration::from_millis(50));
+        progressive.watch(request, |progressive, status| {
             for message in status.messages.iter().skip(told) {
                 progress.say(&format!("warning: {message}"));
             }
             told = status.messages.len();
             if status.phase.is_over() {
-                return status;
+                return;
             }
             if self.interrupt.is_set() && !is_stopping {
                 is_stopping = true;
@@ -213,11 +213,11 @@ impl Begun<'_> {
                 );
                 progressive.stop();
             }
-            if let Some(words) = keeper.as_mut().and_then(|keeper| keeper.look(progressive, &status)) {
+            if let Some(words) = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status)) {
                 progress.say(&format!("warning: {words}"));
             }
-            progress.update(&status);
-        }
+            progress.update(status);
+        })
     }
 }
 

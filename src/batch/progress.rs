@@ -1,6 +1,7 @@
 //! The progress of a picture: samples, speed and remaining time.
 
 use crate::cli::{ProgressChoice, RenderOptions};
+use crate::describe::seconds;
 use crate::progressive::{Phase, Plan, Status};
 use crate::terminal::Display;
 use std::path::Path;
@@ -85,27 +86,10 @@ fn seconds_left(plan: &Plan, status: &Status) -> Option<f64> {
     [Some(by_samples), by_time, by_noise].into_iter().flatten().reduce(f64::min)
 }
 
-/// A time such as `3.2 s`, `4 min 05 s` or `2 h 03 min`.
-pub(super) fn seconds(seconds: f64) -> String {
-    let whole = seconds.round() as u64;
-    match whole {
-        0..60 => format!("{seconds:.1} s"),
-        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
-        3600..864_000 => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
-        _ => format!("{} days", whole / 86_400),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
-
-    #[test]
-    fn times_are_short() {
-        let found = [0.0, 59.4, 245.0, 7385.0, 1e7].map(seconds);
-        assert_eq!(found, ["0.0 s", "59.4 s", "4 min 05 s", "2 h 03 min", "115 days"]);
-    }
 
     #[test]
     fn the_condition_that_is_met_first_tells_the_time_left() {

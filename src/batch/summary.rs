@@ -1,8 +1,7 @@
 //! The final figures of a picture, as text and as JSON.
 
-use super::progress::seconds;
 use crate::cli::RenderOptions;
-use crate::describe::counted;
+use crate::describe::{counted, seconds};
 use crate::film::{ErrorEstimate, Film};
 use crate::progressive::{Contribution, HistoryPoint, Phase, Status};
 use serde::Serialize;

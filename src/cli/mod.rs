@@ -4,6 +4,7 @@ mod bench;
 mod compare;
 mod diff;
 mod error;
+mod gallery;
 mod paths;
 mod raw;
 mod render;
@@ -17,6 +18,7 @@ pub use bench::{BenchOptions, BenchScene};
 pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice, SideChoice};
 pub use error::CliError;
+pub use gallery::GalleryOptions;
 pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
@@ -51,6 +53,8 @@ pub enum Request {
     Report(Box<ReportOptions>),
     /// Render stiff scenes and check the results.
     Stress(Box<StressOptions>),
+    /// Render the figures of the book.
+    Gallery(Box<GalleryOptions>),
     /// Render to files.
     Batch(Box<BatchOptions>),
 }
@@ -94,6 +98,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
             .map_err(Failure::input),
         Some(RawCommand::Stress(raw)) => {
             stress::stress(*raw).map(|options| Request::Stress(Box::new(options))).map_err(Failure::input)
+        }
+        Some(RawCommand::Gallery(raw)) => {
+            gallery::gallery(*raw).map(|options| Request::Gallery(Box::new(options))).map_err(Failure::input)
         }
         None if raw.render.list => Ok(Request::List),
         None => render::request(raw.render).map_err(Failure::input),

@@ -270,26 +270,41 @@ fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
         ..GpuOptions::of_adapter(raw.adapter.as_deref())
     };
     let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { injection.map(|(_, flag)| flag) };
-    if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, raw.device) {
-        let other = if raw.device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
+    let cpu_flag = match (lanes, isa) {
+        (Some(_), _) => Some("--simd"),
+        (None, Some(_)) => Some("--isa"),
+        (None, None) => None,
+    };
+    choose(raw.device, cpu, gpu, [cpu_flag, gpu_flag])
+}
+
+/// The backend of `device`. The flags are those that only the CPU's packets or only the GPU understand, if any is given.
+pub(super) fn choose(
+    device: RawDevice,
+    cpu: CpuOptions,
+    gpu: GpuOptions,
+    [cpu_flag, gpu_flag]: [Option<&'static str>; 2],
+) -> Result<BackendChoice, CliError> {
+    if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, device) {
+        let other = if device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
         return Err(CliError::Together {
             flag,
             other,
             reason: "it applies only to the GPU; leave one of them out",
         });
     }
-    match raw.device {
-        RawDevice::Auto if raw.adapter.is_some() => Ok(BackendChoice::Gpu(gpu)),
-        RawDevice::Auto => Ok(BackendChoice::auto(cpu, gpu)),
-        RawDevice::Cpu => Ok(BackendChoice::Cpu(cpu)),
-        RawDevice::Gpu => Ok(BackendChoice::Gpu(gpu)),
-        RawDevice::Both => Ok(BackendChoice::Both(cpu, gpu)),
-        RawDevice::Reference if lanes.is_some() || isa.is_some() => Err(CliError::Together {
-            flag: if lanes.is_some() { "--simd" } else { "--isa" },
+    match (device, cpu_flag) {
+        (RawDevice::Auto, _) if gpu.adapter.is_some() => Ok(BackendChoice::Gpu(gpu)),
+        (RawDevice::Auto, _) => Ok(BackendChoice::auto(cpu, gpu)),
+        (RawDevice::Cpu, _) => Ok(BackendChoice::Cpu(cpu)),
+        (RawDevice::Gpu, _) => Ok(BackendChoice::Gpu(gpu)),
+        (RawDevice::Both, _) => Ok(BackendChoice::Both(cpu, gpu)),
+        (RawDevice::Reference, Some(flag)) => Err(CliError::Together {
+            flag,
             other: "--device reference",
             reason: "the reference is scalar; leave one of them out",
         }),
-        RawDevice::Reference => Ok(BackendChoice::Reference { threads }),
+        (RawDevice::Reference, None) => Ok(BackendChoice::Reference { threads: cpu.threads }),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::bench::RawBench;
 use super::compare::RawCompare;
 use super::diff::RawDiff;
+use super::gallery::RawGallery;
 use super::raw::RawRender;
 use super::report::RawReport;
 use super::stress::RawStress;
@@ -54,4 +55,8 @@ pub(super) enum RawCommand {
     /// fuses multiply and add, by one that does not, in f64, and by the GPU, if there is one. The exit code is 0 if all
     /// are right, 1 if one is not and 2 if nothing could be run.
     Stress(Box<RawStress>),
+    /// Render every figure of the book, with a page that shows them
+    ///
+    /// Only pictures that are missing, damaged or changed are rendered. After Ctrl-C, the same command goes on.
+    Gallery(Box<RawGallery>),
 }

@@ -106,6 +106,22 @@ impl Progressive {
         });
     }
 
+    /// Starts what `request` asks for and returns its last status when it is over. `look` sees every status, at least
+    /// one each [`Progressive::LOOK`], and may send commands.
+    pub fn watch(&mut self, request: RenderRequest, mut look: impl FnMut(&Progressive, &Status)) -> Status {
+        self.start(request);
+        loop {
+            let status = self.wait(Progressive::LOOK);
+            look(self, &status);
+            if status.phase.is_over() || status.phase == Phase::Idle {
+                return status;
+            }
+        }
+    }
+
+    /// Longest time between two looks of [`Progressive::watch`].
+    pub const LOOK: Duration = Duration::from_millis(50);
+
     /// Abandons the render in progress.
     pub fn abandon(&mut self) {
         self.cancel.store(true, Ordering::Relaxed);

@@ -1,0 +1,151 @@
+//! `index.html`: the figures with captions, chapter by chapter. It needs no server, script or network.
+
+use super::quality::is_about_pixels;
+use super::{Figure, Panel, Stills};
+use crate::stages::{BOOK_URL, Stage};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("../../assets/gallery/style.css");
+
+/// The page of the stills. A still that is not there has a place that says so.
+pub fn page(stills: &Stills) -> String {
+    let chapters: Vec<&[Figure]> =
+        Figure::ALL.chunk_by(|a, b| a.stage().chapter() == b.stage().chapter()).collect();
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                title { "Ray Tracing in One Weekend in pictures" }
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                meta name="description" content="Every figure of Ray Tracing in One Weekend, with its settings, time \
+                                                  and error.";
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    h1 { "Ray Tracing in One Weekend in pictures" }
+                    p.lead {
+                        "Every step of " a href=(BOOK_URL) { "the book" } ", rendered by Weekender. Each picture opens in \
+                         full size and contains the settings that it was made with."
+                    }
+                    nav aria-label="Chapters" {
+                        ul { @for chapter in &chapters { (entry(chapter)) } }
+                    }
+                }
+                main { @for chapter in &chapters { (section(chapter, stills)) } }
+                footer { (footer(stills)) }
+            }
+        }
+    };
+    page.into_string() + "\n"
+}
+
+fn entry(figures: &[Figure]) -> Markup {
+    let stage = first(figures);
+    html! { li { a href={ "#chapter-" (stage.chapter()) } { span.number { (stage.chapter()) } " " (stage.chapter_title) } } }
+}
+
+fn section(figures: &[Figure], stills: &Stills) -> Markup {
+    let stage = first(figures);
+    html! {
+        section id={ "chapter-" (stage.chapter()) } {
+            h2 { span.number { (stage.chapter()) } " " (stage.chapter_title) }
+            @for figure in figures { (shown(figure, stills)) }
+        }
+    }
+}
+
+/// The stage of the first figure of a chapter.
+fn first(figures: &[Figure]) -> &'static Stage {
+    figures.first().map_or(&Stage::ALL[0], Figure::stage)
+}
+
+fn shown(figure: &Figure, stills: &Stills) -> Markup {
+    let stage = figure.stage();
+    let class = match figure.panels.len() {
+        1 => "panels",
+        2 => "panels two",
+        _ => "panels three",
+    };
+    html! {
+        figure.figure id={ "figure-" (figure.id) } {
+            div class=(class) { @for panel in figure.panels {
+                    (shown_panel(panel, figure.panels.len() > 1, stills))
+                } }
+            figcaption {
+                h3 { a href={ "#figure-" (figure.id) } { (figure.title) } }
+                p { (figure.caption) }
+                p.section {
+                    a href=(stage.url()) { "Section " (stage.section) ", " (stage.section_title) }
+                }
+            }
+        }
+    }
+}
+
+/// The panel; `is_labelled` if it has neighbours.
+fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
+    let class = if is_about_pixels(panel.stage) { "panel pixels" } else { "panel" };
+    html! {
+        div class=(class) data-stage=(panel.stage.id) {
+            @match stills.of(panel.stage) {
+                Some(still) => {
+                    a href=(still.file) {
+                        img src=(still.file) width=(still.width) height=(still.height) alt=(panel.alt) loading="lazy";
+                    }
+                    p.facts {
+                        @if is_labelled { strong { (panel.label) } " " }
+                        (still.settings_words()) "; " (still.time_words()) ", " (still.error_words())
+                    }
+                }
+                None => p.missing { "Not rendered yet: " code { "--only " (panel.stage.id) } }
+            }
+        }
+    }
+}
+
+fn footer(stills: &Stills) -> Markup {
+    let mut backends: Vec<&str> = stills.all().iter().map(|still| still.backend.as_str()).collect();
+    backends.dedup();
+    backends.sort_unstable();
+    backends.dedup();
+    html! {
+        p {
+            "Times are those of tracing alone. The error is the root of the mean squared error in linear radiance, \
+             estimated from two halves of the samples; ± is one standard deviation of the estimate."
+        }
+        @if !backends.is_empty() {
+            p { "Rendered by Weekender " (env!("CARGO_PKG_VERSION")) " (" (backends.join("; ")) ")." }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gallery::{Quality, Still};
+
+    #[test]
+    fn every_figure_is_on_the_page_with_what_is_known_of_its_pictures() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut stills = Stills::read(directory.path()).0;
+        let metal = Stage::find("metal").unwrap();
+        stills.set(Still::new(metal, &Quality::Full.recipe(metal), String::new()));
+        let page = page(&stills);
+        for figure in Figure::ALL {
+            assert!(page.contains(&format!("id=\"figure-{}\"", figure.id)), "{}", figure.id);
+            assert!(
+                page.contains(&figure.stage().url().replace('\'', "&#39;"))
+                    || page.contains(&figure.stage().url())
+            );
+        }
+        // Metal is in two figures.
+        assert_eq!(page.matches("<img ").count(), 2, "{page}");
+        let panels: usize = Figure::ALL.iter().map(|figure| figure.panels.len()).sum();
+        assert_eq!(page.matches("Not rendered yet").count(), panels - 2);
+        assert!(page.contains("960 × 540 pixels, 1024 samples per pixel"));
+        assert!(!page.contains("<script") && !page.contains("style=\""));
+    }
+}

@@ -1,0 +1,90 @@
+//! How large stills are and how many samples they get.
+
+use crate::recipe::Recipe;
+use crate::stages::Stage;
+
+/// The effort for a still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// Small and with visible noise, for a first look.
+    Quick,
+    /// For pages: twice as many pixels across as most figures are wide, and hardly any noise.
+    Full,
+}
+
+/// Largest width of a quick still, pixels.
+const QUICK_WIDTH: u32 = 480;
+
+/// Most samples per pixel of a quick still.
+const QUICK_SAMPLES: u64 = 64;
+
+/// Least width of a full still, pixels.
+const FULL_WIDTH: u32 = 960;
+
+/// Samples per pixel of a full still: the estimated error is then 0.003 or less, about half a step of 8 bits.
+const FULL_SAMPLES: u64 = 1024;
+
+/// Stages about single pixels; neither their size nor their samples may change.
+const PIXELS: [&str; 3] = ["ppm-tiny", "aliased", "antialiased"];
+
+/// Whether a stage is about single pixels, so that an enlarged still must show them.
+pub fn is_about_pixels(stage: &Stage) -> bool {
+    PIXELS.contains(&stage.id)
+}
+
+impl Quality {
+    /// The picture of `stage`: its own recipe in the size and with the samples of this quality.
+    pub fn recipe(self, stage: &Stage) -> Recipe {
+        let mut recipe = stage.recipe();
+        if is_about_pixels(stage) {
+            return recipe;
+        }
+        let settings = &mut recipe.settings;
+        let width = match self {
+            Quality::Quick => settings.width.min(QUICK_WIDTH),
+            Quality::Full => settings.width.max(FULL_WIDTH),
+        };
+        settings.height = (settings.height * width).div_ceil(settings.width);
+        settings.width = width;
+        // A stage with one sample sends it through the centre of the pixel; more would be the same.
+        recipe.samples_per_pixel = match (self, recipe.samples_per_pixel) {
+            (_, 1) => 1,
+            (Quality::Quick, samples) => samples.min(QUICK_SAMPLES),
+            (Quality::Full, _) => FULL_SAMPLES,
+        };
+        recipe
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stills_keep_the_shape_of_their_stage() {
+        for stage in Stage::ALL {
+            let own = stage.recipe();
+            for quality in [Quality::Quick, Quality::Full] {
+                let recipe = quality.recipe(stage);
+                recipe.job().expect(stage.id);
+                let [shape, own_shape] = [&recipe.settings, &own.settings]
+                    .map(|settings| f64::from(settings.width) / f64::from(settings.height));
+                assert!((shape / own_shape - 1.0).abs() < 0.01, "{}: {shape}", stage.id);
+                assert_eq!(recipe.samples_per_pixel == 1, own.samples_per_pixel == 1, "{}", stage.id);
+                if is_about_pixels(stage) {
+                    assert_eq!(recipe, own);
+                }
+            }
+        }
+        let sizes = |id: &str| {
+            let stage = Stage::find(id).expect("a stage");
+            [Quality::Quick, Quality::Full].map(|quality| {
+                let recipe = quality.recipe(stage);
+                (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel)
+            })
+        };
+        assert_eq!(sizes("book"), [(480, 270, 64), (1200, 675, 1024)]);
+        assert_eq!(sizes("sky"), [(480, 270, 1), (960, 540, 1)]);
+        assert_eq!(sizes("antialiased"), [(480, 270, 64); 2]);
+    }
+}

@@ -1,0 +1,235 @@
+//! `weekender gallery`: what is rendered again, what an interruption and a full disk leave, and the page.
+
+mod gpu_common;
+
+use gpu_common::say_loudly;
+use serde_json::Value;
+use std::collections::HashSet;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use tempfile::TempDir;
+use weekender::gallery::Figure;
+use weekender::output::read_description;
+use weekender::saved::Saved;
+use weekender::stages::Stage;
+
+fn command(at: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    command.current_dir(at).args(["gallery", "--device", "cpu", "--threads", "2"]).args(arguments);
+    command.stdin(Stdio::null());
+    command
+}
+
+fn run(at: &Path, arguments: &[&str]) -> Output {
+    command(at, arguments).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Runs a gallery that must succeed, and returns the stages that were rendered.
+fn rendered(at: &Path, arguments: &[&str]) -> Vec<String> {
+    let output = run(at, &[&["--out", "g"], arguments].concat());
+    let printed = text(&output.stdout);
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    let first_word = |line: &str| line.split_whitespace().next().unwrap_or_default().to_owned();
+    let stages: Vec<String> = printed.lines().map(first_word).filter(|id| Stage::find(id).is_ok()).collect();
+    let (count, noun) = (stages.len(), if stages.len() == 1 { "picture" } else { "pictures" });
+    assert!(printed.contains(&format!("{count} {noun} rendered")), "{printed}");
+    stages
+}
+
+fn pictures(at: &Path) -> Vec<Value> {
+    let json = std::fs::read(at.join("g/gallery.json")).unwrap();
+    serde_json::from_slice::<Value>(&json).unwrap()["pictures"].as_array().unwrap().clone()
+}
+
+const SMALL: [&str; 3] = ["--quick", "--only", "sky,red-sphere,antialiasing"];
+
+#[test]
+fn only_what_is_missing_damaged_or_changed_is_rendered() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let all = ["sky", "red-sphere", "aliased", "antialiased"];
+    assert_eq!(rendered(at, &SMALL), all);
+    let file = |name: &str| at.join("g").join(name);
+    let page = std::fs::read(file("index.html")).unwrap();
+    assert!(rendered(at, &SMALL).is_empty());
+    assert_eq!(std::fs::read(file("index.html")).unwrap(), page);
+
+    // A damaged byte and a file that is gone; a younger file alone is no change.
+    let mut bytes = std::fs::read(file("red-sphere.png")).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    std::fs::write(file("red-sphere.png"), bytes).unwrap();
+    std::fs::remove_file(file("antialiased.png")).unwrap();
+    let sky = std::fs::read(file("sky.png")).unwrap();
+    std::fs::write(file("sky.png"), &sky).unwrap();
+    assert_eq!(rendered(at, &SMALL), ["red-sphere", "antialiased"]);
+
+    // Another fingerprint stands for other settings or another tracer.
+    let json = std::fs::read_to_string(file("gallery.json")).unwrap();
+    let fingerprint = pictures(at)[2]["fingerprint"].as_str().unwrap().to_owned();
+    assert_eq!(pictures(at)[2]["stage"], "aliased");
+    std::fs::write(file("gallery.json"), json.replace(&fingerprint, "0123456789abcdef")).unwrap();
+    assert_eq!(rendered(at, &SMALL), ["aliased"]);
+
+    // A description that cannot be read is no loss of pictures, only of time.
+    std::fs::write(file("gallery.json"), "{").unwrap();
+    let output = run(at, &[&["--out", "g"], &SMALL[..]].concat());
+    assert!(text(&output.stderr).contains("gallery.json"), "{}", text(&output.stderr));
+    assert_eq!(pictures(at).len(), 4);
+}
+
+#[test]
+fn a_full_picture_is_also_good_enough_for_quick_ones() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let only = ["--only", "sky,antialiased"];
+    let quick = [&["--quick"][..], &only].concat();
+    assert_eq!(rendered(at, &quick), ["sky", "antialiased"]);
+    assert_eq!(pictures(at)[0]["width"], 480);
+    // One sample more or less would not be the figure, so its full picture is the quick one.
+    assert_eq!(rendered(at, &only), ["sky"]);
+    assert_eq!(pictures(at)[0]["width"], 960);
+    assert!(rendered(at, &quick).is_empty());
+}
+
+#[test]
+fn pictures_say_how_they_were_made() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    rendered(at, &["--quick", "--only", "metal"]);
+    let path = at.join("g/metal.png");
+    assert_eq!(read_description(&path).unwrap().get("Stage"), Some("metal"));
+    let recipe = Saved::describe(&path).unwrap().recipe().unwrap();
+    assert_eq!((recipe.settings.width, recipe.samples_per_pixel), (480, 64));
+    let still = &pictures(at)[0];
+    for (key, value) in [("stage", "metal"), ("file", "metal.png"), ("sampler", "sobol")] {
+        assert_eq!(still[key], value);
+    }
+    assert_eq!((&still["samples_per_pixel"], &still["max_depth"]), (&64.into(), &50.into()));
+    assert!(still["trace_seconds"].as_f64().unwrap() > 0.0);
+    assert!((1e-3..1e-1).contains(&still["rmse_estimate"].as_f64().unwrap()), "{still}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_finished_pictures() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let only = ["--out", "g", "--only", "sky,book"];
+    let mut child = command(at, &only).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+    assert!(lines.next().unwrap().unwrap().starts_with("sky"));
+    let signalled = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    assert!(signalled.success());
+    let output = child.wait_with_output().unwrap();
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{told}");
+    assert!(told.contains("1 picture missing") && told.contains("the same command again"), "{told}");
+    let stages: Vec<Value> = pictures(at).iter().map(|still| still["stage"].clone()).collect();
+    assert_eq!(stages, ["sky"]);
+    let page = std::fs::read_to_string(at.join("g/index.html")).unwrap();
+    assert!(page.contains("sky.png") && !page.contains("book.png"));
+    assert!(!at.join("g/book.png").exists());
+    assert!(rendered(at, &["--only", "sky"]).is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_full_disk_ends_it_with_a_remedy_and_keeps_what_was_written() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    // Blocks of 512 bytes: the first picture and its description fit, the second does not.
+    let limited = format!(
+        "ulimit -f 8; exec '{}' gallery --device cpu --out g --only ppm-tiny,sky --progress off",
+        env!("CARGO_BIN_EXE_weekender")
+    );
+    let output = Command::new("sh").current_dir(at).args(["-c", &limited]).output().unwrap();
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{told}");
+    for part in ["sky.png", "1 picture", "ulimit -f"] {
+        assert!(told.contains(part), "{told} should say {part}");
+    }
+    let names: HashSet<String> = std::fs::read_dir(at.join("g"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    assert_eq!(names, ["gallery.json", "ppm-tiny.png"].map(str::to_owned).into());
+    assert_eq!(rendered(at, &["--only", "ppm-tiny,sky"]), ["sky"]);
+}
+
+#[test]
+fn bad_input_is_refused_with_a_remedy() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    std::fs::write(at.join("file"), "").unwrap();
+    let cases: [(&[&str], &[&str]); 5] = [
+        (&["--out", "file"], &["file", "choose another with --out"]),
+        (&["--out", "g", "--only", "shadow-akne"], &["shadow-akne", "did you mean shadow-acne?"]),
+        (&["--out", "g", "--device", "gpu", "--adapter", "no such thing"], &["no such thing"]),
+        (&["--out", "g", "--adapter", "x", "--device", "reference"], &["--adapter", "leave one of them out"]),
+        (&[], &["--out"]),
+    ];
+    for (arguments, parts) in cases {
+        let output = Command::new(env!("CARGO_BIN_EXE_weekender"))
+            .current_dir(at)
+            .arg("gallery")
+            .args(arguments)
+            .output()
+            .unwrap();
+        let told = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+        for part in parts {
+            assert!(told.contains(part), "{arguments:?} should say {part:?}: {told}");
+        }
+    }
+    assert_eq!(std::fs::read(at.join("file")).unwrap(), b"");
+}
+
+/// What `attribute` holds everywhere on the page.
+fn values<'a>(page: &'a str, attribute: &str) -> Vec<&'a str> {
+    let begin = format!(" {attribute}=\"");
+    page.split(&begin).skip(1).filter_map(|rest| rest.split('"').next()).collect()
+}
+
+#[test]
+fn the_page_is_complete_and_needs_no_network() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    rendered(at, &SMALL);
+    let path = at.join("g/index.html");
+    let page = std::fs::read_to_string(&path).unwrap();
+    for source in values(&page, "src") {
+        assert!(at.join("g").join(source).exists(), "{source}");
+    }
+    let ids = values(&page, "id");
+    assert_eq!(ids.iter().collect::<HashSet<_>>().len(), ids.len());
+    for link in values(&page, "href") {
+        let is_kept = match link.strip_prefix('#') {
+            Some(fragment) => ids.contains(&fragment),
+            None if link.starts_with("https://raytracing.github.io/") => true,
+            None => at.join("g").join(link).exists(),
+        };
+        assert!(is_kept, "{link} leads nowhere");
+    }
+    for figure in Figure::ALL {
+        assert!(ids.contains(&format!("figure-{}", figure.id).as_str()), "{}", figure.id);
+    }
+    assert_eq!(values(&page, "alt").len(), values(&page, "src").len());
+    assert!(values(&page, "alt").iter().all(|alt| alt.len() > 20));
+    assert!(!page.contains("<script") && !page.contains("@import") && !page.contains("url("));
+
+    match Command::new("html-validate").arg(&path).output() {
+        Ok(output) => assert!(output.status.success(), "{}", text(&output.stdout)),
+        Err(_) if std::env::var("WEEKENDER_REQUIRE_HTML").as_deref() == Ok("1") => {
+            panic!("html-validate is not installed (npm install --global html-validate)")
+        }
+        Err(_) => {
+            say_loudly("no html-validate (npm install --global html-validate): the page was not validated")
+        }
+    }
+}
