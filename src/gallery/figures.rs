@@ -66,22 +66,22 @@ pub(super) const FIGURES: &[Figure] = &[
     Figure {
         id: "bounce-limit",
         title: "A limit on bounces",
-        caption: "A path that is cut off brings no light. With four bounces, the crevice under the ball becomes \
-                  darker; everything else hardly changes.",
+        caption: "A path that is cut off brings no light. Each bounce halves the light, so little is left after four: \
+                  the crevice under the ball gets darker by a step or two of 255, and all else stays as it was.",
         panels: &[Panel { label: "At most 49 bounces", ..DIFFUSE }, DIFFUSE_LIMITED],
     },
     Figure {
         id: "shadow-acne",
         title: "Shadow acne",
         caption: "Rounding puts a hit point slightly above or below its surface. From below, the next ray finds the \
-                  same surface again, and the path loses half of its light for nothing.",
+                  same surface again, is scattered into the ball, and usually brings no light at all.",
         panels: &[SHADOW_ACNE, Panel { label: "Without acne", ..DIFFUSE_LIMITED }],
     },
     Figure {
         id: "lambertian",
         title: "Uniform against Lambertian",
-        caption: "Lambertian directions gather around the normal. More of them reach the sky, so shadows are lighter \
-                  and the ball is brighter.",
+        caption: "Lambertian directions gather around the normal. The top of the ball sees more of the sky and is \
+                  brighter; the shadow under it is heavier, because the ball blocks the directions that count most.",
         panels: &[DIFFUSE, Panel { label: "Lambertian", ..LAMBERTIAN_LINEAR }],
     },
     Figure {
