@@ -41,3 +41,4 @@ pub mod statistics;
 pub mod stress;
 mod suggest;
 pub mod terminal;
+pub mod web;

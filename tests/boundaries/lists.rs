@@ -22,6 +22,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("render_gpu", &["stages", "film", "render", "record", "sampling", "kernel", "prepared"]),
     ("explain", &["scene", "stages", "render", "record", "sampling"]),
     ("layers", &["scene", "render", "record", "render_cpu"]),
+    ("web", &["scene", "stages", "render", "kernel", "render_gpu"]),
     ("backends", &["film", "render", "render_cpu", "render_gpu"]),
     ("progressive", &["stages", "film", "render", "heat", "backends"]),
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
@@ -219,6 +220,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
 
 /// Crates that only some rooms may use.
 pub const CRATES: &[(&str, &[&str])] = &[
+    ("base64", &["web"]),
     ("egui", &["app"]),
     ("eframe", &["app"]),
     ("egui_plot", &["app"]),
