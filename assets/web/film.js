@@ -8,7 +8,7 @@ function reversed(word) {
   return bits >>> 0;
 }
 
-// The next samples after the first `done`: a power of two, at most `most`, that ends at a multiple of itself.
+// The samples after the first `done`: a power of two of them, at most `most`, with `done` a multiple of their number.
 export function nextBlock(done, wanted, most) {
   const fitting = 1 << (31 - Math.clz32(Math.max(1, Math.min(wanted - done, most))));
   const count = done === 0 ? fitting : Math.min(done & -done, fitting);
@@ -35,7 +35,7 @@ class Gpu {
   static async open() {
     const adapter = await navigator.gpu.requestAdapter();
     if (!adapter) throw new Error("The browser found no graphics device for WebGPU.");
-    return new Gpu(adapter.info, await adapter.requestDevice());
+    return new Gpu(adapter.info ?? {}, await adapter.requestDevice());
   }
 
   constructor(info, device) {

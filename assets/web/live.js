@@ -6,22 +6,22 @@ const MOST_SCALE = 8;
 let sharedGpu = null;
 const panels = [];
 
-// The device, opened on first use. If it is lost, every live picture becomes a still again.
+// The device, opened on first use. If it fails, every live picture becomes a still again.
 function theGpu() {
-  const opening = (sharedGpu ??= Gpu.open());
-  opening.then(
-    (gpu) => {
-      if (gpu.isWatched) return;
-      gpu.isWatched = true;
-      const fail = (reason) => {
-        if (sharedGpu === opening) sharedGpu = null;
-        panels.filter((panel) => panel.session?.gpu === gpu).forEach((panel) => panel.stop(reason));
-      };
-      gpu.device.lost.then(() => fail("The graphics device was lost. Press Live to start again."));
-      gpu.device.addEventListener("uncapturederror", ({ error }) => fail(error.message));
-    },
-    () => (sharedGpu = null),
-  );
+  if (sharedGpu) return sharedGpu;
+  const opening = (sharedGpu = Gpu.open());
+  const forget = () => {
+    if (sharedGpu === opening) sharedGpu = null;
+  };
+  opening.then((gpu) => {
+    const fail = (reason) => {
+      forget();
+      panels.filter((panel) => panel.session?.gpu === gpu).forEach((panel) => panel.stop(reason));
+      gpu.device.destroy();
+    };
+    gpu.device.lost.then(() => fail("The graphics device was lost. Press Live to start again."));
+    gpu.device.addEventListener("uncapturederror", ({ error }) => fail(error.message));
+  }, forget);
   return opening;
 }
 
@@ -36,7 +36,7 @@ class Session {
   reset() {
     const { camera, depth, samples } = this.stage;
     this.settings = { camera, depth, samples, material: {} };
-    this.change(false);
+    this.change(this.film !== undefined);
   }
 
   // Starts the film again. While something moves, pictures are as coarse as they must be to follow.
@@ -46,7 +46,6 @@ class Session {
     clearTimeout(this.rest);
     this.rest = setTimeout(() => {
       this.isMoving = false;
-      this.isStale ||= this.film?.scale > 1;
       this.wake();
     }, REST_MS);
     this.wake();
@@ -88,9 +87,10 @@ class Session {
     this.gpu = await theGpu();
     while (!this.isEnded) {
       const isSeen = this.panel.isInView && !document.hidden;
-      if (!isSeen || (!this.isStale && this.film.done >= this.settings.samples)) {
+      const needsFilm = this.isStale || (this.film.scale > 1 && !this.isMoving);
+      if (!isSeen || (!needsFilm && this.film.done >= this.settings.samples)) {
         await new Promise((wake) => (this.wake = wake));
-      } else if (this.isStale) {
+      } else if (needsFilm) {
         await this.startFilm();
       } else {
         await this.pass(this.film);
@@ -111,7 +111,7 @@ class Session {
     old?.destroy();
     this.film = film;
     // A film that was started in a move shows its first pass, whatever has moved since.
-    film.isHasty = !this.isMoving;
+    film.mayBeCut = !this.isMoving;
   }
 
   // Adds a block of samples to all pixels and shows the picture.
@@ -119,7 +119,7 @@ class Session {
     const block = film.block(this.settings.samples);
     for (let tile = 0; tile < film.tiles; ) {
       tile += await film.trace(tile, block);
-      if (this.isEnded || (this.isStale && film.isHasty)) return;
+      if (this.isEnded || (this.isStale && film.mayBeCut)) return;
       if (film.done === 0) this.panel.tell(`first sample: ${Math.round((100 * tile) / film.tiles)} %`);
     }
     film.done += block.count;
@@ -147,9 +147,9 @@ class Panel {
   constructor(root, stage) {
     Object.assign(this, { root, stage, session: null, linked: [this], isInView: true });
     const still = root.querySelector("img");
-    this.canvas = element("canvas", { className: "live-canvas", tabIndex: 0, hidden: true });
-    this.canvas.setAttribute("role", "application");
-    this.canvas.setAttribute("aria-label", `${still.alt} Live: arrow keys turn, plus and minus move.`);
+    this.canvas = element("canvas", { className: "live-canvas", hidden: true });
+    this.canvas.setAttribute("role", stage.has_rays ? "application" : "img");
+    this.canvas.setAttribute("aria-label", still.alt);
     this.canvas.style.imageRendering = getComputedStyle(still).imageRendering;
     this.frame = element("div", { className: "live-frame" });
     still.replaceWith(this.frame);
@@ -167,7 +167,8 @@ class Panel {
     this.said.setAttribute("role", "status");
     this.sliders = element("div", { className: "live-sliders", hidden: true });
     this.inputs = stage.sliders.map((slider) => this.slider(slider));
-    const hint = "Drag the picture or use the arrow keys to turn; pinch, scroll over the clicked picture or press + to move.";
+    const hint =
+      "Drag to turn, pinch to come closer. Or click the picture, then use the wheel, the arrow keys, plus and minus.";
     this.sliders.append(element("p", { textContent: hint }));
     this.bar = element("div", { className: "live-bar" }, this.button, this.adjust, this.reset, this.told, this.said);
     root.append(element("div", { className: "live-controls" }, this.bar, this.sliders));
@@ -204,7 +205,7 @@ class Panel {
     return () => {
       const value = this.session?.value(slider) ?? slider.value;
       input.value = write(value);
-      output.textContent = `${+value.toPrecision(3)}${unit}`;
+      output.textContent = `${+value.toFixed(2)}${unit}`;
     };
   }
 
@@ -214,7 +215,6 @@ class Panel {
     this.button.setAttribute("aria-pressed", isLive);
     this.adjust.hidden = !isLive || this.inputs.length === 0;
     this.reset.hidden = !isLive || this.inputs.length === 0;
-    this.root.classList.toggle("is-live", isLive);
   }
 
   open(isOpen) {
@@ -267,6 +267,8 @@ class Panel {
 
   listen() {
     const { canvas } = this;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("aria-description", "Arrow keys turn the scene, plus and minus move the camera.");
     const pointers = new Map();
     const spread = () => {
       const [a, b] = [...pointers.values()];

@@ -1,12 +1,13 @@
 // Opens a page with live figures in Chromium and uses it as a reader would. Prints what it saw as JSON; films and
 // screenshots go to the page's folder. What must hold is in tests/web/browser.rs.
-// Usage: node browser.mjs FOLDER CHROMIUM
-import { readFileSync, writeFileSync } from "node:fs";
-import { join } from "node:path";
+// Usage: node browser.mjs FOLDER
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { delimiter, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
-const [folder, executablePath] = process.argv.slice(2);
+const folder = process.argv[2];
+const executablePath = process.env.PATH.split(delimiter).map((path) => join(path, "chromium")).find(existsSync);
 const url = pathToFileURL(join(folder, "index.html")).href;
 const flags = ["--no-sandbox", "--headless=new", "--enable-unsafe-webgpu", "--use-angle=swiftshader"];
 const vulkan = ["--enable-features=Vulkan", "--use-vulkan=swiftshader", "--hide-scrollbars"];
@@ -84,7 +85,7 @@ async function keepFilm(id, name) {
   await finished(id);
   const file = `film-${name}.bin`;
   writeFileSync(join(folder, file), Buffer.from(await page.evaluate(readFilm), "base64"));
-  seen.films[name] = { file, settings: await settings(id) };
+  seen.films[name] = { file, id, settings: await settings(id) };
 }
 
 async function drag(id, right, down) {
@@ -106,7 +107,7 @@ async function changes(look, act) {
 const ids = JSON.parse(readFileSync(join(folder, "films.json"), "utf8"));
 const glass = "hollow-glass";
 await shot("stills");
-const heights = () => page.locator("p").evaluateAll((all) => all.map((p) => p.getBoundingClientRect().y + scrollY));
+const heights = () => page.locator("body > p").evaluateAll((all) => all.map((p) => p.offsetTop));
 const heightsBefore = await heights();
 for (const id of ids) {
   await live(id);
@@ -186,10 +187,15 @@ for (const [name, width, colorScheme] of [["narrow-dark", 400, "dark"], ["middle
   await page.setViewportSize({ width, height: 800 });
   await page.emulateMedia({ colorScheme });
   await panel(first).scrollIntoViewIfNeeded();
-  if (!(await panel(first).locator(".live-sliders").isVisible())) await button(first, "Adjust").click();
+  await button(first, "Adjust").click();
   await finished(first);
   await shot(name);
+  await button(first, "Adjust").click();
+  await button(second, "Wipe").click();
+  await panel(first).locator("canvas").scrollIntoViewIfNeeded();
+  await shot(`${name}-wipe`);
   seen[name] = await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth);
+  await button(second, "Wipe").click();
 }
 
 // With few turns in a dispatch, paths are put aside and taken up.

@@ -4,7 +4,7 @@ import { readFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
 const script = await import(pathToFileURL(process.argv[2]));
-const { data, tables, cases, blocks } = JSON.parse(readFileSync(0, "utf8"));
+const { data, tables = [], cases = [], blocks = [], times = [], turns = [] } = JSON.parse(readFileSync(0, "utf8"));
 script.use(data);
 const bytes = (base64) => new Uint8Array(Buffer.from(base64, "base64"));
 const base64 = (array) => Buffer.from(array).toString("base64");
@@ -33,4 +33,16 @@ const split = ([wanted, most]) => {
   return all;
 };
 
-console.log(JSON.stringify({ tables: tables.map(table), cases: cases.map(written), blocks: blocks.map(split) }));
+// The number of paths that a budget has learnt after dispatches whose time in ms is `start + paths / rate`.
+const learnt = (dispatches) => {
+  const budget = new script.Budget();
+  return dispatches.map(([start, rate]) => {
+    budget.learn(budget.paths, start + budget.paths / rate);
+    return budget.paths;
+  });
+};
+
+const turned = ([camera, right, up]) => script.orbit(camera, right, up).from;
+
+const told = { tables: tables.map(table), cases: cases.map(written), blocks: blocks.map(split) };
+console.log(JSON.stringify({ ...told, learnt: learnt(times), turned: turns.map(turned) }));

@@ -6,10 +6,12 @@ use base64::engine::general_purpose::STANDARD;
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 use std::process::{Command, Stdio};
 use weekender::kernel::{CameraTable, words_of};
 use weekender::render::RenderJob;
 use weekender::render_gpu::Exported;
+use weekender::render_gpu::shader_source::{EntryPoint, source};
 use weekender::sampling::{SampleBlock, pcg4d};
 use weekender::scene::{Camera, Material, Scene};
 use weekender::stages::{Shading, Stage};
@@ -101,7 +103,7 @@ fn cameras_are_those_of_the_program() {
         |(camera, size, origin)| json!({ "camera": camera_json(camera), "size": size, "origin": origin }),
     );
     let tables: Vec<Value> = tables.collect();
-    let input = json!({ "data": data_of(&[]), "tables": tables, "cases": [], "blocks": [] });
+    let input = json!({ "data": data_of(&[]), "tables": tables });
     let Some(told) = told_by_node(&input) else { return };
     for (index, (camera, [width, height], origin)) in cameras.iter().enumerate() {
         let table = CameraTable::<f32>::new(camera, *width, *height, *origin);
@@ -187,7 +189,7 @@ fn buffers_are_those_of_the_program() {
         json!({ "stage": stage.id, "settings": settings, "size": size, "moves": moves })
     });
     let told: Vec<Value> = told.collect();
-    let input = json!({ "data": data, "tables": [], "cases": told, "blocks": [] });
+    let input = json!({ "data": data, "cases": told });
     let Some(told) = told_by_node(&input) else { return };
     let mut served = 0;
     for (index, Case { stage, size: [width, height], scene, depth, .. }) in cases.into_iter().enumerate() {
@@ -221,7 +223,7 @@ fn buffers_are_those_of_the_program() {
 #[test]
 fn blocks_hold_each_sample_once() {
     let wishes = [(1_u32, 128_u32), (2, 128), (3, 1), (200, 128), (500, 7), (4096, 128), (1000, 1000)];
-    let input = json!({ "data": data_of(&[]), "tables": [], "cases": [], "blocks": wishes });
+    let input = json!({ "data": data_of(&[]), "blocks": wishes });
     let Some(told) = told_by_node(&input) else { return };
     let settings = *job_of(&Stage::ALL[0]).settings();
     for (index, (wanted, most)) in wishes.into_iter().enumerate() {
@@ -236,6 +238,60 @@ fn blocks_hold_each_sample_once() {
             first += count;
         }
         assert_eq!(first, wanted);
+    }
+}
+
+#[test]
+fn dispatches_reach_their_time_and_recover() {
+    let mut times = vec![[0.1, 1e5]; 20];
+    times.push([0.0, 1e3]);
+    let Some(told) = told_by_node(&json!({ "data": data_of(&[]), "times": times })) else { return };
+    let paths = |index: usize| told["learnt"][index].as_f64().unwrap();
+    assert!(paths(0) <= 4.0 * 4096.0, "a careful start");
+    assert!((1.9e6..2.1e6).contains(&paths(19)), "20 ms: {}", paths(19));
+    assert_eq!(paths(20), paths(19) / 2.0, "a dispatch that takes a hundred times as long");
+}
+
+#[test]
+fn orbits_keep_the_distance_and_never_turn_over() {
+    let mut draws = Draws(1 << 21);
+    let camera = Camera { look_from: DVec3::new(0.0, 0.0, 4.0), look_at: DVec3::ZERO, ..Camera::BOOK };
+    let mut turns = vec![(camera, FRAC_PI_2, 0.0), (camera, 0.0, 0.3)];
+    for _ in 0..200 {
+        let tilted = Camera { vup: DVec3::Y + draws.point(0.5), ..camera };
+        turns.push((tilted, draws.within(-9.0, 9.0), draws.within(-9.0, 9.0)));
+    }
+    let told: Vec<_> =
+        turns.iter().map(|(camera, right, up)| json!([camera_json(camera), right, up])).collect();
+    let Some(told) = told_by_node(&json!({ "data": data_of(&[]), "turns": told })) else { return };
+    let eye = |index: usize| -> DVec3 { serde_json::from_value(told["turned"][index].clone()).unwrap() };
+    // The scene turns right and its front goes down, as in the window.
+    assert!(eye(0).distance(DVec3::new(-4.0, 0.0, 0.0)) < 1e-9, "{}", eye(0));
+    assert!(eye(1).y > 0.0, "{}", eye(1));
+    for (index, (camera, ..)) in turns.iter().enumerate() {
+        assert!((eye(index).length() - 4.0).abs() < 1e-9, "{}", eye(index));
+        let from_pole = eye(index).angle_between(camera.vup).to_degrees();
+        assert!((0.999..179.001).contains(&from_pole), "{from_pole} degrees from the pole");
+    }
+}
+
+/// HTML ends a script at `</script` and reads `<!--` as a comment. The rest of the page should not wait for the data.
+#[test]
+fn a_page_can_hold_data_and_script() {
+    let data = web::live_data(Stage::ALL).unwrap();
+    for text in [data.as_str(), web::HOST_SCRIPT] {
+        assert!(!text.contains("</") && !text.contains("<!--"));
+    }
+    let json: Value = serde_json::from_str(&data).unwrap();
+    let programs = &json["programs"];
+    for entry_point in [EntryPoint::PathTrace, EntryPoint::Resolve] {
+        let text = [&programs["shared"], &programs[entry_point.name()]].map(|part| part.as_str().unwrap());
+        assert_eq!(text.concat(), source(entry_point));
+    }
+    for (id, stage) in json["stages"].as_object().unwrap() {
+        let size = stage.to_string().len();
+        let limit = if id == "book" { 70_000 } else { 4_000 };
+        assert!(size < limit, "{id} takes {size} bytes");
     }
 }
 
