@@ -1,7 +1,7 @@
 //! The data of a page's stages.
 
 use super::sliders::{Slider, sliders};
-use crate::kernel::{ASIDE_STRIDE, Tag, WORKGROUP_SIZE, records};
+use crate::kernel::{GpuAside, Tag, WORKGROUP_SIZE, records};
 use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::render_gpu::shader_source::{EntryPoint, shared};
 use crate::render_gpu::{Exported, TURN_LIMIT};
@@ -59,7 +59,8 @@ struct Programs {
 #[derive(Serialize)]
 struct Constants {
     workgroup_size: u32,
-    aside_stride: u32,
+    /// Bytes in which a thread puts its path aside.
+    aside_size: usize,
     turn_limit: u32,
 }
 
@@ -117,7 +118,7 @@ impl LiveData {
             },
             constants: Constants {
                 workgroup_size: WORKGROUP_SIZE,
-                aside_stride: ASIDE_STRIDE,
+                aside_size: size_of::<GpuAside>(),
                 turn_limit: TURN_LIMIT,
             },
             records: records::layouts().into_iter().map(offsets).collect(),
