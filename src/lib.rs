@@ -10,6 +10,7 @@ pub mod batch;
 pub mod bench;
 pub mod chart;
 pub mod cli;
+pub mod companion;
 pub mod compare;
 pub mod console;
 pub mod describe;

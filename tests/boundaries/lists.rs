@@ -192,6 +192,23 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "companion",
+        &[
+            "files",
+            "stages",
+            "chart",
+            "web",
+            "console",
+            "failure",
+            "interrupt",
+            "cli",
+            "terminal",
+            "gallery",
+            "bench",
+            "report",
+        ],
+    ),
+    (
         "app",
         &[
             "scene",
@@ -237,6 +254,9 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("clap", &["cli", "failure"]),
     ("ctrlc", &["interrupt"]),
     ("signal_hook", &["interrupt"]),
+    ("pulldown_cmark", &["companion"]),
+    ("syntect", &["companion"]),
+    ("math_core", &["companion"]),
 ];
 
 /// Each file of the window with the files that it may use; a folder counts as one. Lower layers come first.
