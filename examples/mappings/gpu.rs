@@ -4,7 +4,7 @@ use super::{Comparison, Mapping, Options, SIZE, Traced, compare, job, timed};
 use anyhow::{Context, anyhow};
 use std::rc::Rc;
 use weekender::film::PixelSum;
-use weekender::kernel::{ASIDE_STRIDE, GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, WORKGROUP_SIZE};
+use weekender::kernel::{GpuAside, GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, WORKGROUP_SIZE};
 use weekender::render::RenderJob;
 use weekender::render_gpu::layout::tile_size;
 use weekender::render_gpu::shader_source::shared;
@@ -192,7 +192,7 @@ impl GpuWay {
             .collect();
         let order = filled(bytemuck::bytes_of(&order), BufferUsages::UNIFORM);
         let blocks = filled(bytemuck::cast_slice(&blocks), BufferUsages::STORAGE);
-        let words = filled(&vec![0; 4 * ASIDE_STRIDE as usize], BufferUsages::STORAGE);
+        let words = filled(&[0; size_of::<GpuAside>()], BufferUsages::STORAGE);
         let bound: [Vec<&wgpu::Buffer>; 3] = [
             job_buffers.iter().collect(),
             vec![&order, &blocks, &shared.film, &shared.counters],
