@@ -249,7 +249,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("libm", &["statistics"]),
     ("image", &["output", "compare"]),
     ("indicatif", &["terminal", "report"]),
-    ("maud", &["gallery"]),
+    ("maud", &["gallery", "companion"]),
     ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
     ("ctrlc", &["interrupt"]),
