@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
 use weekender::failure::{self, Failure};
-use weekender::{app, batch, bench, compare, diff, gallery, interrupt, report, stress};
+use weekender::{app, batch, bench, companion, compare, diff, gallery, interrupt, report, stress};
 
 fn main() -> ExitCode {
     failure::install_panic_hook();
@@ -24,6 +24,7 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Compare(options) => compare::run(&options),
         Request::Report(options) => report::run(&options),
         Request::Stress(options) => stress::run(&options),
+        Request::Companion(options) => companion::run(&options),
         Request::Gallery(options) => gallery::run(&options),
         Request::Batch(options) => batch::run(*options),
     }

@@ -78,7 +78,8 @@ pub fn save(path: &Path, figure: &Figure) -> Result<(), ChartError> {
     Ok(())
 }
 
-fn svg(figure: &Figure) -> Result<Vec<u8>, String> {
+/// The figure as SVG, in its own colours on white.
+pub(super) fn svg(figure: &Figure) -> Result<Vec<u8>, String> {
     let mut text = String::new();
     let [width, height] = figure.size;
     let area = SVGBackend::with_string(&mut text, (width, height)).into_drawing_area();

@@ -8,10 +8,12 @@ mod axis;
 mod bars;
 mod file;
 mod lines;
+mod page;
 mod style;
 
 pub use axis::{Axis, Scale};
 pub use file::{ChartError, ChartFormat, save};
+pub use page::page_svg;
 
 /// A picture of one or more charts.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,7 +18,7 @@ pub const GUIDE: RGBColor = RGBColor(0x8A, 0x92, 0x99);
 ///
 /// Source: Okabe and Ito, "Color Universal Design", 2008; without black, which is used for text, and yellow, which is
 /// too light.
-const PALETTE: [RGBColor; 6] = [
+pub const PALETTE: [RGBColor; 6] = [
     RGBColor(0x00, 0x72, 0xB2),
     RGBColor(0xD5, 0x5E, 0x00),
     RGBColor(0x00, 0x9E, 0x73),

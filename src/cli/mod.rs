@@ -1,6 +1,7 @@
 //! The command line, parsed and validated.
 
 mod bench;
+mod companion;
 mod compare;
 mod diff;
 mod error;
@@ -15,6 +16,7 @@ mod subcommands;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
+pub use companion::CompanionOptions;
 pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice, SideChoice};
 pub use error::CliError;
@@ -53,6 +55,8 @@ pub enum Request {
     Report(Box<ReportOptions>),
     /// Render stiff scenes and check the results.
     Stress(Box<StressOptions>),
+    /// Write the page that accompanies the book.
+    Companion(Box<CompanionOptions>),
     /// Render the figures of the book.
     Gallery(Box<GalleryOptions>),
     /// Render to files.
@@ -99,6 +103,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Some(RawCommand::Stress(raw)) => {
             stress::stress(*raw).map(|options| Request::Stress(Box::new(options))).map_err(Failure::input)
         }
+        Some(RawCommand::Companion(raw)) => companion::companion(*raw)
+            .map(|options| Request::Companion(Box::new(options)))
+            .map_err(Failure::input),
         Some(RawCommand::Gallery(raw)) => {
             gallery::gallery(*raw).map(|options| Request::Gallery(Box::new(options))).map_err(Failure::input)
         }

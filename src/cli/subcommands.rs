@@ -1,6 +1,7 @@
 //! The whole command line as clap parses it: rendering, or a subcommand.
 
 use super::bench::RawBench;
+use super::companion::RawCompanion;
 use super::compare::RawCompare;
 use super::diff::RawDiff;
 use super::gallery::RawGallery;
@@ -55,6 +56,11 @@ pub(super) enum RawCommand {
     /// fuses multiply and add, by one that does not, in f64, and by the GPU, if there is one. The exit code is 0 if all
     /// are right, 1 if one is not and 2 if nothing could be run.
     Stress(Box<RawStress>),
+    /// Write the companion: a web page that goes through the book in pictures, in code and live
+    ///
+    /// The page is index.html in the directory --out, with its figures beside it. It needs no server and no network.
+    /// Only figures that changed are rendered again.
+    Companion(Box<RawCompanion>),
     /// Render every figure of the book, with a page that shows them
     ///
     /// Only pictures that are missing, damaged or changed are rendered. After Ctrl-C, the same command goes on.

@@ -7,10 +7,11 @@ use super::options::InjectionPoint;
 use super::scene::SceneData;
 use super::shader_source::EntryPoint;
 use super::turns::{TURN_LIMIT, turns_over_lists};
-use super::{GpuRenderer, HierarchyKind, failed};
+use super::{GpuRenderer, failed};
 use crate::kernel::{Features, RECORD_COLUMNS, words_of};
 use crate::prepared::PreparedScene;
 use crate::render::{RenderError, RenderJob};
+use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
@@ -116,8 +117,7 @@ impl GpuRenderer {
     fn features(&self, prepared: &PreparedScene<f32>) -> Features {
         let needed = prepared.features;
         let features = if self.options.specialise { needed } else { needed.generalised() };
-        let cwbvh = features.hierarchy && self.options.hierarchy == HierarchyKind::Cwbvh;
-        let features = Features { cwbvh, ..features };
+        let features = self.options.hierarchy.in_features(features);
         Features { aside: self.dispatches.whole_samples(&features, prepared).is_none(), ..features }
     }
 
@@ -156,30 +156,25 @@ impl GpuRenderer {
     fn copied(&self, prepared: PreparedScene<f32>, scene: SceneData) -> Result<SceneOnDevice, String> {
         let gpu = &self.gpu;
         let limit = self.binding_limit();
-        let storage = |label, data: &[u8]| {
-            if data.len() as u64 > limit {
-                return Err(format!(
-                    "the {label} of {} spheres take {} bytes, but the adapter binds at most {limit}; render this scene on the CPU",
-                    prepared.records.len(),
-                    data.len(),
-                ));
-            }
-            gpu.filled(label, data, wgpu::BufferUsages::STORAGE)
+        let contents = scene.buffers(&prepared);
+        if let Some((label, data)) = contents.iter().find(|(_, data)| data.len() as u64 > limit) {
+            return Err(format!(
+                "the {label} of {} spheres take {} bytes, but the adapter binds at most {limit}; render this scene on the CPU",
+                prepared.records.len(),
+                data.len(),
+            ));
+        }
+        let filled = |(label, data): &(&'static str, Cow<'_, [u8]>)| {
+            let usage = match *label {
+                "job" => wgpu::BufferUsages::UNIFORM,
+                _ => wgpu::BufferUsages::STORAGE,
+            };
+            gpu.filled(label, data, usage)
         };
-        let anchored: Vec<[u32; 8]> = at_least_one(words_of(&prepared.anchored).as_chunks().0.to_vec());
-        let job = GpuJob::new(&prepared, scene.node_count);
-        let job_buffer =
-            gpu.filled("job", bytemuck::cast_slice(&words_of(&[job])), wgpu::BufferUsages::UNIFORM)?;
-        let buffers = [
-            storage("spheres", bytemuck::cast_slice(&scene.spheres))?,
-            // The shader's types require at least one element of each.
-            storage("anchored spheres", bytemuck::cast_slice(&anchored))?,
-            storage("records", bytemuck::cast_slice(&scene.records))?,
-            storage("nodes", bytemuck::cast_slice(&at_least_one(scene.nodes)))?,
-        ];
-        let bound: Vec<&wgpu::Buffer> = std::iter::once(&job_buffer).chain(&buffers).collect();
-        let group = gpu.bind(&gpu.layouts.job, &bound);
-        let [_, anchored_buffer, rows_buffer, _] = buffers;
+        let buffers = contents.iter().map(filled).collect::<Result<Vec<_>, _>>()?;
+        let group = gpu.bind(&gpu.layouts.job, &buffers.iter().collect::<Vec<_>>());
+        let [job_buffer, _, anchored_buffer, rows_buffer, _] = <[wgpu::Buffer; 5]>::try_from(buffers)
+            .map_err(|buffers| format!("{} buffers instead of 5", buffers.len()))?;
         Ok(SceneOnDevice {
             group,
             anchored_buffer,
@@ -207,11 +202,4 @@ impl GpuRenderer {
             }
         }
     }
-}
-
-fn at_least_one<T: bytemuck::Zeroable>(mut items: Vec<T>) -> Vec<T> {
-    if items.is_empty() {
-        items.push(T::zeroed());
-    }
-    items
 }

@@ -7,6 +7,7 @@
 mod adapter;
 mod device;
 mod dispatches;
+mod exported;
 mod film_buffers;
 mod kernel;
 pub mod layout;
@@ -22,6 +23,7 @@ mod trace;
 mod turns;
 
 pub use adapter::{AdapterInfo, adapters};
+pub use exported::Exported;
 pub use options::{
     BATCH_TARGET, Fault, FaultInjection, GpuError, GpuOptions, GpuReport, HierarchyKind, INTERACTIVE_TARGET,
     InjectionPoint,

@@ -1,5 +1,6 @@
 //! Options for opening and using an adapter, errors if none can be used, and the renderer's report.
 
+use crate::kernel::Features;
 use std::time::Duration;
 use thiserror::Error;
 
@@ -23,6 +24,13 @@ pub enum HierarchyKind {
     /// Eight children per node, with compressed boxes.
     #[default]
     Cwbvh,
+}
+
+impl HierarchyKind {
+    /// The features of a kernel that traverses a hierarchy of this kind, if it traverses one.
+    pub(super) fn in_features(self, features: Features) -> Features {
+        Features { cwbvh: features.hierarchy && self == HierarchyKind::Cwbvh, ..features }
+    }
 }
 
 /// A way in which a device can fail in the middle of a render.

@@ -1,11 +1,12 @@
 //! A scene's spheres, shading records and hierarchy, in the order in which the kernel reads them.
 
 use super::HierarchyKind;
-use super::layout::GpuCwbvhNode;
-use crate::kernel::{CWBVH_STACK_SIZE, RECORD_COLUMNS, STACK_SIZE, words_of};
+use super::layout::{GpuCwbvhNode, GpuJob};
+use crate::kernel::{AnchoredSphere, CWBVH_STACK_SIZE, RECORD_COLUMNS, STACK_SIZE, words_of};
 use crate::prepared::PreparedScene;
 use crate::prepared::cwbvh::Cwbvh;
 use crate::render::RenderJob;
+use std::borrow::Cow;
 
 /// The contents of a scene's buffers.
 pub struct SceneData {
@@ -15,7 +16,7 @@ pub struct SceneData {
     pub records: Vec<[f32; RECORD_COLUMNS]>,
     /// The index in the scene of each sphere.
     pub scene_index: Vec<u32>,
-    /// The hierarchy's nodes, followed by each sphere's place in the list.
+    /// The hierarchy's nodes, followed by each sphere's place in the list; not empty, as the shader's type requires.
     pub nodes: Vec<[u32; 4]>,
     /// Number of nodes.
     pub node_count: u32,
@@ -31,7 +32,7 @@ impl SceneData {
             spheres: prepared.opaque.iter().chain(&prepared.two_root).copied().collect(),
             records: prepared.records.iter().map(|row| row.0).collect(),
             scene_index: prepared.scene_index.clone(),
-            nodes: Vec::new(),
+            nodes: vec![[0; 4]],
             node_count: 0,
         };
         let Some(hierarchy) = &prepared.hierarchy else { return Ok(data) };
@@ -50,6 +51,23 @@ impl SceneData {
             ));
         }
         Ok(data)
+    }
+
+    /// The bytes of the buffers of group 0, by binding, with the names of their contents.
+    pub fn buffers(&self, prepared: &PreparedScene<f32>) -> [(&'static str, Cow<'_, [u8]>); 5] {
+        let bytes = |words: Vec<u32>| Cow::Owned(bytemuck::cast_slice(&words).to_vec());
+        let anchored = match prepared.anchored.as_slice() {
+            // The shader's type requires an element.
+            [] => words_of(&[AnchoredSphere::<f32>::default()]),
+            anchored => words_of(anchored),
+        };
+        [
+            ("job", bytes(words_of(&[GpuJob::new(prepared, self.node_count)]))),
+            ("spheres", Cow::Borrowed(bytemuck::cast_slice(&self.spheres))),
+            ("anchored spheres", bytes(anchored)),
+            ("records", Cow::Borrowed(bytemuck::cast_slice(&self.records))),
+            ("nodes", Cow::Borrowed(bytemuck::cast_slice(&self.nodes))),
+        ]
     }
 
     /// Builds the compressed hierarchy, puts spheres and records in the order of its leaves, and returns its depth.

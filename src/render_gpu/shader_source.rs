@@ -30,7 +30,8 @@ impl EntryPoint {
         }
     }
 
-    fn text(self) -> &'static str {
+    /// The text that only this entry point has; [`shared`] comes before it.
+    pub fn text(self) -> &'static str {
         match self {
             EntryPoint::PathTrace => include_str!("../../shaders/path_trace.wgsl"),
             EntryPoint::Resolve => include_str!("../../shaders/resolve.wgsl"),
@@ -105,12 +106,12 @@ pub fn prelude() -> String {
     [kernel::wgsl(), tags::values::<Probe>(), own.to_owned()].join("\n")
 }
 
+/// The text that all entry points begin with: the declarations from Rust, functions and bindings.
+pub fn shared() -> String {
+    SHARED.into_iter().fold(prelude(), |text, part| text + "\n" + part) + "\n"
+}
+
 /// The complete text of a shader.
 pub fn source(entry_point: EntryPoint) -> String {
-    let mut text = prelude();
-    for part in SHARED.into_iter().chain([entry_point.text()]) {
-        text.push('\n');
-        text.push_str(part);
-    }
-    text
+    shared() + entry_point.text()
 }

@@ -26,7 +26,8 @@ use anyhow::{Context, Result};
 use calibration::Calibration;
 use candidate::{Candidate, Limits};
 pub use data::Data;
-use data::{Curve, SCHEMA, Settings};
+use data::SCHEMA;
+pub use data::{Curve, Settings};
 use progress::Progress;
 use reference::ReferencePicture;
 use serde::Serialize;
@@ -34,6 +35,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use summary::SamplerRatio;
+pub use summary::{CurvePoint, CurveSummary};
 use table::Findings;
 
 /// Samples per pixel of the films that show the effect of rounding.
@@ -287,6 +289,16 @@ fn settings(options: &ReportOptions) -> Settings {
 /// What is wrong, and where.
 pub fn parse(json: &[u8]) -> Result<Data, serde_json::Error> {
     serde_json::from_slice(json)
+}
+
+/// The curves of a report, with the times until the errors in `targets` are reached.
+pub fn curves(data: &Data, targets: &[f64]) -> Vec<CurveSummary> {
+    summary::summaries(data, targets)
+}
+
+/// The chart of a report, with the times to an error of `target` marked.
+pub fn chart(data: &Data, target: f64) -> chart::Figure {
+    figure::figure(data, &curves(data, &[target]), target)
 }
 
 /// Largest `report.json` that is read, bytes.

@@ -97,10 +97,16 @@ impl Stage {
 
     /// The web address of the stage's section in the book.
     pub fn url(&self) -> String {
-        // Anchors in the book are the headings in lower case without spaces.
-        let anchor = |heading: &str| heading.replace(' ', "").to_lowercase();
-        format!("{BOOK_URL}#{}/{}", anchor(self.chapter_title), anchor(self.section_title))
+        book_url(self.chapter_title, Some(self.section_title))
     }
+}
+
+/// The web address of a chapter of the book, or of a section in it, by their headings.
+pub fn book_url(chapter: &str, section: Option<&str>) -> String {
+    // Anchors in the book are the headings in lower case without spaces.
+    let anchor = |heading: &str| heading.replace(' ', "").to_lowercase();
+    let section = section.map_or_else(String::new, |section| format!("/{}", anchor(section)));
+    format!("{BOOK_URL}#{}{section}", anchor(chapter))
 }
 
 impl fmt::Debug for Stage {

@@ -22,6 +22,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("render_gpu", &["stages", "film", "render", "record", "sampling", "kernel", "prepared"]),
     ("explain", &["scene", "stages", "render", "record", "sampling"]),
     ("layers", &["scene", "render", "record", "render_cpu"]),
+    ("web", &["scene", "stages", "render", "kernel", "render_gpu"]),
     ("backends", &["film", "render", "render_cpu", "render_gpu"]),
     ("progressive", &["stages", "film", "render", "heat", "backends"]),
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
@@ -191,6 +192,23 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "companion",
+        &[
+            "files",
+            "stages",
+            "chart",
+            "web",
+            "console",
+            "failure",
+            "interrupt",
+            "cli",
+            "terminal",
+            "gallery",
+            "bench",
+            "report",
+        ],
+    ),
+    (
         "app",
         &[
             "scene",
@@ -219,6 +237,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
 
 /// Crates that only some rooms may use.
 pub const CRATES: &[(&str, &[&str])] = &[
+    ("base64", &["web"]),
     ("egui", &["app"]),
     ("eframe", &["app"]),
     ("egui_plot", &["app"]),
@@ -230,11 +249,14 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("libm", &["statistics"]),
     ("image", &["output", "compare"]),
     ("indicatif", &["terminal", "report"]),
-    ("maud", &["gallery"]),
+    ("maud", &["gallery", "companion"]),
     ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
     ("ctrlc", &["interrupt"]),
     ("signal_hook", &["interrupt"]),
+    ("pulldown_cmark", &["companion"]),
+    ("syntect", &["companion"]),
+    ("math_core", &["companion"]),
 ];
 
 /// Each file of the window with the files that it may use; a folder counts as one. Lower layers come first.

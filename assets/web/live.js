@@ -1,0 +1,352 @@
+// The switches of live figures, and what a reader can do with a picture.
+
+const REST_MS = 200;
+const MOST_SCALE = 8;
+
+let sharedGpu = null;
+const panels = [];
+
+// The device, opened on first use. If it fails, every live picture becomes a still again.
+function theGpu() {
+  if (sharedGpu) return sharedGpu;
+  const opening = (sharedGpu = Gpu.open());
+  const forget = () => {
+    if (sharedGpu === opening) sharedGpu = null;
+  };
+  opening.then((gpu) => {
+    const fail = (reason) => {
+      forget();
+      panels.filter((panel) => panel.session?.gpu === gpu).forEach((panel) => panel.stop(reason));
+      gpu.device.destroy();
+    };
+    gpu.device.lost.then(() => fail("The graphics device was lost. Press Live to start again."));
+    gpu.device.addEventListener("uncapturederror", ({ error }) => fail(error.message));
+  }, forget);
+  return opening;
+}
+
+// What one press of Live starts: the reader's settings, and the film that is made of them. A loop belongs to one
+// session; when that has ended, the loop touches nothing any more.
+class Session {
+  constructor(panel, stage) {
+    Object.assign(this, { panel, stage, isEnded: false, wake: () => {} });
+    this.reset();
+  }
+
+  reset() {
+    const { camera, depth, samples } = this.stage;
+    this.settings = { camera, depth, samples, material: {} };
+    this.change(this.film !== undefined);
+  }
+
+  // Starts the film again. While something moves, pictures are as coarse as they must be to follow.
+  change(isMoving = true) {
+    this.isStale = true;
+    this.isMoving = isMoving;
+    clearTimeout(this.rest);
+    this.rest = setTimeout(() => {
+      this.isMoving = false;
+      this.wake();
+    }, REST_MS);
+    this.wake();
+  }
+
+  // Moves the camera by the first of these moves that the stage's buffers serve. Returns whether there was one.
+  move(...moves) {
+    const camera = moves.map((move) => move(this.settings.camera)).find((moved) => isServed(this.stage, moved));
+    if (camera) {
+      this.settings.camera = camera;
+      this.change();
+    }
+    return camera !== undefined;
+  }
+
+  value(slider) {
+    const { camera, material } = this.settings;
+    if (slider.key === "focus") return focusDistance(camera);
+    if (slider.key in MATERIAL_FIELDS) return material[this.stage.sliders.indexOf(slider)] ?? slider.value;
+    return camera[slider.key] ?? this.settings[slider.key];
+  }
+
+  set(slider, value) {
+    const { key } = slider;
+    if (key in this.settings.camera) {
+      this.move((camera) => ({ ...camera, [key]: value }));
+    } else if (key in MATERIAL_FIELDS) {
+      this.settings.material[this.stage.sliders.indexOf(slider)] = value;
+      this.change();
+    } else {
+      this.settings[key] = value;
+      // More samples continue the film; fewer need a new one.
+      if (key === "samples" && value >= this.film?.done) this.wake();
+      else this.change();
+    }
+  }
+
+  async run() {
+    this.gpu = await theGpu();
+    while (!this.isEnded) {
+      const isSeen = this.panel.isInView && !document.hidden;
+      const needsFilm = this.isStale || (this.film.scale > 1 && !this.isMoving);
+      if (!isSeen || (!needsFilm && this.film.done >= this.settings.samples)) {
+        await new Promise((wake) => (this.wake = wake));
+      } else if (needsFilm) {
+        await this.startFilm();
+      } else {
+        await this.pass(this.film);
+      }
+    }
+    this.film?.destroy();
+  }
+
+  async startFilm() {
+    this.isStale = false;
+    const { width, height } = this.stage;
+    let scale = 1;
+    // A coarse picture has to be done after two dispatches.
+    const affordable = 2 * (this.film?.kernel.budget.paths ?? Infinity);
+    while (this.isMoving && scale < MOST_SCALE && (width * height) / scale ** 2 > affordable) scale *= 2;
+    const old = this.film;
+    const film = await Film.start(this.gpu, this.stage, this.settings, scale);
+    old?.destroy();
+    this.film = film;
+    // A film that was started in a move shows its first pass, whatever has moved since.
+    film.mayBeCut = !this.isMoving;
+  }
+
+  // Adds a block of samples to all pixels and shows the picture.
+  async pass(film) {
+    const block = film.block(this.settings.samples);
+    for (let tile = 0; tile < film.tiles; ) {
+      tile += await film.trace(tile, block);
+      if (this.isEnded || (this.isStale && film.mayBeCut)) return;
+      if (film.done === 0) this.panel.tell(`first sample: ${Math.round((100 * tile) / film.tiles)} %`);
+    }
+    film.done += block.count;
+    const image = await film.image();
+    if (this.isEnded) return;
+    this.panel.show(image, film.done, this.settings.samples, film.seconds);
+    await new Promise(requestAnimationFrame);
+  }
+
+  end() {
+    this.isEnded = true;
+    clearTimeout(this.rest);
+    this.wake();
+  }
+}
+
+function element(name, properties = {}, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+
+// A figure's picture with its switch and sliders.
+class Panel {
+  constructor(root, stage) {
+    Object.assign(this, { root, stage, session: null, linked: [this], isInView: true });
+    const still = root.querySelector("img");
+    this.canvas = element("canvas", { className: "live-canvas", hidden: true });
+    this.canvas.setAttribute("role", stage.has_rays ? "application" : "img");
+    this.canvas.setAttribute("aria-label", still.alt);
+    this.canvas.style.imageRendering = getComputedStyle(still).imageRendering;
+    this.frame = element("div", { className: "live-frame" });
+    still.replaceWith(this.frame);
+    this.frame.append(still, this.canvas);
+
+    this.button = this.toggle("Live", () => (this.session ? this.stop("") : this.start()));
+    const button = (textContent, onclick) => element("button", { type: "button", textContent, onclick });
+    this.adjust = button("Adjust", () => this.open(this.sliders.hidden));
+    this.reset = button("Reset", () => {
+      this.session.reset();
+      this.update();
+    });
+    this.told = element("span", { className: "live-told" });
+    this.said = element("span", { className: "live-told" });
+    this.said.setAttribute("role", "status");
+    this.sliders = element("div", { className: "live-sliders", hidden: true });
+    this.inputs = stage.sliders.map((slider) => this.slider(slider));
+    const hint =
+      "Drag to turn, pinch to come closer. Or click the picture, then use the wheel, the arrow keys, plus and minus.";
+    this.sliders.append(element("p", { textContent: hint }));
+    this.bar = element("div", { className: "live-bar" }, this.button, this.adjust, this.reset, this.told, this.said);
+    root.append(element("div", { className: "live-controls" }, this.bar, this.sliders));
+    this.open(false);
+    this.update();
+    if (!navigator.gpu) {
+      this.button.hidden = true;
+      this.said.textContent = "In a browser with WebGPU, this picture can be turned and changed.";
+    }
+    if (stage.has_rays) this.listen();
+    const watcher = new IntersectionObserver((entries) => {
+      this.isInView = entries.at(-1).isIntersecting;
+      this.session?.wake();
+    });
+    watcher.observe(this.frame);
+  }
+
+  toggle(text, onclick) {
+    const button = element("button", { type: "button", textContent: text, onclick });
+    button.setAttribute("aria-pressed", "false");
+    return button;
+  }
+
+  slider(slider) {
+    const { min, max, step, label, unit, key } = slider;
+    const [read, write] = key === "samples" ? [(x) => 2 ** x, Math.log2] : [Number, (x) => x];
+    const input = element("input", { type: "range", min, max, step });
+    const output = element("output");
+    this.sliders.append(element("label", {}, element("span", { textContent: label }), input, output));
+    input.oninput = () => {
+      this.session.set(slider, read(input.value));
+      this.update();
+    };
+    return () => {
+      const value = this.session?.value(slider) ?? slider.value;
+      input.value = write(value);
+      output.textContent = `${+value.toFixed(2)}${unit}`;
+    };
+  }
+
+  update() {
+    this.inputs.forEach((show) => show());
+    const isLive = this.session !== null;
+    this.button.setAttribute("aria-pressed", isLive);
+    this.adjust.hidden = !isLive || this.inputs.length === 0;
+    this.reset.hidden = !isLive || this.inputs.length === 0;
+  }
+
+  open(isOpen) {
+    this.sliders.hidden = !isOpen;
+    this.adjust.setAttribute("aria-expanded", isOpen);
+  }
+
+  start() {
+    this.said.textContent = "";
+    this.tell("starting");
+    const session = (this.session = new Session(this, this.stage));
+    this.update();
+    session.run().catch(async (error) => {
+      // If the device was lost, all its work fails, often before the loss is known; that message is the better one.
+      await new Promise((passed) => setTimeout(passed, REST_MS));
+      if (!session.isEnded) this.stop(error.message);
+    });
+  }
+
+  // Back to the still, with a sentence for the reader if there is something to say.
+  stop(reason) {
+    this.session?.end();
+    this.session = null;
+    this.canvas.hidden = true;
+    this.tell("");
+    this.said.textContent = reason;
+    this.open(false);
+    this.update();
+  }
+
+  show(image, done, wanted, seconds) {
+    const { canvas } = this;
+    if (canvas.width !== image.width || canvas.height !== image.height) {
+      [canvas.width, canvas.height] = [image.width, image.height];
+    }
+    canvas.getContext("2d").putImageData(image, 0, 0);
+    canvas.hidden = false;
+    this.tell(`${done} of ${wanted} samples, ${seconds.toFixed(1)} s`);
+  }
+
+  tell(text) {
+    this.told.textContent = text;
+  }
+
+  move(...moves) {
+    for (const panel of this.linked) {
+      if (panel.session?.move(...moves)) panel.update();
+    }
+  }
+
+  listen() {
+    const { canvas } = this;
+    canvas.tabIndex = 0;
+    canvas.setAttribute("aria-description", "Arrow keys turn the scene, plus and minus move the camera.");
+    const pointers = new Map();
+    const spread = () => {
+      const [a, b] = [...pointers.values()];
+      return b ? Math.hypot(a.x - b.x, a.y - b.y) : 0;
+    };
+    const turn = (right, up) => {
+      this.move((c) => orbit(c, right, up), (c) => orbit(c, right, 0), (c) => orbit(c, 0, up));
+    };
+    const approach = (factor) => this.move((c) => dolly(c, factor));
+    canvas.onpointerdown = (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    };
+    canvas.onpointermove = (event) => {
+      const before = pointers.get(event.pointerId);
+      if (!before) return;
+      const spreadBefore = spread();
+      const now = { x: event.clientX, y: event.clientY };
+      pointers.set(event.pointerId, now);
+      const radiansPerPixel = Math.PI / canvas.clientWidth;
+      if (pointers.size === 1) turn((now.x - before.x) * radiansPerPixel, (now.y - before.y) * radiansPerPixel);
+      else if (spread() > 0) approach(spreadBefore / spread());
+    };
+    canvas.onpointerup = canvas.onpointercancel = (event) => pointers.delete(event.pointerId);
+    // The wheel scrolls the page until the picture has been clicked.
+    canvas.onwheel = (event) => {
+      if (document.activeElement !== canvas) return;
+      event.preventDefault();
+      approach(Math.exp(clamped(event.deltaY, -200, 200) / 600));
+    };
+    const keys = {
+      ArrowLeft: () => turn(-0.1, 0),
+      ArrowRight: () => turn(0.1, 0),
+      ArrowUp: () => turn(0, -0.1),
+      ArrowDown: () => turn(0, 0.1),
+      "+": () => approach(0.9),
+      "-": () => approach(1 / 0.9),
+    };
+    canvas.onkeydown = (event) => {
+      if (!(event.key in keys) || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      keys[event.key]();
+    };
+  }
+}
+
+// In a figure of two pictures of one shape, a button lays the second over the first, as far as a slider says. A drag
+// then turns both.
+function addWipe(root, [first, second]) {
+  const { stage: a } = first, { stage: b } = second;
+  if (a.width * b.height !== a.height * b.width) return;
+  const slider = element("input", { type: "range", className: "live-wipe", min: 0, max: 100, step: 0.5, value: 50 });
+  slider.setAttribute("aria-label", "Wipe between the two pictures");
+  slider.hidden = true;
+  slider.oninput = () => root.style.setProperty("--live-wipe", `${slider.value}%`);
+  const button = second.toggle("Wipe", () => {
+    const isOn = slider.hidden;
+    slider.hidden = !isOn;
+    slider.oninput();
+    root.classList.toggle("live-wiping", isOn);
+    button.setAttribute("aria-pressed", isOn);
+    for (const panel of [first, second]) panel.linked = isOn ? [first, second] : [panel];
+  });
+  second.button.after(button);
+  root.append(slider);
+}
+
+function start() {
+  use(JSON.parse(document.getElementById("live-data").textContent));
+  for (const stage of Object.values(data.stages)) stage.buffers = stage.buffers.map(decoded);
+  for (const root of document.querySelectorAll(".panels")) {
+    const made = [...root.querySelectorAll(".panel[data-stage]")]
+      .filter((panel) => data.stages[panel.dataset.stage])
+      .map((panel) => (panel.live = new Panel(panel, data.stages[panel.dataset.stage])));
+    panels.push(...made);
+    if (made.length === 2) addWipe(root, made);
+  }
+  document.addEventListener("visibilitychange", () => panels.forEach((panel) => panel.session?.wake()));
+}
+
+if (typeof document !== "undefined") start();

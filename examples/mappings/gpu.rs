@@ -1,0 +1,324 @@
+//! The GPU: one thread per pixel, or one per sample.
+
+use super::{Comparison, Mapping, Options, SIZE, Traced, compare, job, timed};
+use anyhow::{Context, anyhow};
+use std::rc::Rc;
+use weekender::film::PixelSum;
+use weekender::kernel::{GpuAside, GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, WORKGROUP_SIZE};
+use weekender::render::RenderJob;
+use weekender::render_gpu::layout::tile_size;
+use weekender::render_gpu::shader_source::shared;
+use weekender::render_gpu::{Exported, TURN_LIMIT};
+use weekender::sampling::SampleBlock;
+use wgpu::{BufferUsages, PollType};
+
+const ENTRIES: &str = include_str!("mappings.wgsl");
+
+/// Additions to a pixel that any number of threads may make at once.
+const ATOMIC_FILM: &str = "
+fn add_to_film(half: u32, pixel: u32, sums: vec3u) {
+    let index = 6u * pixel;
+    add_wide(index, sums.x);
+    add_wide(index + 2u, sums.y);
+    add_wide(index + 4u, sums.z);
+}
+
+fn add_wide(index: u32, more: u32) {
+    let before = atomicAdd(&film[index], more);
+    if before + more < before {
+        atomicAdd(&film[index + 1u], 1u);
+    }
+}
+";
+
+/// Who traces what.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Way {
+    Pixels,
+    SamplesOfATile,
+    SamplesOfAPixel,
+}
+
+impl Way {
+    const ALL: [Way; 3] = [Way::Pixels, Way::SamplesOfATile, Way::SamplesOfAPixel];
+
+    fn entry_point(self) -> &'static str {
+        match self {
+            Way::Pixels => "pixels",
+            Way::SamplesOfATile => "samples_of_a_tile",
+            Way::SamplesOfAPixel => "samples_of_a_pixel",
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Way::Pixels => "a thread per pixel",
+            Way::SamplesOfATile => "a thread per sample, neighbouring pixels in a group",
+            Way::SamplesOfAPixel => "a thread per sample, a pixel's samples in a group",
+        }
+    }
+
+    /// The program's shaders with the parts in which this way differs.
+    fn source(self) -> anyhow::Result<String> {
+        let mut text = shared();
+        // A thread begins with its own block. With one thread per sample, it ends there, too.
+        let end = if self == Way::Pixels { "order.block_count" } else { "own_block + 1u" };
+        let mut replacements = vec![
+            ("var next_block = 0u;", "var next_block = own_block;".to_owned()),
+            (
+                "if next_block > 0u {\n                add_to_film",
+                "if next_block > own_block {\n                add_to_film".to_owned(),
+            ),
+            ("if next_block == order.block_count", format!("if next_block == {end}")),
+        ];
+        if self != Way::Pixels {
+            let body = text.split("fn add_to_film").nth(1).and_then(|rest| rest.split("\n}\n").next());
+            let old = format!("fn add_to_film{}\n}}\n", body.context("add_to_film is not in the shaders")?);
+            text = text.replace(&old, ATOMIC_FILM);
+            replacements.push(("film: array<PixelSum>", "film: array<atomic<u32>>".to_owned()));
+        }
+        for (old, new) in replacements {
+            anyhow::ensure!(text.matches(old).count() == 1, "{old:?} is not in the shaders once");
+            text = text.replace(old, &new);
+        }
+        Ok(text + ENTRIES)
+    }
+}
+
+/// The device and what all ways share.
+struct Shared {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    film: wgpu::Buffer,
+    counters: wgpu::Buffer,
+    staging: wgpu::Buffer,
+    pixels: u64,
+}
+
+struct GpuWay {
+    way: Way,
+    shared: Rc<Shared>,
+    pipeline: wgpu::ComputePipeline,
+    groups: Vec<wgpu::BindGroup>,
+    workgroups: [u32; 3],
+}
+
+pub fn measure(options: &Options) -> anyhow::Result<Comparison> {
+    let job = job()?;
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let wanted = options.adapter.clone().unwrap_or_default().to_lowercase();
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+    let adapter = adapters
+        .into_iter()
+        .find(|adapter| adapter.get_info().name.to_lowercase().contains(&wanted))
+        .context("there is no such adapter")?;
+    let limits =
+        wgpu::Limits { max_storage_buffers_per_shader_stage: 8, ..wgpu::Limits::downlevel_defaults() };
+    let described = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+    let (device, queue) = pollster::block_on(adapter.request_device(&described))?;
+    let pixels = u64::from(SIZE[0]) * u64::from(SIZE[1]);
+    let length = pixels * size_of::<GpuPixelSum>() as u64;
+    let buffer = |size: u64, usage| {
+        device.create_buffer(&wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false })
+    };
+    let both = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+    let shared = Rc::new(Shared {
+        film: buffer(length, both),
+        counters: buffer(size_of::<GpuCounters>() as u64, both),
+        staging: buffer(length + 256, BufferUsages::MAP_READ | BufferUsages::COPY_DST),
+        pixels,
+        device,
+        queue,
+    });
+    let mut ways: Vec<Box<dyn Mapping>> = Vec::new();
+    for way in Way::ALL {
+        ways.push(Box::new(GpuWay::new(way, &shared, &job, options.samples)?));
+    }
+    let info = adapter.get_info();
+    let machine = match info.device_type {
+        wgpu::DeviceType::Cpu => format!("{}, a software GPU on {}", info.name, super::processor()),
+        _ => info.name,
+    };
+    compare(options, machine, &mut ways)
+}
+
+impl GpuWay {
+    fn new(way: Way, shared: &Rc<Shared>, job: &RenderJob, samples: u64) -> anyhow::Result<Self> {
+        let (device, queue) = (&shared.device, &shared.queue);
+        let exported = Exported::new(job).map_err(|reason| anyhow!(reason))?;
+        let source = wgpu::ShaderSource::Wgsl(way.source()?.into());
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+        let overrides = exported.features.overrides();
+        let constants: Vec<(&str, f64)> =
+            overrides.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+        let filled = |bytes: &[u8], usage: BufferUsages| {
+            let size = (bytes.len() as u64).next_multiple_of(16).max(256);
+            let usage = usage | BufferUsages::COPY_DST;
+            let described = wgpu::BufferDescriptor { label: None, size, usage, mapped_at_creation: false };
+            let buffer = device.create_buffer(&described);
+            queue.write_buffer(&buffer, 0, bytes);
+            buffer
+        };
+        let limit = if way == Way::Pixels { exported.block_limit } else { 1 };
+        let ranges: Vec<_> = match way {
+            Way::Pixels => vec![0..samples],
+            _ => (0..samples).map(|sample| sample..sample + 1).collect(),
+        };
+        let blocks: Vec<GpuBlock> = ranges
+            .into_iter()
+            .flat_map(|range| SampleBlock::split(range, 1, limit))
+            .map(|block| {
+                let (counter, step) = block.counter(job.settings());
+                GpuBlock { half: block.half, counter, step, count: block.count }
+            })
+            .collect();
+        let [width, height] = SIZE;
+        let tile = tile_size(width, height);
+        let tiles = width.div_ceil(tile[0]) * height.div_ceil(tile[1]);
+        let order = GpuDispatch {
+            tile_count: tiles,
+            block_count: blocks.len() as u32,
+            turn_limit: TURN_LIMIT,
+            row_count: height,
+            ..GpuDispatch::default()
+        };
+        let job_buffers: Vec<wgpu::Buffer> = exported
+            .buffers
+            .iter()
+            .enumerate()
+            .map(|(place, bytes)| {
+                filled(bytes, if place == 0 { BufferUsages::UNIFORM } else { BufferUsages::STORAGE })
+            })
+            .collect();
+        let order = filled(bytemuck::bytes_of(&order), BufferUsages::UNIFORM);
+        let blocks = filled(bytemuck::cast_slice(&blocks), BufferUsages::STORAGE);
+        let words = filled(&[0; size_of::<GpuAside>()], BufferUsages::STORAGE);
+        let bound: [Vec<&wgpu::Buffer>; 3] = [
+            job_buffers.iter().collect(),
+            vec![&order, &blocks, &shared.film, &shared.counters],
+            vec![&words],
+        ];
+        let uniform = wgpu::BufferBindingType::Uniform;
+        let [read, write] = [true, false].map(|read_only| wgpu::BufferBindingType::Storage { read_only });
+        let types: [&[wgpu::BufferBindingType]; 3] =
+            [&[uniform, read, read, read, read], &[uniform, read, write, write], &[write]];
+        let layouts: Vec<wgpu::BindGroupLayout> = types
+            .iter()
+            .map(|types| {
+                let entries: Vec<_> = types
+                    .iter()
+                    .zip(0..)
+                    .map(|(ty, binding)| wgpu::BindGroupLayoutEntry {
+                        binding,
+                        visibility: wgpu::ShaderStages::COMPUTE,
+                        ty: wgpu::BindingType::Buffer {
+                            ty: *ty,
+                            has_dynamic_offset: false,
+                            min_binding_size: None,
+                        },
+                        count: None,
+                    })
+                    .collect();
+                device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+                    label: None,
+                    entries: &entries,
+                })
+            })
+            .collect();
+        let groups = layouts.iter().zip(&bound).map(|(layout, buffers)| {
+            let entries: Vec<_> = buffers
+                .iter()
+                .zip(0..)
+                .map(|(buffer, binding)| wgpu::BindGroupEntry {
+                    binding,
+                    resource: buffer.as_entire_binding(),
+                })
+                .collect();
+            device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
+        });
+        let groups: Vec<wgpu::BindGroup> = groups.collect();
+        let layouts: Vec<Option<&wgpu::BindGroupLayout>> = layouts.iter().map(Some).collect();
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &layouts,
+            immediate_size: 0,
+        });
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: Some(&layout),
+            module: &module,
+            entry_point: Some(way.entry_point()),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..Default::default()
+            },
+            cache: None,
+        });
+        let samples = samples as u32;
+        let pixels = width * height;
+        let workgroups = match way {
+            Way::Pixels => [tiles, 1, 1],
+            Way::SamplesOfATile => [tiles, samples, 1],
+            Way::SamplesOfAPixel => {
+                anyhow::ensure!(
+                    samples % WORKGROUP_SIZE == 0,
+                    "samples must be a multiple of {WORKGROUP_SIZE}"
+                );
+                [pixels.min(65_535), samples / WORKGROUP_SIZE, pixels.div_ceil(65_535)]
+            }
+        };
+        Ok(GpuWay { way, shared: Rc::clone(shared), pipeline, groups, workgroups })
+    }
+
+    fn dispatch(&self) -> anyhow::Result<()> {
+        let Shared { device, queue, .. } = &*self.shared;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&self.pipeline);
+            for (place, group) in (0..).zip(&self.groups) {
+                pass.set_bind_group(place, group, &[]);
+            }
+            let [x, y, z] = self.workgroups;
+            pass.dispatch_workgroups(x, y, z);
+        }
+        queue.submit([encoder.finish()]);
+        device.poll(PollType::wait_indefinitely())?;
+        Ok(())
+    }
+}
+
+impl Mapping for GpuWay {
+    fn name(&self) -> String {
+        self.way.name().to_owned()
+    }
+
+    fn trace(&mut self) -> anyhow::Result<Traced> {
+        let Shared { device, queue, film, counters, staging, pixels } = &*self.shared;
+        let clear = |encoder: &mut wgpu::CommandEncoder| {
+            encoder.clear_buffer(film, 0, None);
+            encoder.clear_buffer(counters, 0, None);
+        };
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        clear(&mut encoder);
+        queue.submit([encoder.finish()]);
+        device.poll(PollType::wait_indefinitely())?;
+        let (outcome, seconds) = timed(|| self.dispatch());
+        outcome?;
+        let length = pixels * size_of::<GpuPixelSum>() as u64;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_buffer_to_buffer(film, 0, staging, 0, length);
+        let counted = size_of::<GpuCounters>() as u64;
+        encoder.copy_buffer_to_buffer(counters, 0, staging, length, counted);
+        queue.submit([encoder.finish()]);
+        staging.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+        device.poll(PollType::wait_indefinitely())?;
+        let bytes = staging.slice(..length + counted).get_mapped_range()?.to_vec();
+        staging.unmap();
+        let (sums, counters) = bytes.split_at(length as usize);
+        let counters: GpuCounters = bytemuck::pod_read_unaligned(counters);
+        anyhow::ensure!(counters.dispatch.unfinished == 0, "some paths were not finished");
+        let film = sums.chunks_exact(24).map(|pixel| PixelSum(bytemuck::pod_read_unaligned(pixel))).collect();
+        Ok(Traced { seconds, film, in_use: None })
+    }
+}

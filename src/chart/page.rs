@@ -1,0 +1,73 @@
+//! Charts for a web page: SVG that takes its colours from the page.
+
+use super::Figure;
+use super::file::svg;
+use super::style::{FAINT_INK, FINE_GRID, GRID, GUIDE, INK, PALETTE, provide_font};
+use plotters::style::{RGBColor, WHITE};
+
+/// The figure as an `<svg>` element that is as wide as its place, with the page's colours: `currentColor` for text, the
+/// variables `--muted` and `--line` for axes and grid, and `--series-1` to `--series-6` for what was measured. `label`
+/// describes it to those who cannot see it.
+///
+/// # Errors
+/// If plotters or the font fails.
+pub fn page_svg(figure: &Figure, label: &str) -> Result<String, String> {
+    if !provide_font() {
+        return Err("the font of the charts cannot be read".to_owned());
+    }
+    let text = String::from_utf8(svg(figure)?).map_err(|error| error.to_string())?;
+    let inside =
+        text.find("<svg").and_then(|start| text[start..].find('>').map(|end| &text[start + end + 1..]));
+    let inside = inside.ok_or("the chart has no <svg> element")?;
+    let [width, height] = figure.size;
+    let mut page =
+        format!("<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{label}\">{inside}");
+    let named = [(INK, "currentColor"), (FAINT_INK, "var(--muted)"), (GUIDE, "var(--muted)")];
+    let grid = [(GRID, "var(--line)"), (FINE_GRID, "var(--line-fine)"), (WHITE, "none")];
+    for (color, name) in named.into_iter().chain(grid) {
+        page = page.replace(&quoted(color), &format!("\"{name}\""));
+    }
+    for (index, color) in PALETTE.into_iter().enumerate() {
+        page = page.replace(&quoted(color), &format!("\"var(--series-{})\"", index + 1));
+    }
+    Ok(page)
+}
+
+/// A colour as plotters writes it in an attribute.
+fn quoted(RGBColor(r, g, b): RGBColor) -> String {
+    format!("\"#{r:02X}{g:02X}{b:02X}\"")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Axis, LineChart, Look, Panel, Point, Scale, Series};
+    use super::*;
+
+    #[test]
+    fn no_colour_is_left() {
+        let points: Vec<Point> =
+            [1.0, 2.0].iter().map(|x| Point { x: *x, y: *x, spread: Some([0.5 * x, 2.0 * x]) }).collect();
+        let series = |name: &str, look| Series { name: name.to_owned(), points: points.clone(), look };
+        let chart = LineChart {
+            title: "t".to_owned(),
+            x: Axis::new("x", Scale::Log),
+            y: Axis::new("y", Scale::Log),
+            series: vec![series("a", Look::Measured), series("b", Look::Guide)],
+            legend: Some(super::super::Corner::UpperLeft),
+        };
+        let figure = Figure {
+            title: "Title".to_owned(),
+            about: "about".to_owned(),
+            size: [400, 300],
+            columns: 1,
+            panels: vec![Panel::Lines(chart)],
+        };
+        let svg = page_svg(&figure, "A chart").unwrap();
+        assert!(
+            svg.starts_with("<svg viewBox=\"0 0 400 300\" role=\"img\" aria-label=\"A chart\">"),
+            "{svg}"
+        );
+        assert!(svg.contains("var(--series-1)") && svg.contains("currentColor"), "{svg}");
+        assert!(!svg.contains("\"#"), "{svg}");
+    }
+}

@@ -1,0 +1,106 @@
+//! Directives: paragraphs such as `{{figure sky}}`, each of which becomes a part of the page.
+
+use super::excerpt::Excerpt;
+use super::library::FOLDER;
+use super::measured;
+use super::site::{Site, Uses};
+use super::text::typographic;
+use crate::gallery::{Figure, is_about_pixels};
+use maud::{Markup, PreEscaped, html};
+
+/// The directives with what follows them.
+const KNOWN: &str =
+    "figure ID, excerpt NAME, pair NAME NAME, table NAME, chart NAME, diagram NAME, glossary, references";
+
+/// Stands where the glossary is to be put, until all chapters are rendered.
+pub const GLOSSARY_MARK: &str = "<!-- glossary -->";
+
+/// The same for the references.
+pub const REFERENCES_MARK: &str = "<!-- references -->";
+
+/// The HTML of a directive, given without its braces.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn html(site: &Site, directive: &str, uses: &mut Uses) -> Result<Markup, String> {
+    let words: Vec<&str> = directive.split_whitespace().collect();
+    match words.as_slice() {
+        ["figure", id] => figure(id, uses),
+        ["excerpt", name] => Ok(html! { (excerpt(site, name, uses)?) }),
+        ["pair", first, second] => {
+            let pair = [excerpt(site, first, uses)?, excerpt(site, second, uses)?];
+            Ok(html! { div .pair { @for side in pair { (side) } } })
+        }
+        ["table", name] => measured::table(&site.measured, name),
+        ["chart", name] => measured::chart(&site.measured, name),
+        ["diagram", name] => diagram(site, name, uses),
+        ["glossary"] => Ok(PreEscaped(GLOSSARY_MARK.to_owned())),
+        ["references"] => Ok(PreEscaped(REFERENCES_MARK.to_owned())),
+        _ => Err(format!("{{{{{directive}}}}} is no directive; use one of {KNOWN}")),
+    }
+}
+
+fn figure(id: &str, uses: &mut Uses) -> Result<Markup, String> {
+    let figure = Figure::find(id).map_err(|error| error.to_string())?;
+    if !uses.anchors.insert(format!("figure-{id}")) {
+        return Err(format!("the figure {id:?} is on the page already; link it as [text](#figure-{id})"));
+    }
+    uses.figures.push(figure);
+    let is_wide = figure.panels.len() > 1;
+    Ok(html! {
+        figure .figure .wide[is_wide] id={ "figure-" (id) } {
+            div .panels .{ "of-" (figure.panels.len()) } {
+                @for panel in figure.panels {
+                    div .panel data-stage=(panel.stage.id) {
+                        img .pixels[is_about_pixels(panel.stage)] src={ "figures/" (panel.stage.id) ".png" }
+                            width=(panel.stage.setup.width) height=(panel.stage.setup.height)
+                            alt=(panel.alt) loading="lazy";
+                        @if is_wide { p .label { (typographic(panel.label)) } }
+                    }
+                }
+            }
+            figcaption { strong { (typographic(figure.title)) "." } " " (typographic(figure.caption)) }
+        }
+    })
+}
+
+fn excerpt(site: &Site, name: &str, uses: &mut Uses) -> Result<Markup, String> {
+    let Some(excerpt) = site.excerpts.get(name) else {
+        return Err(format!("excerpts.toml has no excerpt {name:?}, or it could not be read"));
+    };
+    uses.excerpts.insert(name.to_owned());
+    let Excerpt { file, first, last, text } = excerpt;
+    let language = file.rsplit('.').next().unwrap_or_default();
+    let code = site.highlighter.html(language, text).map_err(|error| format!("{error:#}"))?;
+    let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
+    Ok(html! {
+        figure .code {
+            figcaption { code .path { (file) } " " span .lines { (lines) } }
+            pre tabindex="0" role="group" aria-label={ (file) ", " (lines) } { code { (code) } }
+        }
+    })
+}
+
+/// Diagrams are SVG files whose colours are those of the text around them.
+fn diagram(site: &Site, name: &str, uses: &mut Uses) -> Result<Markup, String> {
+    let path = format!("{FOLDER}/diagrams/{name}.svg");
+    let text = site.library.read(&path).map_err(|message| format!("{path} {message}"))?;
+    let Some(start) = text.find("<svg") else {
+        return Err(format!("{path} has no <svg> element"));
+    };
+    uses.diagrams.insert(name.to_owned());
+    let caption = between(&text, "<title", "</title>");
+    Ok(html! {
+        figure .diagram id={ "diagram-" (name) } {
+            div .scroll { (PreEscaped(text[start..].trim())) }
+            @if let Some(caption) = caption { figcaption { (PreEscaped(caption)) } }
+        }
+    })
+}
+
+/// The content of the first element that begins so.
+fn between<'a>(text: &'a str, open: &str, close: &str) -> Option<&'a str> {
+    let inside = &text[text.find(open)?..];
+    let inside = &inside[inside.find('>')? + 1..];
+    Some(inside[..inside.find(close)?].trim())
+}

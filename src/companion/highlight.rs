@@ -1,0 +1,123 @@
+//! Code as HTML with classes, so that one style sheet colours it in light and dark.
+//!
+//! The syntax definitions are small and our own, because no collection has WGSL. Their scopes are the class names:
+//! `hl-k` keyword, `hl-t` type, `hl-f` function, `hl-v` constant, `hl-n` number, `hl-s` string, `hl-c` comment, `hl-m`
+//! macro or attribute.
+
+use anyhow::{Context, Result, anyhow};
+use maud::PreEscaped;
+use syntect::html::{ClassStyle, ClassedHTMLGenerator};
+use syntect::parsing::{SyntaxDefinition, SyntaxSet, SyntaxSetBuilder};
+
+const SYNTAXES: [&str; 5] = [
+    include_str!("../../assets/companion/syntaxes/rust.sublime-syntax"),
+    include_str!("../../assets/companion/syntaxes/wgsl.sublime-syntax"),
+    include_str!("../../assets/companion/syntaxes/c.sublime-syntax"),
+    include_str!("../../assets/companion/syntaxes/python.sublime-syntax"),
+    include_str!("../../assets/companion/syntaxes/sh.sublime-syntax"),
+];
+
+/// The language of blocks without colours.
+const PLAIN: &str = "text";
+
+/// Colours code in the languages of the page.
+pub struct Highlighter {
+    syntaxes: SyntaxSet,
+}
+
+impl Highlighter {
+    /// Reads the syntax definitions.
+    ///
+    /// # Errors
+    /// If one of them is wrong.
+    pub fn new() -> Result<Self> {
+        let mut builder = SyntaxSetBuilder::new();
+        for text in SYNTAXES {
+            let read = SyntaxDefinition::load_from_str(text, true, None);
+            builder.add(read.context("cannot read a syntax definition of the page")?);
+        }
+        Ok(Highlighter { syntaxes: builder.build() })
+    }
+
+    /// The code as HTML. `language` is a name or a file extension.
+    ///
+    /// # Errors
+    /// If the language is unknown.
+    pub fn html(&self, language: &str, code: &str) -> Result<PreEscaped<String>> {
+        if language == PLAIN {
+            return Ok(PreEscaped(maud::html! { (code) }.into_string()));
+        }
+        let syntax = self.syntaxes.find_syntax_by_token(language).ok_or_else(|| {
+            let known: Vec<&str> =
+                self.syntaxes.syntaxes().iter().map(|syntax| syntax.name.as_str()).collect();
+            anyhow!("code in {language:?} has no colours; use {PLAIN}, {}", known.join(", "))
+        })?;
+        let mut html = ClassedHTMLGenerator::new_with_class_style(syntax, &self.syntaxes, ClassStyle::Spaced);
+        for line in code.split_inclusive('\n') {
+            html.parse_html_for_line_which_includes_newline(line).context("cannot colour code")?;
+        }
+        Ok(PreEscaped(html.finalize()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn html(language: &str, code: &str) -> String {
+        Highlighter::new().unwrap().html(language, code).unwrap().into_string()
+    }
+
+    #[test]
+    fn words_have_classes() {
+        let rust = html("rs", "pub fn hit<'a>(t: f32) -> u32 { /* a /* b */ */ x'a' \"}\" }\n");
+        for part in [
+            "<span class=\"hl-k\">fn</span>",
+            "<span class=\"hl-f\">hit</span>",
+            "<span class=\"hl-t\">'a</span>",
+            "<span class=\"hl-t\">f32</span>",
+            "<span class=\"hl-c\">/* a <span class=\"hl-c\">/* b */</span> */</span>",
+            "<span class=\"hl-s\">&quot;}&quot;</span>",
+        ] {
+            assert!(rust.contains(part), "{part} in {rust}");
+        }
+        let wgsl = html("wgsl", "@must_use fn f(a: vec3<f32>) -> u32 { return 3u; } // x\n");
+        for part in ["hl-m\">@must_use", "hl-t\">vec3", "hl-n\">3u", "hl-c\">// x"] {
+            assert!(wgsl.contains(part), "{part} in {wgsl}");
+        }
+    }
+
+    #[test]
+    fn text_is_unchanged_apart_from_the_tags() {
+        for (language, code) in [
+            ("rust", include_str!("../render_cpu/sphere.rs")),
+            ("wgsl", include_str!("../../shaders/path.wgsl")),
+            ("c", include_str!("../../reference/rt_weekend.c")),
+        ] {
+            let html = html(language, code);
+            let mut text = String::new();
+            let mut is_tag = false;
+            for c in html.chars() {
+                match c {
+                    '<' => is_tag = true,
+                    '>' if is_tag => is_tag = false,
+                    _ if !is_tag => text.push(c),
+                    _ => {}
+                }
+            }
+            let text = text
+                .replace("&lt;", "<")
+                .replace("&gt;", ">")
+                .replace("&quot;", "\"")
+                .replace("&#39;", "'")
+                .replace("&amp;", "&");
+            assert!(text == code, "{language}");
+        }
+    }
+
+    #[test]
+    fn unknown_languages_are_refused() {
+        let error = Highlighter::new().unwrap().html("cobol", "").unwrap_err().to_string();
+        assert!(error.contains("\"cobol\"") && error.contains("wgsl"), "{error}");
+    }
+}

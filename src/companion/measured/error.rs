@@ -1,0 +1,106 @@
+//! Error against time, from the JSON of `weekender report`.
+
+use super::{Kept, origin, scrolling};
+use crate::chart;
+use crate::report::{self, CurveSummary};
+use maud::{Markup, PreEscaped, html};
+
+/// The errors to which times are given.
+const TARGETS: [f64; 2] = [0.01, 0.001];
+
+fn data(kept: &Kept) -> Result<report::Data, String> {
+    let remedy = "make the file with weekender report --out DIR";
+    report::parse(kept.text.as_bytes()).map_err(|error| format!("{error}; {remedy}"))
+}
+
+/// A table with the times of all scenes.
+pub fn table(kept: &Kept) -> Result<Markup, String> {
+    let data = data(kept)?;
+    let curves = report::curves(&data, &TARGETS);
+    let base = |curve: &CurveSummary| {
+        let is_base =
+            |other: &&CurveSummary| other.curve.scene == curve.curve.scene && other.curve.backend == "c89";
+        curves.iter().find(is_base).and_then(|base| base.times[0]).map(|crossing| crossing.time)
+    };
+    let mut scene = "";
+    let rows = curves.iter().map(|curve| {
+        let is_new = std::mem::replace(&mut scene, curve.curve.scene.as_str()) != curve.curve.scene;
+        let crossing = |place: usize| match &curve.times[place] {
+            Some(crossing) => {
+                let mark = if crossing.is_extrapolated { "~" } else { "" };
+                format!("{mark}{} s", three_digits(crossing.time))
+            }
+            None => String::new(),
+        };
+        let ratio = base(curve).zip(curve.times[0].as_ref()).map(|(base, own)| base / own.time);
+        html! {
+            @if is_new { tr .group { th scope="colgroup" colspan="6" { (curve.curve.scene) } } }
+            tr {
+                th scope="row" { (backend(&curve.curve.backend)) }
+                td .text { (curve.curve.sampler) }
+                td { @if let Some([slope, _]) = curve.slope { (format!("{slope:.2}").replace('-', "−")) } }
+                td { (crossing(0)) }
+                td { (crossing(1)) }
+                td { @if let Some(ratio) = ratio { (format!("{ratio:.1}")) } }
+            }
+        }
+    });
+    let table = html! {
+        table .numbers {
+            thead {
+                tr {
+                    th scope="col" { "tracer" }
+                    th scope="col" { "numbers" }
+                    th scope="col" { "slope" }
+                    th scope="col" { "to .01" }
+                    th scope="col" { "to .001" }
+                    th scope="col" { "× C89" }
+                }
+            }
+            tbody { @for row in rows { (row) } }
+        }
+    };
+    let (width, height) = data.settings.size;
+    let caption = html! {
+        "Time until the RMSE has fallen to .01 and to .001, "
+        (format!("{width} × {height}, {} pictures each. ", data.settings.seeds))
+        "Times with ~ are extrapolated. The last column compares the times to .01. " (origin(kept, None))
+    };
+    Ok(scrolling("Time to an error", &caption, &table))
+}
+
+/// The chart, in the colours of the page.
+pub fn chart(kept: &Kept) -> Result<Markup, String> {
+    let data = data(kept)?;
+    let drawn = report::chart(&data, TARGETS[0]);
+    let figure = chart::Figure {
+        // The caption says both.
+        title: String::new(),
+        about: String::new(),
+        size: [640, 46 + 470 * drawn.panels.len() as u32],
+        columns: 1,
+        panels: drawn.panels,
+    };
+    let svg = chart::page_svg(&figure, "Error against time for each tracer; the table below has the times.")?;
+    Ok(html! {
+        figure .chart id="chart-error" {
+            (PreEscaped(svg))
+            figcaption { "Error against time. Lower and further left is better. " (origin(kept, None)) }
+        }
+    })
+}
+
+fn backend(name: &str) -> &str {
+    match name {
+        "cpu" => "packets, all threads",
+        "scalar" => "1 lane, all threads",
+        "c89" => "C89, 1 thread",
+        "gpu" => "GPU",
+        other => other,
+    }
+}
+
+fn three_digits(seconds: f64) -> String {
+    let digits = (2.0 - seconds.max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{seconds:.digits$}")
+}

@@ -1,0 +1,156 @@
+//! The table of speed, from the JSON of `weekender bench`.
+
+use super::{Kept, Spread, origin, scrolling, speed_cell};
+use crate::bench;
+use maud::{Markup, html};
+use serde::Deserialize;
+
+/// The part of the JSON that the table shows.
+#[derive(Debug, Deserialize)]
+pub struct Figures {
+    schema: u32,
+    machine: Machine,
+    scenes: Vec<Scene>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Machine {
+    processor: String,
+    cores: usize,
+}
+
+#[derive(Debug, Deserialize)]
+struct Scene {
+    scene: String,
+    width: u32,
+    height: u32,
+    max_depth: u32,
+    spheres: usize,
+    rows: Vec<Row>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Row {
+    name: String,
+    kind: String,
+    lanes: usize,
+    threads: usize,
+    paths_per_second: Option<Spread>,
+    lanes_in_use: Option<f64>,
+    ratio_to_baseline: Option<f64>,
+    efficiency: Option<f64>,
+    skipped: Option<String>,
+}
+
+impl Figures {
+    /// Reads the JSON.
+    ///
+    /// # Errors
+    /// If the text is something else.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let remedy = "make the file with weekender bench --json FILE";
+        let figures: Figures = serde_json::from_str(text).map_err(|error| format!("{error}; {remedy}"))?;
+        match figures.schema {
+            bench::SCHEMA if figures.scenes.is_empty() => Err(format!("no scene was measured; {remedy}")),
+            bench::SCHEMA => Ok(figures),
+            other => Err(format!("has version {other}, but {} is needed; {remedy}", bench::SCHEMA)),
+        }
+    }
+}
+
+/// One table per scene.
+pub fn tables(kept: &Kept) -> Result<Markup, String> {
+    let figures = Figures::parse(&kept.text)?;
+    let Machine { processor, cores } = &figures.machine;
+    let machine = format!("{processor}, {cores} cores");
+    Ok(html! { @for scene in &figures.scenes { (table(kept, &machine, scene)) } })
+}
+
+fn table(kept: &Kept, machine: &str, scene: &Scene) -> Markup {
+    let Scene { scene: name, width, height, max_depth, spheres, rows } = scene;
+    let speeds = rows.iter().filter_map(|row| row.paths_per_second);
+    let longest = speeds.map(|spread| spread.median).fold(0.0, f64::max);
+    let table = html! {
+        table .numbers {
+            thead {
+                tr {
+                    th scope="col" { "tracer" }
+                    th scope="col" { "threads" }
+                    th scope="col" { "million paths per second" }
+                    th scope="col" { "× C89" }
+                    th scope="col" { "lanes in use" }
+                    th scope="col" { "1/(MSE s)" }
+                }
+            }
+            tbody {
+                @for row in rows {
+                    tr {
+                        th scope="row" { (name_of(row)) }
+                        @if let Some(reason) = &row.skipped {
+                            td .skipped colspan="5" { "not measured: " (reason) }
+                        } @else {
+                            td { @if row.kind != "gpu" { (row.threads) } }
+                            (speed_cell(row.paths_per_second, longest))
+                            td { @if let Some(ratio) = row.ratio_to_baseline { (format!("{ratio:.2}")) } }
+                            td { @if let Some(share) = row.lanes_in_use { (format!("{:.1} %", 100.0 * share)) } }
+                            td { @if let Some(efficiency) = row.efficiency { (rounded(efficiency)) } }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    let caption = html! {
+        strong { (name) }
+        (format!(", {width} × {height}, at most {max_depth} rays per path, {spheres} spheres. Median and range of the runs. "))
+        (origin(kept, Some(machine)))
+    };
+    scrolling(&format!("Speed of {name}"), &caption, &table)
+}
+
+/// The row's name: bench puts the level first, which lanes and threads follow.
+fn name_of(row: &Row) -> String {
+    let lanes = if row.lanes == 1 { "1 lane".to_owned() } else { format!("{} lanes", row.lanes) };
+    let level = row.name.split(',').next().unwrap_or_default();
+    match row.kind.as_str() {
+        "baseline" => level.to_owned(),
+        "gpu" => row.name.clone(),
+        _ => format!("{lanes}, {level}"),
+    }
+}
+
+/// Two digits that count, as `410` or `2,300`.
+fn rounded(number: f64) -> String {
+    let unit = 10_f64.powf((number.log10().floor() - 1.0).max(0.0));
+    let whole = (number / unit).round() * unit;
+    let digits = format!("{whole:.0}");
+    let mut grouped = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place) % 3 == 0 {
+            grouped.push(',');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_numbers_have_two_digits_that_count() {
+        assert_eq!([41.6, 412.0, 23_456.0, 1_270_000.0].map(rounded), ["42", "410", "23,000", "1,300,000"]);
+    }
+
+    #[test]
+    fn other_json_is_refused() {
+        for (text, word) in [
+            ("{}", "missing field"),
+            ("{\"schema\":99,\"machine\":{\"processor\":\"x\",\"cores\":1},\"scenes\":[]}", "version 99"),
+        ] {
+            let message = Figures::parse(text).unwrap_err();
+            assert!(message.contains(word) && message.contains("weekender bench --json"), "{message}");
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! The page around the chapters.
+
+pub mod back_matter;
+
+use super::chapter::Chapter;
+use super::faults::{Fault, Faults};
+use super::prose;
+use super::site::{Site, Uses};
+use crate::stages::{BOOK_URL, Stage};
+use crate::web;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("../../../assets/companion/page.css");
+const SCRIPT: &str = include_str!("../../../assets/companion/page.js");
+/// Runs before anything is drawn, so that the page does not flash in the wrong colours.
+const THEME_SCRIPT: &str = include_str!("../../../assets/companion/theme.js");
+
+const TITLE: &str = "Weekender, the companion";
+const ABOUT: &str = "Ray Tracing in One Weekend, chapter by chapter: in pictures, in code, and live.";
+
+/// The page, ready to be written.
+#[derive(Debug)]
+pub struct Page {
+    /// The content of `index.html`.
+    pub html: String,
+    /// The stages whose stills it shows, in the book's order.
+    pub stages: Vec<&'static Stage>,
+}
+
+/// Renders everything.
+///
+/// # Errors
+/// All faults of the texts, including those found before.
+pub fn render(site: &Site, mut faults: Vec<Fault>) -> Result<Page, Faults> {
+    let mut uses = Uses::default();
+    uses.anchors.extend(site.chapters.iter().map(|chapter| chapter.id.clone()));
+    let texts: Vec<Markup> =
+        site.chapters.iter().map(|chapter| prose::chapter(site, chapter, &mut uses, &mut faults)).collect();
+    let chapters = html! {
+        @for (place, text) in texts.iter().enumerate() { (section(site, place, text, &mut faults)) }
+    };
+    let chapters = back_matter::fill(&chapters.into_string(), site, &mut uses, &mut faults);
+    site.check(&uses, &mut faults);
+    let mut stages: Vec<&Stage> =
+        uses.figures.iter().flat_map(|figure| figure.panels).map(|panel| panel.stage).collect();
+    stages.push(cover_stage());
+    stages.sort_by_key(|stage| stage.index());
+    stages.dedup();
+    let live = web::live_data(stages.iter().copied()).unwrap_or_else(|error| {
+        faults.push(Fault::new("src/web", 0, error));
+        String::new()
+    });
+    if !faults.is_empty() {
+        faults.sort();
+        return Err(Faults(faults));
+    }
+    let page = document(site, &PreEscaped(chapters), &PreEscaped(live));
+    Ok(Page { html: page.into_string(), stages })
+}
+
+/// The last stage, whose picture opens the page.
+fn cover_stage() -> &'static Stage {
+    &Stage::ALL[Stage::ALL.len() - 1]
+}
+
+fn document(site: &Site, chapters: &Markup, live: &Markup) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                title { (TITLE) }
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="description" content=(ABOUT);
+                meta name="color-scheme" content="light dark";
+                link rel="icon" href="data:,";
+                style { (PreEscaped(STYLE)) (PreEscaped(web::HOST_STYLE)) }
+                script { (PreEscaped(THEME_SCRIPT)) }
+            }
+            body id="top" {
+                a .skip href="#content" { "Skip to the text" }
+                (navigation(site))
+                main id="content" tabindex="-1" {
+                    (cover())
+                    (chapters)
+                    (colophon())
+                }
+                div .tip id="tip" role="tooltip" hidden {}
+                script { (PreEscaped(SCRIPT)) }
+                script type="application/json" id="live-data" { (live) }
+                script type="module" { (PreEscaped(web::HOST_SCRIPT)) }
+            }
+        }
+    }
+}
+
+fn cover() -> Markup {
+    let stage = cover_stage();
+    html! {
+        header .cover {
+            p .kicker { "Weekender, the companion" }
+            h1 { cite { "Ray Tracing in One Weekend" } ", many rays at a time" }
+            p .lead {
+                "The book, chapter by chapter: every picture rendered by the program, every excerpt its real code, and \
+                 every figure live in your browser. Then: lanes, threads and GPUs, measured."
+            }
+            img src={ "figures/" (stage.id) ".png" } width=(stage.setup.width) height=(stage.setup.height)
+                alt="The book's last picture: hundreds of small balls around three large ones of glass, brown matte and polished metal."
+                fetchpriority="high";
+        }
+    }
+}
+
+fn colophon() -> Markup {
+    html! {
+        footer .colophon {
+            p {
+                "Made by " code { "weekender companion" } ", version " (env!("CARGO_PKG_VERSION"))
+                ". The book is by Peter Shirley, Trevor David Black and Steve Hollasch: "
+                a href=(BOOK_URL) { "Ray Tracing in One Weekend" } "."
+            }
+            p { a href="#top" { "Back to the top" } }
+        }
+    }
+}
+
+fn navigation(site: &Site) -> Markup {
+    let last_of_book = site.chapters.iter().rposition(|chapter| chapter.book.is_some());
+    let (with_book, beyond) = site.chapters.split_at(last_of_book.map_or(0, |place| place + 1));
+    html! {
+        nav .contents id="contents" aria-label="Chapters" {
+            details open {
+                summary { span .now { "Chapters" } }
+                div .list {
+                    a .home href="#top" { strong { "Weekender" } " the companion" }
+                    @for (title, chapters) in [("With the book", with_book), ("Beyond the book", beyond)] {
+                        p .part { (title) }
+                        ol { @for chapter in chapters { (entry(chapter)) } }
+                    }
+                    fieldset .theme hidden {
+                        legend { "Colours" }
+                        @for (value, label) in [("auto", "Auto"), ("light", "Light"), ("dark", "Dark")] {
+                            label { input type="radio" name="theme" value=(value) checked[value == "auto"]; span { (label) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn entry(chapter: &Chapter) -> Markup {
+    html! {
+        li {
+            a href={ "#" (chapter.id) } {
+                span .number { @if let Some(number) = chapter.shown_number() { (number) " " } } (chapter.short)
+            }
+        }
+    }
+}
+
+/// Number and short title.
+fn title_of(chapter: &Chapter) -> String {
+    let number = chapter.shown_number().map_or_else(String::new, |number| format!("{number} "));
+    number + &chapter.short
+}
+
+fn section(site: &Site, place: usize, text: &Markup, faults: &mut Vec<Fault>) -> Markup {
+    let chapter = &site.chapters[place];
+    let Chapter { id, title, .. } = chapter;
+    let book = chapter.book.as_deref().and_then(|number| {
+        let found = site.book.url(number).zip(site.book.heading(number));
+        if found.is_none() {
+            faults.push(Fault::new(&chapter.file, 1, format!("the book has no chapter {number:?}")));
+        }
+        found.map(|(url, heading)| (number, url, heading))
+    });
+    let before = place.checked_sub(1).and_then(|place| site.chapters.get(place));
+    let after = site.chapters.get(place + 1);
+    html! {
+        section .chapter aria-labelledby=(id) {
+            header .head {
+                p .kicker {
+                    @if let Some(number) = chapter.shown_number() { "Chapter " (number) }
+                    @if let Some((number, url, heading)) = book {
+                        @if chapter.shown_number().is_some() { " · " }
+                        a .book href=(url) {
+                            "The book, chapter " (number) @if heading != title { ": " (heading) }
+                        }
+                    }
+                }
+                h2 id=(id) {
+                    (title)
+                    a .anchor href={ "#" (id) } aria-label="Link to this chapter" { "#" }
+                }
+            }
+            (text)
+            nav .turn aria-label={ "Before and after " (title) } {
+                @if let Some(before) = before {
+                    a .before href={ "#" (before.id) } { span { "Previous" } (title_of(before)) }
+                }
+                @if let Some(after) = after {
+                    a .after href={ "#" (after.id) } { span { "Next" } (title_of(after)) }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Everything that the texts of the page can refer to, and what they did refer to.
+
+use super::book::Book;
+use super::chapter::Chapter;
+use super::excerpt::{self, Excerpt};
+use super::faults::Fault;
+use super::formula::Formulas;
+use super::highlight::Highlighter;
+use super::library::Library;
+use super::measured::Measured;
+use super::reference::{self, Entry, GLOSSARY, REFERENCES, Reference, Term};
+use crate::gallery::Figure;
+use anyhow::Result;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What texts can refer to.
+pub struct Site {
+    /// Where diagrams are read from.
+    pub library: Library,
+    /// The book's headings.
+    pub book: Book,
+    /// All chapters.
+    pub chapters: Vec<Chapter>,
+    /// All excerpts by name.
+    pub excerpts: BTreeMap<String, Excerpt>,
+    /// The glossary in alphabetical order.
+    pub terms: Vec<Entry<Term>>,
+    /// The references in the order of the file.
+    pub references: Vec<Entry<Reference>>,
+    /// What tables and charts are made of.
+    pub measured: Measured,
+    /// Colours code.
+    pub highlighter: Highlighter,
+    /// Converts formulas.
+    pub formulas: Formulas,
+}
+
+/// What the texts have referred to so far.
+#[derive(Debug, Default)]
+pub struct Uses {
+    /// Keys of linked terms, each with the short title of the first chapter that links it.
+    pub terms: BTreeMap<String, String>,
+    /// Names of shown excerpts.
+    pub excerpts: BTreeSet<String>,
+    /// Figures in the order of the page.
+    pub figures: Vec<&'static Figure>,
+    /// Names of shown diagrams.
+    pub diagrams: BTreeSet<String>,
+    /// Anchors that exist.
+    pub anchors: BTreeSet<String>,
+    /// Anchors that are linked, each with file and line.
+    pub targets: Vec<(String, String, usize)>,
+}
+
+impl Site {
+    /// Reads everything from the library.
+    ///
+    /// # Errors
+    /// If a part of the program itself is wrong. Faults of the texts are added to `faults`.
+    pub fn read(library: &Library, measured: Measured, faults: &mut Vec<Fault>) -> Result<Self> {
+        let mut terms: Vec<Entry<Term>> = reference::read(library, GLOSSARY, faults);
+        terms.sort_by_key(|entry| entry.value.term.to_lowercase());
+        Ok(Site {
+            library: library.clone(),
+            book: Book::read(library, faults),
+            chapters: Chapter::read_all(library, faults),
+            excerpts: excerpt::read_all(library, faults),
+            terms,
+            references: reference::read(library, REFERENCES, faults),
+            measured,
+            highlighter: Highlighter::new()?,
+            formulas: Formulas::new()?,
+        })
+    }
+
+    /// The term with this key.
+    pub fn term(&self, key: &str) -> Option<&Entry<Term>> {
+        self.terms.iter().find(|entry| entry.key == key)
+    }
+
+    /// The number and the entry of a reference.
+    pub fn reference(&self, key: &str) -> Option<(usize, &Entry<Reference>)> {
+        let place = self.references.iter().position(|entry| entry.key == key)?;
+        Some((place + 1, &self.references[place]))
+    }
+
+    /// Faults that show only after all texts were read: what nothing refers to, and links to nothing.
+    pub fn check(&self, uses: &Uses, faults: &mut Vec<Fault>) {
+        for entry in self.terms.iter().filter(|entry| !uses.terms.contains_key(&entry.key)) {
+            let key = &entry.key;
+            let message =
+                format!("no chapter links the term {key:?}; link it as [text](glossary:{key}), or remove it");
+            faults.push(Fault::new(GLOSSARY, entry.line, message));
+        }
+        for name in self.excerpts.keys().filter(|name| !uses.excerpts.contains(*name)) {
+            let message =
+                format!("no chapter shows the excerpt {name:?}; add {{{{excerpt {name}}}}}, or remove it");
+            faults.push(Fault::new(excerpt::FILE, 0, message));
+        }
+        for (anchor, file, line) in uses.targets.iter().filter(|(anchor, ..)| !uses.anchors.contains(anchor))
+        {
+            faults.push(Fault::new(file, *line, format!("nothing on the page has the anchor #{anchor}")));
+        }
+    }
+}

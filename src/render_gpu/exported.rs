@@ -1,0 +1,47 @@
+//! A job as another host of the same shaders needs it, such as a web page.
+
+use super::HierarchyKind;
+use super::scene::SceneData;
+use super::turns::turns_over_lists;
+use crate::kernel::Features;
+use crate::prepared::PreparedScene;
+use crate::render::RenderJob;
+use glam::DVec3;
+
+/// The contents of a job's buffers, and what a host must know to run its kernel.
+#[derive(Clone, Debug)]
+pub struct Exported {
+    /// What the kernel must support. The host decides `aside`, which depends on its limit on loop turns.
+    pub features: Features,
+    /// The bytes of the buffers of group 0, by binding: see shaders/bindings.wgsl.
+    pub buffers: [Vec<u8>; 5],
+    /// The index in the scene of each shading record's sphere.
+    pub scene_index: Vec<u32>,
+    /// Loop turns over lists for one ray.
+    pub turns_over_lists: u64,
+    /// Most samples in a block: a power of two.
+    pub block_limit: u32,
+    /// The origin of the buffers' coordinates, in scene coordinates.
+    pub origin: DVec3,
+}
+
+impl Exported {
+    /// Prepares a job with the compressed hierarchy if it needs one.
+    ///
+    /// # Errors
+    /// If the hierarchy has more levels than a traversal supports.
+    pub fn new(job: &RenderJob) -> Result<Self, String> {
+        let prepared = PreparedScene::<f32>::new(job);
+        let kind = HierarchyKind::Cwbvh;
+        let data = SceneData::new(job, &prepared, kind)?;
+        let features = kind.in_features(prepared.features);
+        Ok(Exported {
+            features,
+            buffers: data.buffers(&prepared).map(|(_, bytes)| bytes.into_owned()),
+            turns_over_lists: turns_over_lists(&features, &prepared),
+            block_limit: prepared.block_limit,
+            origin: prepared.origin,
+            scene_index: data.scene_index,
+        })
+    }
+}

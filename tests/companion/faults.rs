@@ -1,0 +1,105 @@
+//! Faults of the texts end the command, with file and line.
+
+use super::{checkout, companion, text};
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let (source, target) = (entry.as_ref().unwrap().path(), to.join(entry.unwrap().file_name()));
+        if source.is_dir() {
+            copy(&source, &target);
+        } else {
+            fs::copy(&source, &target).unwrap();
+        }
+    }
+}
+
+/// A checkout with what the page is made of.
+fn texts() -> TempDir {
+    let directory = TempDir::new().unwrap();
+    for folder in ["docs/companion", "src", "shaders", "reference"] {
+        copy(&checkout().join(folder), &directory.path().join(folder));
+    }
+    directory
+}
+
+const CHAPTER: &str = "docs/companion/05-sphere.md";
+
+/// Builds the page after a change of one file and returns what was said.
+fn refused(texts: &TempDir, file: &str, change: &dyn Fn(&str) -> String) -> String {
+    let path = texts.path().join(file);
+    let original = fs::read_to_string(&path).unwrap();
+    fs::write(&path, change(&original)).unwrap();
+    let out = texts.path().join("out");
+    let output = companion(&out, &["--source", texts.path().to_str().unwrap()]);
+    fs::write(&path, original).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{file}: {}", text(&output.stderr));
+    assert!(!out.exists(), "{file}: something was written");
+    text(&output.stderr)
+}
+
+#[test]
+fn faults_of_a_chapter_name_its_line() {
+    let texts = texts();
+    let lines = fs::read_to_string(texts.path().join(CHAPTER)).unwrap().lines().count();
+    let line = lines + 2;
+    for (added, message) in [
+        ("{{figure spehre}}", "there is no figure \"spehre\""),
+        ("{{figure red-sphere}}", "on the page already"),
+        ("{{excerpt no-such}}", "no excerpt \"no-such\""),
+        ("{{table no-such}}", "no measurement \"no-such\""),
+        ("{{chart no-such}}", "no chart \"no-such\""),
+        ("{{diagram no-such}}", "diagrams/no-such.svg"),
+        ("{{picture sky}}", "is no directive"),
+        ("Text {{figure sky}}", "stands alone in its paragraph"),
+        ("[x](glossary:no-such)", "no term \"no-such\""),
+        ("[x](book:6.99)", "no section \"6.99\""),
+        ("[x](page:no-such)", "no chapter \"no-such\""),
+        ("[x](page:normals#no-such)", "#normals-no-such"),
+        ("[x](#no-such)", "#no-such"),
+        ("[x](source:somewhere.rs)", "no source \"somewhere.rs\""),
+        ("[x](06-normals.md)", "is no link of the page"),
+        ("[@no-such]", "no entry \"no-such\""),
+        ("## 6.1 Another Title", "is called \"Shading with Surface Normals\""),
+        ("# Title", "two to four #"),
+        ("$\\nosuch$", "is not understood"),
+        ("```cobol\nx\n```", "\"cobol\" has no colours"),
+        ("<b>x</b>", "HTML is not allowed"),
+        ("![x](y.png)", "pictures come from figures"),
+    ] {
+        let said = refused(&texts, CHAPTER, &|text| format!("{text}\n{added}\n"));
+        let place = format!("{CHAPTER}:{line}: ");
+        let told =
+            said.lines().find(|told| told.contains(&place)).unwrap_or_else(|| panic!("{added}: {said}"));
+        assert!(told.contains(message), "{added}: {told}");
+    }
+}
+
+#[test]
+fn faults_of_other_files_are_told() {
+    let texts = texts();
+    let excerpts = "docs/companion/excerpts.toml";
+    let declared = |text: &str, entry: &str| format!("{text}\n[extra]\n{entry}\n");
+    for (entry, message) in [
+        ("file = \"src/lib.rs\"\nitem = \"mod nothing\"", "no line begins with \"mod nothing\""),
+        ("file = \"src/lib.rs\"\nregion = \"nothing\"", "no comment // ANCHOR: nothing"),
+        ("file = \"src/main.rs\"\nitem = \"fn main\"", "no chapter shows the excerpt \"extra\""),
+        ("file = \"src/film/merge.rs\"\nitem = \"mod tests\"", "more than 40"),
+        ("file = \"src/nothing.rs\"\nitem = \"fn a\"", "src/nothing.rs"),
+    ] {
+        let said = refused(&texts, excerpts, &|text| declared(text, entry));
+        assert!(said.contains(message) && said.contains("excerpts.toml"), "{entry}: {said}");
+    }
+    let said = refused(&texts, "docs/companion/glossary.toml", &|text| {
+        format!("{text}\n[lonely]\nterm = \"lonely\"\narea = \"rendering\"\ntext = \"No one links it.\"\n")
+    });
+    assert!(
+        said.contains("glossary.toml:") && said.contains("no chapter links the term \"lonely\""),
+        "{said}"
+    );
+    let said = refused(&texts, CHAPTER, &|text| text.replacen("title", "titel", 1));
+    assert!(said.contains(&format!("{CHAPTER}:2: ")) && said.contains("titel"), "{said}");
+}
