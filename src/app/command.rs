@@ -99,6 +99,8 @@ pub enum Command {
     Info,
     /// Show or hide the plot.
     Plot,
+    /// Show or hide the steps of a packet's lanes.
+    Packet,
     /// Full screen.
     FullScreen,
     /// Explain the next ray of the highlighted path.
@@ -156,7 +158,7 @@ impl Command {
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
         all.extend(self::Show::ALL.map(Show));
         all.extend([Wipe, WipeDifference, Fit, ActualSize, ZoomIn, ZoomOut]);
-        all.extend([NextRay, PreviousRay, Panels, Controls, Info, Plot, FullScreen]);
+        all.extend([NextRay, PreviousRay, Panels, Controls, Info, Plot, Packet, FullScreen]);
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Pause, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
@@ -198,6 +200,7 @@ impl Command {
             Command::Controls => "Controls panel".into(),
             Command::Info => "Stage and pixel panel".into(),
             Command::Plot => "Error plot".into(),
+            Command::Packet => "Lanes of a packet".into(),
             Command::FullScreen => "Full screen".into(),
             Command::NextRay => "Next ray of the path".into(),
             Command::PreviousRay => "Previous ray of the path".into(),
@@ -257,6 +260,7 @@ impl Command {
             Command::Controls => "Camera, lens, render, stop and output",
             Command::Info => "What the stage shows, and the pixel under the pointer",
             Command::Plot => "Estimated error against seconds",
+            Command::Packet => "What each lane does step by step, with and without refill",
             Command::FullScreen => "Fill the whole screen with the window",
             Command::NextRay | Command::PreviousRay => {
                 "Go through the highlighted path ray by ray, with the reason for each direction"
@@ -343,6 +347,7 @@ impl Command {
             Command::Controls => key(Key::L),
             Command::Info => key(Key::I),
             Command::Plot => key(Key::P),
+            Command::Packet => key(Key::N),
             Command::FullScreen => key(Key::F11),
             Command::NextRay => key(Key::ArrowRight),
             Command::PreviousRay => key(Key::ArrowLeft),

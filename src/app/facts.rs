@@ -54,6 +54,7 @@ impl Facts {
             Command::Controls => remembered.has_controls,
             Command::Info => remembered.has_info,
             Command::Plot => remembered.has_plot,
+            Command::Packet => remembered.has_packet,
             Command::FullScreen => self.model.is_full_screen,
             Command::Theme(theme) => remembered.theme == theme,
             Command::Device(device) => remembered.device == device,

@@ -96,7 +96,7 @@ impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     fn layout(&mut self, ui: &mut egui::Ui) {
         let facts = self.facts();
-        let Window { model, main, second, layers, viewport, inspector, paths, commands, .. } = self;
+        let Window { model, main, second, layers, viewport, inspector, paths, packet, commands, .. } = self;
         let Model { document, view, remembered, .. } = model;
         let is_narrow = ui.available_width() < NARROW;
         let layer = view.show().layer();
@@ -113,6 +113,9 @@ impl Window {
             status_bar::ui(ui, &facts);
             if has.has_plot {
                 plot::ui(ui, &mut document.stop.noise, &facts, commands);
+            }
+            if has.has_packet {
+                packet.ui(ui, commands);
             }
             if has.has_controls {
                 let panel = egui::Panel::left("controls").default_size(244.0).size_range(190.0..=380.0);
@@ -198,6 +201,9 @@ impl Window {
         }
         self.inspector.follow(document, &self.main, context);
         self.paths.follow(document, context);
+        let has_packet = self.model.remembered.has_panels && self.model.remembered.has_packet;
+        let lanes = has_packet.then(|| self.model.remembered.lanes_in_use());
+        self.packet.follow(context, document, lanes, is_moving);
         if !has_second {
             self.model.view.end_comparison();
         }

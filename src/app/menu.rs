@@ -75,7 +75,12 @@ fn section(command: Command) -> u8 {
         Command::AddBookmark => 2,
         Command::Wipe | Command::WipeDifference => 1,
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => 2,
-        Command::Panels | Command::Controls | Command::Info | Command::Plot | Command::FullScreen => 3,
+        Command::Panels
+        | Command::Controls
+        | Command::Info
+        | Command::Plot
+        | Command::Packet
+        | Command::FullScreen => 3,
         Command::Theme(_) => 4,
         Command::Device(_) | Command::Extreme(_) => 1,
         _ => 0,

@@ -21,6 +21,7 @@ mod layers;
 mod menu;
 mod model;
 mod navigation;
+mod packet;
 mod panels;
 mod paths;
 mod perform;

@@ -15,6 +15,7 @@ use super::model::origin::{Origin, Source};
 use super::model::remembered::Remembered;
 use super::model::show::Show;
 use super::model::view::ViewState;
+use super::packet::Packet;
 use super::paths::Paths;
 use super::second::Second;
 use super::toasts::Toasts;
@@ -47,6 +48,7 @@ pub struct Window {
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
     pub(super) paths: Paths,
+    pub(super) packet: Packet,
     pub(super) files: Files,
     pub(super) dialogs: Dialogs,
     pub(super) toasts: Toasts,
@@ -111,6 +113,7 @@ impl Window {
             viewport: Viewport::default(),
             inspector: Inspector::default(),
             paths: Paths::default(),
+            packet: Packet::default(),
             files: Files::default(),
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
@@ -213,6 +216,11 @@ impl Window {
     /// The ray of the highlighted path that is explained, counted from 1, and the number of its rays.
     pub fn explained_ray(&self) -> Option<[usize; 2]> {
         self.paths.position()
+    }
+
+    /// The steps of the shown packet without and with refill, once they are recorded.
+    pub fn packet_steps(&self) -> Option<[usize; 2]> {
+        self.packet.steps()
     }
 
     /// The number of listed paths.

@@ -102,6 +102,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::Controls => !remembered.has_controls,
         Command::Info => !remembered.has_info,
         Command::Plot => remembered.has_plot,
+        Command::Packet => remembered.has_packet,
         Command::Theme(theme) => remembered.theme == theme,
         Command::Pause => window.is_paused(),
         Command::Restart => window.status().run > 1,

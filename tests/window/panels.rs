@@ -252,3 +252,23 @@ fn a_control_has_one_tooltip() {
         assert!(shown.len() == 1 && shown[0].starts_with(help), "{name}: {shown:?}");
     }
 }
+
+/// The panel of a packet's lanes: refill takes fewer steps than waiting, and another picture gets another packet.
+#[test]
+fn a_packet_takes_fewer_steps_with_refill() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    send(&mut harness, Command::Packet);
+    until(&mut harness, "the steps of a packet", |window| window.packet_steps().is_some());
+    harness.run_steps(2);
+    let [plain, refilled] = harness.state().packet_steps().expect("recorded");
+    assert!(refilled > 0 && refilled < plain, "{refilled} {plain}");
+    assert!(harness.query_by_label_contains(&format!("{refilled} steps")).is_some());
+    harness.state_mut().document_mut().settings.max_depth = 1;
+    until(&mut harness, "a packet of camera rays", |window| {
+        window.packet_steps().is_some_and(|[plain, refilled]| plain == refilled)
+    });
+    send(&mut harness, Command::Packet);
+    harness.run_steps(2);
+    assert!(harness.state().packet_steps().is_none());
+}

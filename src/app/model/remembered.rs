@@ -1,6 +1,7 @@
 //! Settings that the window keeps from one run to the next.
 
 use super::device::{self, Device};
+use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -73,6 +74,8 @@ pub struct Remembered {
     pub has_info: bool,
     /// Whether the plot is shown.
     pub has_plot: bool,
+    /// Whether the lanes of a packet are shown.
+    pub has_packet: bool,
     /// The device that traces.
     pub device: Device,
     /// Lanes per packet; `None` for as many as a register holds.
@@ -93,6 +96,7 @@ impl Default for Remembered {
             has_controls: true,
             has_info: true,
             has_plot: false,
+            has_packet: false,
             device: Device::Cpu,
             lanes: None,
             threads: None,
@@ -103,6 +107,12 @@ impl Default for Remembered {
 }
 
 impl Remembered {
+    /// Lanes per packet: the chosen number, or as many as a register holds.
+    pub fn lanes_in_use(&self) -> usize {
+        let best = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
+        self.lanes.unwrap_or_else(|| best.native_lanes())
+    }
+
     /// Replaces settings that are not available on this machine; they may come from another machine or version.
     pub fn mended(mut self) -> Self {
         let lanes = device::lane_counts();
