@@ -13,7 +13,7 @@ mod style;
 
 pub use axis::{Axis, Scale};
 pub use file::{ChartError, ChartFormat, save};
-pub use page::page_svg;
+pub use page::{UNTITLED_TOP, page_svg};
 
 /// A picture of one or more charts.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,6 +5,9 @@ use super::file::svg;
 use super::style::{FAINT_INK, FINE_GRID, GRID, GUIDE, INK, PALETTE, provide_font};
 use plotters::style::{RGBColor, WHITE};
 
+/// Height of the empty space above the charts of a figure without a title, points.
+pub const UNTITLED_TOP: u32 = 40;
+
 /// The figure as an `<svg>` element that is as wide as its place, with the page's colours: `currentColor` for text, the
 /// variables `--muted` and `--line` for axes and grid, and `--series-1` to `--series-6` for what was measured. `label`
 /// describes it to those who cannot see it.

@@ -87,7 +87,7 @@ fn faults_of_other_files_are_told() {
         ("file = \"src/lib.rs\"\nitem = \"mod nothing\"", "no line begins with \"mod nothing\""),
         ("file = \"src/lib.rs\"\nregion = \"nothing\"", "no comment // ANCHOR: nothing"),
         ("file = \"src/main.rs\"\nitem = \"fn main\"", "no chapter shows the excerpt \"extra\""),
-        ("file = \"src/film/merge.rs\"\nitem = \"mod tests\"", "more than 40"),
+        ("file = \"src/companion/prose.rs\"\nitem = \"impl Converter\"", "more than 40"),
         ("file = \"src/nothing.rs\"\nitem = \"fn a\"", "src/nothing.rs"),
     ] {
         let said = refused(&texts, excerpts, &|text| declared(text, entry));

@@ -36,7 +36,7 @@ pub fn table(kept: &Kept) -> Result<Markup, String> {
             thead {
                 tr {
                     th scope="col" { "who traces what" }
-                    th scope="col" { "million paths per second" }
+                    th .bars scope="col" { "million paths per second" }
                     th scope="col" { "× the first" }
                     @if has_use { th scope="col" { "lanes in use" } }
                 }

@@ -1,7 +1,7 @@
 //! Error against time, from the JSON of `weekender report`.
 
 use super::{Kept, origin, scrolling};
-use crate::chart;
+use crate::chart::{self, UNTITLED_TOP};
 use crate::report::{self, CurveSummary};
 use maud::{Markup, PreEscaped, html};
 
@@ -77,15 +77,19 @@ pub fn chart(kept: &Kept) -> Result<Markup, String> {
         // The caption says both.
         title: String::new(),
         about: String::new(),
-        size: [640, 46 + 470 * drawn.panels.len() as u32],
+        size: [640, UNTITLED_TOP + 470 * drawn.panels.len() as u32],
         columns: 1,
         panels: drawn.panels,
     };
     let svg = chart::page_svg(&figure, "Error against time for each tracer; the table below has the times.")?;
     Ok(html! {
         figure .chart id="chart-error" {
-            (PreEscaped(svg))
-            figcaption { "Error against time. Lower and further left is better. " (origin(kept, None)) }
+            div .scroll tabindex="0" role="group" aria-label="Chart of error against time" { (PreEscaped(svg)) }
+            figcaption {
+                "Error against time. Lower and further left is better. "
+                em { "cpu" } ": packets on all threads; " em { "scalar" } ": one lane on all threads; "
+                em { "c89" } ": the C program on one thread. " (origin(kept, None))
+            }
         }
     })
 }

@@ -117,7 +117,10 @@ fn origin(kept: &Kept, machine: Option<&str>) -> Markup {
         "Measured"
         @if let Some(date) = &kept.date { " on " (date) }
         @if let Some(machine) = machine { ", " (machine) }
-        ", by " code { (kept.command) } "."
+        ", by "
+        // A flag must not be broken after its first hyphen.
+        code { @for word in kept.command.split_inclusive(' ') { span .nb { (word) } } }
+        "."
     }
 }
 

@@ -76,7 +76,7 @@ fn table(kept: &Kept, machine: &str, scene: &Scene) -> Markup {
                 tr {
                     th scope="col" { "tracer" }
                     th scope="col" { "threads" }
-                    th scope="col" { "million paths per second" }
+                    th .bars scope="col" { "million paths per second" }
                     th scope="col" { "× C89" }
                     th scope="col" { "lanes in use" }
                     th scope="col" { "1/(MSE s)" }
