@@ -90,6 +90,23 @@ fn camera_words(camera: &Camera) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn a_camera_is_told_with_all_its_numbers() {
+        let camera = Camera {
+            look_from: DVec3::new(13.0, 2.0, 3.5),
+            look_at: DVec3::new(1.0, -2.0, 0.0),
+            vfov_degrees: 20.0,
+            defocus_angle_degrees: 0.6,
+            focus_distance: Some(10.0),
+            ..Camera::BOOK
+        };
+        assert_eq!(
+            camera_words(&camera),
+            "from 13,2,3.5 to 1,-2,0, vfov 20 degrees, defocus 0.6 degrees, focus at 10"
+        );
+    }
 
     #[test]
     fn times_are_short() {
@@ -114,6 +131,7 @@ mod tests {
         };
         assert_eq!(words(&[]), "gpu x, 64 lanes");
         assert_eq!(words(&[part("cpu", 8, 10)]), "cpu x, 8 lanes");
+        assert_eq!(words(&[part("cpu", 8, 4)]), "cpu x, 8 lanes (4 samples); earlier runs (6 samples)");
         let two = [part("cpu", 8, 6), part("gpu", 64, 1)];
         assert_eq!(
             words(&two),

@@ -117,7 +117,9 @@ mod tests {
     use super::*;
     use crate::recipe::Recipe;
     use crate::render_cpu::Isa;
+    use crate::scene::{Camera, Sky};
     use crate::stages::Stage;
+    use std::sync::Arc;
 
     fn image(layer: Layer, recipe: &Recipe, samples: u64) -> LayerImage {
         let mut recipe = recipe.clone();
@@ -176,5 +178,19 @@ mod tests {
         let job = Layer::Normals.job(&recipe.job().unwrap()).unwrap();
         let paths = PathRecorder::new(&job, Isa::Portable, None);
         assert!(!LayerImage::new(Layer::Normals, &job).add_sample(&paths, &AtomicBool::new(true)));
+    }
+
+    #[test]
+    fn where_nothing_is_hit_a_layer_shows_the_sky() {
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        let sky = Sky { bottom: DVec3::X, top: DVec3::Y };
+        recipe.scene = Arc::new(Scene { sky, ..Scene::default() });
+        for (look_at, expected) in [(DVec3::NEG_Y, sky.bottom), (DVec3::Y, sky.top)] {
+            recipe.camera = Camera { look_at, vup: DVec3::Z, vfov_degrees: 1.0, ..Camera::BOOK };
+            for layer in [Layer::Normals, Layer::Albedo] {
+                let mean = DVec3::from(image(layer, &recipe, 1).mean([16, 9]));
+                assert!((mean - expected).length() < 1e-3, "{layer:?} towards {look_at}: {mean}");
+            }
+        }
     }
 }

@@ -166,6 +166,28 @@ fn nan_or_infinity_in_only_one_picture_is_a_difference() {
 }
 
 #[test]
+fn the_worst_block_is_named_by_its_column_and_row() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    for (name, by) in [("a.png", 0), ("b.png", 20)] {
+        let picture = image::RgbImage::from_fn(64, 24, |x, y| {
+            let is_changed = (40..48).contains(&x) && (8..16).contains(&y);
+            image::Rgb([if is_changed { 100 + by + by / 10 * ((x + y) % 3) as u8 } else { 100 }; 3])
+        });
+        picture.save(at.join(name)).unwrap();
+    }
+    let (code, text, errors) = compare(&["a.png", "b.png"], at);
+    assert!(code == 1 && text.contains("worst at    40,8 ("), "{text}{errors}");
+    let (_, found) = json(&["a.png", "b.png"], at);
+    let worst = &found["worst_blocks"][0];
+    assert_eq!(
+        [&worst["x"], &worst["y"]],
+        [&serde_json::json!([40, 48]), &serde_json::json!([8, 16])],
+        "{found}"
+    );
+}
+
+#[test]
 fn backends_agree_on_the_same_samples() {
     let at = TempDir::new().unwrap();
     let at = at.path();

@@ -127,6 +127,17 @@ fn a_difference_is_found_marked_and_told() {
         assert!(found.contains(part), "{part}: {found}");
     }
     assert!(!found.contains('\x1b'), "no colours in a file");
+    // The difference is the second less the first.
+    let numbers = |label: &str| -> Vec<f64> {
+        let line = found.lines().rfind(|line| line.starts_with(label)).unwrap();
+        line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
+    };
+    let (radiance, difference) = (numbers("radiance"), numbers("difference"));
+    assert!(difference[..3].iter().any(|by| by.abs() > 1e-3), "{found}");
+    for channel in 0..3 {
+        let by = radiance[3 + channel] - radiance[channel];
+        assert!((by - difference[channel]).abs() < 1e-4, "{found}");
+    }
     // The line "again" leads to the same path.
     let again = found.lines().find_map(|line| line.strip_prefix("again")).unwrap();
     let (code, repeated, _) = diff(&[&sides[..], &again.split_whitespace().collect::<Vec<_>>()].concat());

@@ -6,9 +6,10 @@ mod gpu_common;
 
 use glam::DVec3;
 use gpu_common::{cpu, gpu, job_of};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 use weekender::film::Film;
-use weekender::render::{RenderJob, Renderer, SamplerKind};
+use weekender::render::{RenderError, RenderJob, Renderer, SamplerKind};
 use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, HierarchyKind, InjectionPoint, TURN_LIMIT};
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};
@@ -62,10 +63,21 @@ fn every_ray_of_the_longest_paths_is_traced() {
     assert_eq!(gpu.record_path(&job, [2, 1], 3).unwrap().rays.len(), 10_000);
 }
 
+/// Three spheres with glass in which the angle of incidence is stored from ray to ray.
+fn steep_glass() -> (Scene, Camera) {
+    let (mut scene, camera) = (BuiltinScene::ALL[0].build)();
+    for named in &mut scene.materials {
+        if let Material::Dielectric { refraction_index } = &mut named.material {
+            *refraction_index = 6.0;
+        }
+    }
+    (scene, camera)
+}
+
 /// Putting paths aside does not change the film.
 #[test]
 fn paths_that_are_put_aside_give_the_same_film() {
-    let scenes: [(Scene, Camera); 2] = [(BuiltinScene::ALL[0].build)(), (book(), BOOK_CAMERA)];
+    let scenes: [(Scene, Camera); 3] = [(BuiltinScene::ALL[0].build)(), (book(), BOOK_CAMERA), steep_glass()];
     for hierarchy in [HierarchyKind::Bvh2, HierarchyKind::Cwbvh] {
         let options = GpuOptions { hierarchy, ..GpuOptions::default() };
         let Some(mut at_once) = gpu(options.clone()) else { return };
@@ -79,6 +91,33 @@ fn paths_that_are_put_aside_give_the_same_film() {
         }
         assert!(in_turns.report().dispatches > 10 * at_once.report().dispatches);
     }
+}
+
+/// The next picture does not take up the paths that an abandoned picture has put aside.
+#[test]
+fn what_an_abandoned_picture_put_aside_is_lost() {
+    let options = GpuOptions { turn_limit: Some(8), samples_per_dispatch: Some(1), ..GpuOptions::default() };
+    let Some(mut used) = gpu(options.clone()) else { return };
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [5, 3], 30, SamplerKind::Independent, false);
+    let long = closed(200);
+    // Ends while dispatches are under way, however long the device takes to begin.
+    let mut time = Duration::from_millis(10);
+    while used.report().dispatches < 3 {
+        let cancel = go_on();
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(time);
+                cancel.store(true, Ordering::Relaxed);
+            });
+            let outcome = used.accumulate(&long, 0..1000, &mut long.new_film(), &cancel);
+            assert!(matches!(outcome, Err(RenderError::Cancelled)), "{outcome:?}");
+        });
+        time *= 2;
+    }
+    assert!(rendered(&mut used, &job, 8) == rendered(&mut gpu(options).unwrap(), &job, 8));
+    let told = used.take_messages();
+    assert!(!told.iter().any(|message| message.contains("traced again")), "{told:?}");
 }
 
 /// If a ray needs more iterations for a list than a dispatch allows, the picture is traced ray by ray. A list that no

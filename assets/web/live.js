@@ -150,7 +150,8 @@ class Panel {
     this.canvas = element("canvas", { className: "live-canvas", hidden: true });
     this.canvas.setAttribute("role", stage.has_rays ? "application" : "img");
     this.canvas.setAttribute("aria-label", still.alt);
-    this.canvas.style.imageRendering = getComputedStyle(still).imageRendering;
+    const { imageRendering, borderRadius } = getComputedStyle(still);
+    Object.assign(this.canvas.style, { imageRendering, borderRadius });
     this.frame = element("div", { className: "live-frame" });
     still.replaceWith(this.frame);
     this.frame.append(still, this.canvas);

@@ -125,6 +125,8 @@ pub enum Command {
     Stage(&'static Stage),
     /// Open this extreme scene.
     Extreme(&'static Case),
+    /// Show or hide the code that is new in the stage.
+    Code,
     /// Open the book's web page.
     Book,
     /// Open the palette, which lists all commands.
@@ -162,7 +164,7 @@ impl Command {
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Pause, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
-        all.extend([PreviousStage, NextStage, Book]);
+        all.extend([PreviousStage, NextStage, Code, Book]);
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
         all.push(BookArithmetic);
         all.extend(shown_cases().iter().map(Extreme));
@@ -213,6 +215,7 @@ impl Command {
             Command::NextStage => "Next stage".into(),
             Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
             Command::Extreme(case) => case.title().to_owned(),
+            Command::Code => "Code of this stage".into(),
             Command::Book => "Read this section of the book".into(),
             Command::Palette => "Command palette".into(),
             Command::Help => "Keyboard and mouse".into(),
@@ -274,6 +277,7 @@ impl Command {
             Command::NextStage => "One step forward in the book",
             Command::Stage(stage) => stage.what_is_new,
             Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
+            Command::Code => "The lines of the tracer that are new in this stage, in Rust and WGSL",
             Command::Book => "Opens the web browser",
             Command::Palette => "Find any command by its name",
             Command::Help => "All keys, and what the mouse does",
@@ -301,7 +305,11 @@ impl Command {
                 Group::Edit
             }
             Command::Pause | Command::Restart | Command::SwitchDevice | Command::Device(_) => Group::Render,
-            Command::PreviousStage | Command::NextStage | Command::Stage(_) | Command::Book => Group::Stage,
+            Command::PreviousStage
+            | Command::NextStage
+            | Command::Stage(_)
+            | Command::Code
+            | Command::Book => Group::Stage,
             Command::BookArithmetic | Command::Extreme(_) => Group::Extreme,
             Command::Palette | Command::Help => Group::Help,
             _ => Group::View,
@@ -356,6 +364,7 @@ impl Command {
             Command::SwitchDevice => key(Key::G),
             Command::PreviousStage => key(Key::PageUp),
             Command::NextStage => key(Key::PageDown),
+            Command::Code => key(Key::K),
             Command::Palette => ctrl(Key::P),
             Command::Help => key(Key::F1),
             _ => None,

@@ -55,6 +55,7 @@ impl Facts {
             Command::Info => remembered.has_info,
             Command::Plot => remembered.has_plot,
             Command::Packet => remembered.has_packet,
+            Command::Code => remembered.has_code,
             Command::FullScreen => self.model.is_full_screen,
             Command::Theme(theme) => remembered.theme == theme,
             Command::Device(device) => remembered.device == device,

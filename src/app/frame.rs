@@ -96,7 +96,9 @@ impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     fn layout(&mut self, ui: &mut egui::Ui) {
         let facts = self.facts();
-        let Window { model, main, second, layers, viewport, inspector, paths, packet, commands, .. } = self;
+        let Window {
+            model, main, second, layers, viewport, inspector, paths, packet, code, commands, ..
+        } = self;
         let Model { document, view, remembered, .. } = model;
         let is_narrow = ui.available_width() < NARROW;
         let layer = view.show().layer();
@@ -113,6 +115,9 @@ impl Window {
             status_bar::ui(ui, &facts);
             if has.has_plot {
                 plot::ui(ui, &mut document.stop.noise, &facts, commands);
+            }
+            if has.has_code {
+                code.ui(ui, &facts, commands);
             }
             if has.has_packet {
                 packet.ui(ui, commands);

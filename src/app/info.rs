@@ -16,7 +16,7 @@ pub fn ui(ui: &mut Ui, is_with_next: &mut bool, facts: &Facts, commands: &mut Ve
     let document = facts.document();
     match (document.stage(), document.case()) {
         (Some(stage), _) => {
-            stage_ui(ui, stage);
+            stage_ui(ui, stage, facts, commands);
             compare_ui(ui, stage, is_with_next, facts, commands);
         }
         (None, Some(case)) => case_ui(ui, case, facts, commands),
@@ -28,7 +28,7 @@ pub fn ui(ui: &mut Ui, is_with_next: &mut bool, facts: &Facts, commands: &mut Ve
     view_ui(ui, facts, commands);
 }
 
-fn stage_ui(ui: &mut Ui, stage: &Stage) {
+fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command>) {
     let weak = ui.visuals().weak_text_color();
     let over = format!("{} {}", stage.chapter(), stage.chapter_title);
     ui.add(egui::Label::new(RichText::new(over).small().color(weak)).wrap());
@@ -42,6 +42,11 @@ fn stage_ui(ui: &mut Ui, stage: &Stage) {
         ui.add_space(6.0);
         ui.label(RichText::new(heading).small().color(weak));
         ui.add(egui::Label::new(text).wrap());
+    }
+    ui.add_space(6.0);
+    let button = egui::Button::new("Code").selected(facts.is_on(Command::Code));
+    if ui.add(button).on_hover_text(Command::Code.help()).clicked() {
+        commands.push(Command::Code);
     }
     ui.add_space(10.0);
 }

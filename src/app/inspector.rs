@@ -164,3 +164,35 @@ fn pixel_ui(document: &Document, pixel: &Pixel, layer: Option<(Layer, [f64; 3])>
         ui.add(egui::Label::new(text).wrap());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::{Origin, Source};
+    use crate::recipe::Recipe;
+    use crate::render_cpu::record_path;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    /// The sphere under the pointer is the one that the tracer's camera ray hits.
+    #[test]
+    fn the_sphere_under_the_pointer_is_named() {
+        let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
+        let [width, height] = [document.settings.width, document.settings.height];
+        for at in [[width / 8, height * 7 / 8], [width / 2, height / 2], [width / 2, height / 8]] {
+            let path = record_path(&document.job(1).unwrap(), at, 0, None);
+            let expected = path.rays[0].hit.map_or("sky".to_owned(), |hit| {
+                let (object, material) = names(document.scene(), hit.sphere);
+                format!("{object}, {material}\nat distance")
+            });
+            let pixel = Pixel { at, mean: [0.0; 3], error: None, bytes: [0; 3], samples: 1 };
+            let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, ui));
+            let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
+            let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
+            assert!(
+                texts.iter().any(|text| text.starts_with(&expected)),
+                "{at:?}: no {expected} in {texts:?}"
+            );
+        }
+    }
+}

@@ -77,7 +77,9 @@ impl Window {
                     self.toasts.good("Tab brings the panels back");
                 }
             }
-            Command::Controls | Command::Info | Command::Plot | Command::Packet => self.toggle_panel(command),
+            Command::Controls | Command::Info | Command::Plot | Command::Packet | Command::Code => {
+                self.toggle_panel(command)
+            }
             Command::FullScreen => {
                 self.model.is_full_screen = !self.model.is_full_screen;
                 context.send_viewport_cmd(ViewportCommand::Fullscreen(self.model.is_full_screen));
@@ -138,6 +140,7 @@ impl Window {
             Command::Controls => &mut remembered.has_controls,
             Command::Info => &mut remembered.has_info,
             Command::Packet => &mut remembered.has_packet,
+            Command::Code => &mut remembered.has_code,
             _ => &mut remembered.has_plot,
         };
         // While all panels are hidden, show the requested one.

@@ -266,6 +266,16 @@ mod tests {
     const STOP: Stop = Stop { samples: None, seconds: None, noise: Some(0.002) };
 
     #[test]
+    fn the_figures_are_those_of_the_status() {
+        let mut status = status_of(parts()[..1].to_vec());
+        (status.stats.busy_lanes, status.stats.offered_lanes) = (3, 4);
+        let texts: Vec<String> = figures(&status, STOP, false).into_iter().map(|(text, ..)| text).collect();
+        let figures = ["tracing", "100 spp", "2.0 s", "0.5 Mpaths/s", "2.56 rays/path", "16 lanes 75 % full"];
+        assert_eq!(texts[..6], figures);
+        assert!(texts[6].starts_with("error 0.00400, 0.002 in about"), "{texts:?}");
+    }
+
+    #[test]
     fn nothing_in_the_bar_covers_anything_else() {
         for width in [480.0, 640.0, 800.0, 960.0, 1120.0, 1280.0, 1440.0, 1920.0] {
             for count in 0..=3 {

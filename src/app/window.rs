@@ -1,6 +1,7 @@
 //! The window's state. Only this file and its extensions (`frame`, `perform`, `receive`) know all of it.
 
 use super::changes::Changes;
+use super::code::Code;
 use super::command::Command;
 use super::dialogs::Dialogs;
 use super::facts::Facts;
@@ -49,6 +50,7 @@ pub struct Window {
     pub(super) inspector: Inspector,
     pub(super) paths: Paths,
     pub(super) packet: Packet,
+    pub(super) code: Code,
     pub(super) files: Files,
     pub(super) dialogs: Dialogs,
     pub(super) toasts: Toasts,
@@ -114,6 +116,7 @@ impl Window {
             inspector: Inspector::default(),
             paths: Paths::default(),
             packet: Packet::default(),
+            code: Code::default(),
             files: Files::default(),
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),

@@ -178,4 +178,15 @@ mod tests {
         let told = written.failure.unwrap().to_string();
         assert!(told.contains("gone") && !told.contains("--resume"), "{told}");
     }
+
+    #[test]
+    fn a_picture_that_is_written_does_not_save_the_film() {
+        let directory = tempfile::tempdir().unwrap();
+        let [out, film] = ["picture.png", "missing/film.exr"].map(|name| directory.path().join(name));
+        let render = options(&["--out", out.to_str().unwrap(), "--checkpoint", film.to_str().unwrap()]);
+        let (film, written) = write_two_samples(&render);
+        let [picture, rescued] = written.files.as_slice() else { panic!("{written:?}") };
+        assert_eq!((picture, rescued.parent()), (&out, Some(directory.path())));
+        assert!(checkpoint::load(rescued).unwrap().film == film);
+    }
 }

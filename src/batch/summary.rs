@@ -212,3 +212,61 @@ impl fmt::Display for Summary {
         writeln!(f, "files    {}", files.join(", "))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::batch::tests::options;
+    use crate::progressive::EndReason;
+    use crate::render::{BackendInfo, Stats};
+
+    #[test]
+    fn the_summary_tells_what_the_status_holds() {
+        let part = |name, samples_per_pixel| Contribution {
+            backend: BackendInfo { name, device: "x".to_owned(), lanes: 8, threads: 1 },
+            samples_per_pixel,
+        };
+        let status = Status {
+            phase: Phase::Done(EndReason::NoiseTarget),
+            backend: Some(part("cpu", 0).backend),
+            samples_per_pixel: 10,
+            rejected_samples: 1,
+            stats: Stats {
+                paths: 6_000_000,
+                rays: 15_000_000,
+                busy_lanes: 3,
+                offered_lanes: 4,
+                ..Stats::default()
+            },
+            prepare: Duration::from_secs(3),
+            hierarchy: Duration::from_secs(1),
+            trace: Duration::from_secs(2),
+            elapsed: Duration::from_secs(6),
+            kernel: "glass".to_owned(),
+            left_out: vec!["lens"],
+            error: Some(ErrorEstimate { rmse: 0.02, rmse_deviation: 0.001, rel_mse: 0.3 }),
+            contributions: vec![part("cpu", 5), part("gpu", 3)],
+            ..Status::default()
+        };
+        let files = vec![PathBuf::from("a.png")];
+        let summary =
+            Summary::new(&options(&["--depth", "24"]), &status, None, files, Duration::from_millis(500));
+        assert_eq!(
+            summary.to_string(),
+            "scene    three-spheres, 4x3, depth 24, sobol, seed 0\n\
+             backend  cpu x, 8 lanes, 1 thread\n\
+             kernel   glass\n\
+             left out lens\n\
+             shares   5 by cpu x, 3 by gpu x\n\
+             samples  10 (8 of them new) per pixel, ended by the noise target\n\
+             time     6.5 s (prepare 2.000 s, build hierarchy 1.000 s, trace 2.000 s, write 0.500 s)\n\
+             speed    3.00 Mpaths/s, 7.50 Mrays/s, 75.0 % of lanes in use\n\
+             error    2.000e-2 ± 5.0 % RMSE (estimated from the two halves), 1 rejected sample\n\
+             files    a.png\n"
+        );
+        let json = serde_json::to_value(&summary).unwrap();
+        for (key, value) in [("prepare_seconds", 2.0), ("total_seconds", 6.5), ("rel_mse_estimate", 0.3)] {
+            assert_eq!(json[key], value, "{key}");
+        }
+    }
+}

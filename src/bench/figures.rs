@@ -275,4 +275,33 @@ mod tests {
         assert_eq!(Spread::of([4.0, 1.0, 2.0, 3.0]), Some(Spread { median: 2.5, min: 1.0, max: 4.0 }));
         assert_eq!(Spread::of([]), None);
     }
+
+    #[test]
+    fn a_row_sums_up_its_runs() {
+        let run = Run { seconds: 2.0, paths: 8, rays: 20, busy_lanes: 3, offered_lanes: 4, rmse: Some(0.5) };
+        let row = |kind| {
+            let mut row = Row {
+                name: String::new(),
+                kind,
+                lanes: 4,
+                threads: 1,
+                samples_per_pixel: 1,
+                runs: vec![run, Run { seconds: 1.0, ..run }, Run { seconds: 4.0, ..run }],
+                paths_per_second: None,
+                rays_per_second: None,
+                lanes_in_use: None,
+                ratio_to_baseline: None,
+                efficiency: None,
+                skipped: None,
+            };
+            row.sum_up();
+            row
+        };
+        let packets = row(Kind::Packets);
+        assert_eq!(packets.paths_per_second, Some(Spread { median: 4.0, min: 2.0, max: 8.0 }));
+        assert_eq!(packets.rays_per_second, Some(Spread { median: 10.0, min: 5.0, max: 20.0 }));
+        assert_eq!((packets.efficiency, packets.lanes_in_use), (Some(2.0), Some(0.75)));
+        // A GPU has threads instead.
+        assert_eq!(row(Kind::Gpu).lanes_in_use, None);
+    }
 }

@@ -275,4 +275,43 @@ mod tests {
         let cells: Vec<&str> = lines[2].split_whitespace().collect();
         assert_eq!(cells, ["1000", "0.250", "0.5000", "0.1250", "96.5", "300", "4", "-", "-"]);
     }
+
+    #[test]
+    fn a_row_has_its_figures_in_the_columns_of_the_head() {
+        let spread = |median: f64| Some(Spread { median, min: 0.5 * median, max: 3.0 * median });
+        let row = Row {
+            name: "avx2, 8 lanes".to_owned(),
+            kind: super::super::figures::Kind::Packets,
+            lanes: 8,
+            threads: 1,
+            samples_per_pixel: 64,
+            runs: vec![run(0.25)],
+            paths_per_second: spread(2e6),
+            rays_per_second: spread(250e6),
+            lanes_in_use: Some(0.875),
+            ratio_to_baseline: Some(7.0),
+            efficiency: Some(1234.0),
+            skipped: None,
+        };
+        let none = Row { paths_per_second: None, rays_per_second: None, ..row.clone() };
+        let none = Row { lanes_in_use: None, ratio_to_baseline: None, efficiency: None, ..none };
+        let scene = SceneFigures {
+            scene: "book".to_owned(),
+            width: 200,
+            height: 113,
+            max_depth: 50,
+            sampler: "sobol",
+            spheres: 485,
+            rows: vec![row, none],
+        };
+        assert_eq!(
+            scene_lines(&scene),
+            [
+                "book, 200x113, depth 50, sobol, 485 spheres; 1 run",
+                "                                    spp Mpaths/s     min     max  x C89 Mrays/s lanes % 1/(MSE s)",
+                "avx2, 8 lanes                        64     2.00    1.00    6.00   7.00   250.0    87.5    1.23e3",
+                "avx2, 8 lanes                        64        -       -       -      -       -       -         -",
+            ]
+        );
+    }
 }

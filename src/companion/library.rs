@@ -97,7 +97,6 @@ const FILES: &[(&str, &str)] = embedded![
     "src/render_cpu/sphere.rs"
     "src/render_cpu/tiles.rs"
     "src/render_cpu/work.rs"
-    "src/render_gpu/dispatches.rs"
     "src/render_gpu/schedule.rs"
     "src/sampling/mod.rs"
     "src/sampling/warp.rs"

@@ -13,12 +13,15 @@ mod measured;
 mod page;
 mod prose;
 mod reference;
+mod section;
 mod site;
 mod text;
 
+pub use excerpt::Excerpt;
 pub use faults::{Fault, Faults};
 pub use library::Library;
 pub use page::Page;
+pub use section::excerpts_between;
 
 use crate::cli::CompanionOptions;
 use crate::console;

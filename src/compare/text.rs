@@ -76,3 +76,48 @@ fn verdict(comparison: &Comparison) -> &'static str {
         (false, _) => "different",
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compare::{PairedSamples, compare};
+    use crate::film::Film;
+
+    #[test]
+    fn every_figure_has_its_place() {
+        let film = || {
+            let mut film = Film::new(8, 8, 2);
+            film.record(0..2, 0).unwrap();
+            film
+        };
+        let sides = ["a", "b"].map(|name| Side::of_film(name.to_owned(), format!("film {name}"), film()));
+        let mut comparison = compare(&sides[0], &sides[1], None);
+        comparison.is_same = false;
+        (comparison.rms, comparison.noise) = (0.03, Some(0.02));
+        (comparison.bias, comparison.bias_deviation) = (-0.004, Some(0.005));
+        comparison.paired = Some(PairedSamples { count: 1000, parted: 2, rms: 6e-6, bias: 7e-7 });
+        comparison.test.excess = [1.0, 2.5, 0.0];
+        (comparison.test.largest, comparison.test.largest_limit) = (3.25, 4.5);
+        comparison.test.blocks[0].z = [0.5, -3.25, 1.0];
+        comparison.notes = vec!["a note".to_owned()];
+        comparison.reasons = vec!["a reason".to_owned()];
+        let text = told(&sides, &comparison);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(
+            lines,
+            [
+                "first       a: film a",
+                "second      b: film b",
+                "difference  1.50 x noise (3.00e-2 RMS; noise of both 2.00e-2), -4.0e-3 ± 5.0e-3 on average",
+                "samples     2 of 1000 (2.0e-3) differ by more than 1e-3: a different path; the others by 6.0e-6 RMS, \
+                 +7.0e-7 on average",
+                "blocks      1 of about 8x8 pixels: sum of z^2 +2.5 deviations from that of noise (at most +4), \
+                 largest |z| 3.25 (at most 4.50)",
+                "worst at    0,0 (3.2)",
+                "note        a note",
+                "because     a reason",
+                "verdict     different",
+            ]
+        );
+    }
+}

@@ -429,4 +429,20 @@ mod tests {
         assert!(renderer.tile_occupancy().expect("packets").tiles.is_empty());
         assert_eq!(CpuRenderer::reference(Some(1)).expect("available").tile_occupancy(), None);
     }
+
+    #[test]
+    fn a_tile_without_all_its_samples_is_named_by_its_corner() {
+        let tile = |finished| TracedTile { stats: TileStats::default(), finished, expected: 9, panic: None };
+        // Tiles of 8 pixels in a picture of 20: three columns.
+        let mut traced: Vec<TracedTile> = [9, 9, 9, 9, 4, 9].map(tile).into();
+        let told = what_is_missing(&traced, 8, 20).expect("samples are missing");
+        assert_eq!(told, "of 9 blocks of samples in the tile at pixel (8, 8) 4 were finished");
+        assert_eq!(what_is_missing(&traced[..4], 8, 20), None);
+        traced[2].panic = Some("a slip".to_owned());
+        let told = what_is_missing(&traced, 8, 20).expect("a panic");
+        assert!(
+            told.starts_with("it panicked: a slip; of 9 blocks of samples in the tile at pixel (16, 0)"),
+            "{told}"
+        );
+    }
 }

@@ -327,3 +327,17 @@ pub(super) fn stuck(pixels: u32) -> String {
 pub(super) fn groups(count: u32) -> [u32; 2] {
     if count <= GROUPS_ACROSS { [count, 1] } else { [GROUPS_ACROSS, count.div_ceil(GROUPS_ACROSS)] }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_tile_has_a_workgroup() {
+        for count in [1, GROUPS_ACROSS, GROUPS_ACROSS + 1, 3 * GROUPS_ACROSS - 1, 1 << 22] {
+            let [x, y] = groups(count);
+            // No more than a device allows in one direction, and less than a row too many.
+            assert!(x.max(y) <= 65_535 && x * (y - 1) < count && count <= x * y, "{count}: {x} x {y}");
+        }
+    }
+}

@@ -238,4 +238,18 @@ mod tests {
         assert!(ratios.iter().all(|r| (r.at_equal_samples - 4.0).abs() < 1e-9));
         assert!(ratios.iter().all(|r| (r.at_equal_time - 4.0 / 1.2).abs() < 1e-9));
     }
+
+    #[test]
+    fn a_point_has_more_than_half_of_the_pictures() {
+        let mut some = runs("cpu", "sobol", 0.04, 0.01);
+        let last = |runs: &[Run]| {
+            let all: Vec<&Run> = runs.iter().collect();
+            let found = CurveSummary::of(&runs[0].curve, &all, &[]);
+            found.points.last().map(|point| (point.samples, point.seeds))
+        };
+        some[0].points.pop();
+        assert_eq!(last(&some), Some((256, 3)));
+        some[1].points.pop();
+        assert_eq!(last(&some), Some((128, 4)));
+    }
 }

@@ -289,4 +289,104 @@ mod tests {
         let found = [1234.5, 12.34, 1.234, 0.1234, 0.001_234, 1.234e-5, 1.234e7].map(number);
         assert_eq!(found, ["1234", "12.3", "1.23", "0.123", "0.00123", "1.23e-5", "1.23e7"]);
     }
+
+    fn curve(backend: &str, sampler: &str, seconds: f64) -> CurveSummary {
+        CurveSummary {
+            curve: Curve { scene: "s".to_owned(), backend: backend.to_owned(), sampler: sampler.to_owned() },
+            about: "a machine".to_owned(),
+            points: vec![CurvePoint {
+                samples: 16,
+                seeds: 4,
+                trace_seconds: 0.5,
+                wall_seconds: 0.75,
+                device_seconds: None,
+                rmse: 0.02,
+                range: [0.01, 0.03],
+                rel_mse: 0.04,
+                flip: 0.125,
+                estimate_ratio: Some(1.5),
+            }],
+            slope: Some([-0.5, 0.01]),
+            efficiency: 2.0,
+            times: vec![Some(Crossing { time: seconds, is_extrapolated: seconds > 30.0 })],
+        }
+    }
+
+    #[test]
+    fn backends_are_compared_with_the_best_sampler_of_the_baseline() {
+        let curves = [
+            curve("c89", "independent", 40.0),
+            curve("c89", "sobol", 20.0),
+            curve("cpu", "sobol", 5.0),
+            curve("cpu", "independent", 50.0),
+        ];
+        let mut text = String::new();
+        overview(&mut text, &curves.each_ref(), &[0.01]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(
+            lines[..6],
+            [
+                "| backend | sampler | slope | efficiency | to RMSE 0.01 | times c89 |",
+                "| --- | --- | --- | --- | --- | --- |",
+                "| c89 | independent | -0.50 ± 0.01 | 2.00 | ~40.0 s | ~0.50 |",
+                "| c89 | sobol | -0.50 ± 0.01 | 2.00 | 20.0 s | 1.00 |",
+                "| cpu | sobol | -0.50 ± 0.01 | 2.00 | 5.00 s | 4.00 |",
+                "| cpu | independent | -0.50 ± 0.01 | 2.00 | ~50.0 s | ~0.40 |",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_point_has_its_figures_in_the_columns_of_the_head() {
+        let mut text = String::new();
+        points(&mut text, &curve("cpu", "sobol", 5.0));
+        let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+        let lines: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
+        let named: Vec<(String, String)> = cells(lines[0]).into_iter().zip(cells(lines[2])).collect();
+        for (head, value) in [
+            ("samples", "16"),
+            ("trace s", "0.5000"),
+            ("wall s", "0.7500"),
+            ("device s", "-"),
+            ("RMSE", "2.00e-2"),
+            ("min to max", "1.00e-2 to 3.00e-2"),
+            ("relMSE", "4.00e-2"),
+            ("FLIP", "0.1250"),
+            ("estimate / actual", "1.500"),
+        ] {
+            assert!(named.contains(&(head.to_owned(), value.to_owned())), "{head}: {text}");
+        }
+    }
+
+    #[test]
+    fn the_other_tables_have_their_figures_in_the_columns_of_their_heads() {
+        let mut text = String::new();
+        let ratio = SamplerRatio {
+            scene: "s".to_owned(),
+            backend: "cpu".to_owned(),
+            samples: 64,
+            at_equal_samples: 4.0,
+            at_equal_time: 3.0,
+        };
+        samplers(&mut text, &[ratio]);
+        assert!(text.contains("| scene | backend | samples | at equal samples | at equal time |"), "{text}");
+        assert!(text.ends_with("| s | cpu | 64 | 4.00 | 3.00 |\n"), "{text}");
+        let row = Calibration {
+            curve: curve("cpu", "sobol", 1.0).curve,
+            samples: 16,
+            seeds: 24,
+            predicted_rmse: 0.011,
+            actual_rmse: 0.01,
+            ratio: 1.1,
+            deviation: 0.02,
+        };
+        text.clear();
+        calibration(&mut text, &[row.clone(), Calibration { ratio: 0.96, ..row }]);
+        assert!(
+            text.contains("1 of 2 ratios are within 1 ± 0.05; the largest deviation is 0.100."),
+            "{text}"
+        );
+        assert!(text.contains("| predicted | actual | predicted / actual |"), "{text}");
+        assert!(text.contains("| s | cpu | sobol | 16 | 24 | 0.0110 | 0.0100 | 1.100 ± 0.020 |\n"), "{text}");
+    }
 }

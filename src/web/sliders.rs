@@ -54,7 +54,7 @@ pub(super) fn sliders(job: &RenderJob, samples: u64, scene_index: &[u32]) -> Vec
             sliders.push(Slider::new("focus", "Focus distance", range, focus));
         }
     }
-    if shading == Shading::Path {
+    if shading == Shading::Path && !job.scene().spheres.is_empty() {
         sliders.extend(fuzz(job, scene_index));
         sliders.extend(index(job, scene_index));
         let depth = f64::from(job.settings().max_depth);

@@ -1,8 +1,10 @@
 //! The program, run in a directory of its own.
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::time::Duration;
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 pub const PATIENCE: Duration = Duration::from_secs(120);
@@ -17,8 +19,38 @@ pub fn weekender(directory: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// Runs the program and fails if it does not end.
 pub fn run(directory: &Path, arguments: &[&str]) -> Output {
-    weekender(directory, arguments).output().unwrap()
+    let mut command = weekender(directory, arguments);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let (stdout, stderr) = (gather(child.stdout.take().unwrap()), gather(child.stderr.take().unwrap()));
+    let status = wait(&mut child, &format!("{arguments:?}"));
+    Output { status, stdout: stdout.join().unwrap(), stderr: stderr.join().unwrap() }
+}
+
+/// Reads a pipe while the program runs, so that the program never waits for a full pipe.
+fn gather(mut pipe: impl Read + Send + 'static) -> JoinHandle<Vec<u8>> {
+    std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        pipe.read_to_end(&mut bytes).unwrap();
+        bytes
+    })
+}
+
+/// Waits for the end of the program that `what` describes. Ends it if it runs for too long.
+pub fn wait(child: &mut Child, what: &str) -> ExitStatus {
+    let begin = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        if begin.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            panic!("{what} has not ended after {PATIENCE:?}");
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
 }
 
 /// Runs a small batch render that must succeed.

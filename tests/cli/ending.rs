@@ -1,6 +1,6 @@
 //! What ends a render.
 
-use super::common::{PATIENCE, film, names, render, run, temp, text, weekender};
+use super::common::{PATIENCE, film, names, render, run, temp, text, wait, weekender};
 use serde_json::Value;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -51,17 +51,7 @@ fn ctrl_c_writes_picture_and_checkpoint() {
     let killed = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
     assert!(killed.success());
 
-    let begin = Instant::now();
-    let status = loop {
-        if let Some(status) = child.try_wait().unwrap() {
-            break status;
-        }
-        if begin.elapsed() > PATIENCE {
-            child.kill().unwrap();
-            panic!("Ctrl-C did not end it");
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    };
+    let status = wait(&mut child, "the interrupted render");
     assert_eq!(status.code(), Some(130));
     assert_eq!(names(directory.path()), ["film.exr", "three-spheres.png"]);
     let samples = film(directory.path().join("film.exr")).sample_count();

@@ -1,6 +1,7 @@
 //! Flags and values that are refused.
 
 use super::common::{refused, refused_in, run, temp, text};
+use weekender::cli::{ReportOptions, Request, parse};
 
 #[test]
 fn without_batch_it_names_the_flag() {
@@ -137,4 +138,33 @@ fn scene_files_are_refused_with_their_reason() {
     refused_in(&directory, &["--batch", "--scene", "s.toml"], &["s.toml"]);
     refused_in(&directory, &["--batch", "--scene", "missing.toml"], &["missing.toml"]);
     refused_in(&directory, &["--batch", "--scene", "."], &["."]);
+}
+
+/// The window prefers a device that the command line chooses to the one that it remembers.
+#[test]
+fn every_flag_of_a_backend_chooses_a_device() {
+    let is_given = |flags: &[&str]| {
+        let words = ["weekender"].iter().chain(flags).map(Into::into);
+        let Ok(Request::Window(options)) = parse(words) else { panic!("{flags:?}") };
+        options.is_device_given
+    };
+    assert!(!is_given(&[]) && !is_given(&["--samples", "4", "--seed", "7"]));
+    for flag in ["--device=cpu", "--threads=1", "--adapter=x", "--simd=off", "--isa=portable"] {
+        assert!(is_given(&[flag]), "{flag}");
+    }
+}
+
+#[test]
+fn a_report_has_each_target_once_and_the_chosen_one_first() {
+    let targets = |flags: &[&str]| {
+        let words = ["weekender", "report", "--out", "found", "--backends", "cpu"];
+        let Ok(Request::Report(options)) = parse(words.iter().chain(flags).map(Into::into)) else {
+            panic!("{flags:?}")
+        };
+        let ReportOptions { targets, .. } = *options;
+        targets
+    };
+    assert_eq!(targets(&[]), [0.01, 0.001]);
+    assert_eq!(targets(&["--target", "0.02"]), [0.02, 0.01, 0.001]);
+    assert_eq!(targets(&["--target", "0.001"]), [0.001, 0.01]);
 }

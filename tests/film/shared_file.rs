@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 use std::path::Path;
-use weekender::film::{Description, Film, SampleRanges, SharedFile, checkpoint, fixed_point};
+use weekender::film::{Description, Film, SampleRanges, SharedFile, checkpoint, fixed_point, key};
 
 /// A film whose sample `i` has the radiance `(i + pixel) / 100` in each pixel.
 fn film(samples: &[Range<u64>]) -> Film {
@@ -85,9 +85,16 @@ fn disjoint_samples_of_two_new_runs_are_added() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("g.exr");
     let (mut a, mut b) = (SharedFile::new(&path), SharedFile::new(&path));
-    a.save(&film(&[0..8]), &Description::new("r"), &same).unwrap();
-    b.save(&film(&[8..12]), &Description::new("r"), &same).unwrap();
+    let description = |samples: u64| {
+        let mut description = Description::new("r");
+        description.set(key::SAMPLES, samples);
+        description
+    };
+    a.save(&film(&[0..8]), &description(8), &same).unwrap();
+    b.save(&film(&[8..12]), &description(4), &same).unwrap();
     assert!(at(&path) == film(&[0..12]));
+    let told = checkpoint::load(&path).unwrap().description;
+    assert_eq!(told.get(key::SAMPLES), Some("12"));
 }
 
 #[test]

@@ -42,6 +42,19 @@ fn case_23_ten_million_samples() {
     }
 }
 
+/// A block's sums fit 32 bits, whichever end of the sky is bright.
+#[test]
+fn sums_of_a_bright_sky_do_not_overflow() {
+    let mut scene = empty();
+    for (bottom, top) in [(100.0, 0.0), (0.0, 100.0)] {
+        scene.sky = Sky { bottom: DVec3::splat(bottom), top: DVec3::splat(top) };
+        let look_at = DVec3::Y * (top - bottom);
+        let camera = Camera { look_at, vup: DVec3::Z, vfov_degrees: 1.0, ..Camera::BOOK };
+        let film = render(&mut widest(), &job(&scene, camera, size(2, 2)), 0..1024);
+        assert!(film.mean(0).iter().all(|x| (99.9..=100.0).contains(x)), "{bottom}: {:?}", film.mean(0));
+    }
+}
+
 #[test]
 fn case_24_another_order() {
     let scene = three_spheres(LeftSphere::HollowGlass);

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use weekender::backends::BackendChoice;
 use weekender::film::{Film, PixelSum};
-use weekender::progressive::{Factory, Plan, Progressive, RenderRequest};
+use weekender::progressive::{Factory, Plan, Progressive, RenderRequest, Status};
 use weekender::render::{BackendInfo, RenderError, RenderJob, RenderSettings, Renderer, Stats};
 use weekender::render_cpu::CpuOptions;
 use weekender::scene::{Camera, Scene};
@@ -105,8 +105,13 @@ pub fn started(backend: BackendChoice, plan: Plan) -> Progressive {
 }
 
 pub fn wait_for(progressive: &Progressive, samples: u64) {
+    wait_until(progressive, |status| status.samples_per_pixel >= samples);
+}
+
+pub fn wait_until(progressive: &Progressive, is_so: impl Fn(&Status) -> bool) {
     let begin = std::time::Instant::now();
-    while progressive.wait(Duration::from_millis(20)).samples_per_pixel < samples {
+    while !is_so(&progressive.status()) {
         assert!(begin.elapsed() < PATIENCE, "stuck: {:?}", progressive.status());
+        std::thread::sleep(Duration::from_millis(1));
     }
 }

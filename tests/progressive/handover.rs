@@ -35,6 +35,30 @@ fn another_backend_goes_on_with_the_same_film() {
     assert_eq!(progressive.finish(), Some(expected(3000)));
 }
 
+/// A user changes their mind while the other backend is still being made.
+#[test]
+fn switching_back_calls_the_switch_off() {
+    let (made, is_made) = std::sync::mpsc::channel();
+    let progressive = Progressive::with_factory(Box::new(move |choice| {
+        if *choice != CPU {
+            std::thread::sleep(Duration::from_millis(50));
+            made.send(()).unwrap();
+        }
+        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None }))
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
+    wait_for(&progressive, 2);
+    progressive.switch_backend(FAILING);
+    progressive.switch_backend(CPU);
+    is_made.recv_timeout(PATIENCE).unwrap();
+    let samples = progressive.status().samples_per_pixel;
+    wait_for(&progressive, samples + 2000);
+    let status = progressive.status();
+    let at_work: Vec<&str> = status.contributions.iter().map(|part| part.backend.name).collect();
+    assert_eq!(at_work, [CPU.name()]);
+}
+
 /// Holds samples back until they are collected, as a GPU does.
 struct Holding {
     fake: Fake,

@@ -1,6 +1,6 @@
 //! What ends a render, pauses it, or starts another.
 
-use super::common::{CPU, Fake, PATIENCE, PAUSE, expected, job, started, wait_for};
+use super::common::{CPU, Fake, PATIENCE, PAUSE, expected, job, started, wait_for, wait_until};
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -27,7 +27,7 @@ fn pauses_lose_nothing() {
     for at in [2, 10, 300] {
         wait_for(&progressive, at);
         progressive.pause();
-        while progressive.wait(Duration::from_millis(20)).phase == Phase::Tracing {}
+        wait_until(&progressive, |status| status.phase != Phase::Tracing);
         let held = progressive.status().samples_per_pixel;
         std::thread::sleep(Duration::from_millis(30));
         assert_eq!(progressive.status().samples_per_pixel, held);
@@ -58,6 +58,18 @@ fn the_noise_target_ends_it() {
     assert_eq!(status.error, progressive.finish().unwrap().error());
 }
 
+/// At the end, the error is that of all samples, even if estimates take so long that none is due.
+#[test]
+fn the_error_at_the_end_is_that_of_the_whole_film() {
+    let mut progressive = Progressive::with_factory(Box::new(|choice| {
+        Ok(Box::new(Fake { name: choice.name(), pause: Duration::ZERO, fails_at: None, panics_at: None }))
+    }))
+    .unwrap();
+    progressive.start(RenderRequest::new(job(16_384), CPU, Plan::samples(6)));
+    let status = progressive.wait_until_over();
+    assert_eq!(status.error, progressive.finish().unwrap().error());
+}
+
 /// The first samples already meet this target, but their estimate is too rough to be trusted.
 #[test]
 fn a_noise_target_is_not_looked_at_before_its_first_samples() {
@@ -76,9 +88,7 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
     let status = progressive.wait_until_over();
     assert_eq!(status.phase, Phase::Done(EndReason::Stopped));
     progressive.resume();
-    while progressive.status().phase != Phase::Done(EndReason::Samples) {
-        progressive.wait(Duration::from_millis(20));
-    }
+    wait_until(&progressive, |status| status.phase == Phase::Done(EndReason::Samples));
     progressive.set_plan(Plan::samples(2100));
     wait_for(&progressive, 2100);
     assert_eq!(progressive.status().planned_samples_per_pixel, 2100);

@@ -175,6 +175,9 @@ fn malformed_text_is_refused() {
     // Columns count characters.
     let message = refusal("# é\n[camera]\n\"é\" = 1\n", 3);
     assert!(message.starts_with("bad.toml:3:1: unknown key `é`"), "{message}");
+    let line = "\"é\" = { kind = \"metal\", albedo = [0.5, 0.5, 0.5], fuzz = -1 }";
+    let message = refusal(&format!("{CAMERA}[materials]\n{line}\n"), 6);
+    assert!(message.starts_with("bad.toml:6:51: materials.é.fuzz is -1"), "{message}");
 }
 
 #[test]

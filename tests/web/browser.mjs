@@ -1,7 +1,7 @@
 // Opens a page with live figures in Chromium and uses it as a reader would. Prints what it saw as JSON; films and
 // screenshots go to the page's folder. What must hold is in tests/web/browser.rs.
 // Usage: node browser.mjs FOLDER
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, writeFileSync } from "node:fs";
 import { delimiter, join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
@@ -13,7 +13,7 @@ const flags = ["--no-sandbox", "--headless=new", "--enable-unsafe-webgpu", "--us
 const vulkan = ["--enable-features=Vulkan", "--use-vulkan=swiftshader", "--hide-scrollbars"];
 const browser = await chromium.launch({ executablePath, args: [...flags, ...vulkan] });
 // Whatever happens, this program and its browser end.
-setTimeout(() => process.exit(1), 420_000).unref();
+setTimeout(() => process.exit(1), 600_000).unref();
 const seen = { console: [], films: {} };
 
 // Remembers the device and the films, and makes films readable.
@@ -104,7 +104,7 @@ async function changes(look, act) {
   return JSON.stringify(await look()) !== before;
 }
 
-const ids = JSON.parse(readFileSync(join(folder, "films.json"), "utf8"));
+const ids = await page.locator(".panel").evaluateAll((all) => all.map((element) => element.dataset.stage));
 const glass = "hollow-glass";
 await shot("stills");
 const heights = () => page.locator("body > p").evaluateAll((all) => all.map((p) => p.offsetTop));

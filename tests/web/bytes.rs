@@ -304,9 +304,10 @@ fn sliders_fit_their_stages() {
         let has = |key: &str| sliders.iter().any(|slider| slider["key"] == key);
         let shading = stage.setup.rules.shading;
         assert_eq!(has("vfov"), shading != Shading::ImageGradient, "{}", stage.id);
-        assert_eq!(has("depth"), shading == Shading::Path, "{}", stage.id);
         assert_eq!(has("samples"), stage.setup.samples_per_pixel > 1, "{}", stage.id);
         let scene = (stage.setup.scene)();
+        let has_bounces = shading == Shading::Path && !scene.spheres.is_empty();
+        assert_eq!(has("depth"), has_bounces, "{}", stage.id);
         let is_used = |kind: &str| scene.materials.iter().any(|named| named.material.kind() == kind);
         assert_eq!(has("fuzz"), is_used("metal"), "{}", stage.id);
         assert_eq!(has("index"), is_used("dielectric"), "{}", stage.id);

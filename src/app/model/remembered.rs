@@ -76,6 +76,8 @@ pub struct Remembered {
     pub has_plot: bool,
     /// Whether the lanes of a packet are shown.
     pub has_packet: bool,
+    /// Whether the code of the stage is shown.
+    pub has_code: bool,
     /// The device that traces.
     pub device: Device,
     /// Lanes per packet; `None` for as many as a register holds.
@@ -97,6 +99,7 @@ impl Default for Remembered {
             has_info: true,
             has_plot: false,
             has_packet: false,
+            has_code: false,
             device: Device::Cpu,
             lanes: None,
             threads: None,

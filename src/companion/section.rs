@@ -1,0 +1,73 @@
+//! The excerpts that belong to a section of the book, for programs that show them beside a stage.
+
+use super::chapter::Chapter;
+use super::excerpt::{self, Excerpt};
+use super::library::Library;
+
+/// The excerpts that the page shows from behind section `after` up to and including section `section` of one chapter of
+/// the book: the code that is new in `section` if `after` is the section before it that has a picture. Both are numbers
+/// such as "9.1"; an `after` of another chapter leaves nothing out.
+pub fn excerpts_between(after: Option<&str>, section: &str) -> Vec<Excerpt> {
+    let library = Library::Embedded;
+    let mut faults = Vec::new();
+    let declared = excerpt::read_all(&library, &mut faults);
+    let chapters = Chapter::read_all(&library, &mut faults);
+    let chapter_of = |section: &str| section.split('.').next().map(str::to_owned);
+    let Some(chapter) = chapters.iter().find(|chapter| chapter.book == chapter_of(section)) else {
+        return Vec::new();
+    };
+    // Of the same chapter, only what comes later is new.
+    let after = after.filter(|after| chapter_of(after) == chapter_of(section));
+    let mut is_new = after.is_none();
+    let mut names = Vec::new();
+    for line in chapter.body.lines() {
+        if let Some(heading) = line.strip_prefix("## ") {
+            let number = heading.split(' ').next().unwrap_or_default();
+            if names_section(number) && is_later(number, section) {
+                break;
+            }
+            is_new = is_new || after.is_some_and(|after| is_later(number, after));
+        } else if is_new
+            && let Some(inside) = line.strip_prefix("{{").and_then(|rest| rest.strip_suffix("}}"))
+        {
+            let mut words = inside.split_whitespace();
+            if matches!(words.next(), Some("excerpt" | "pair")) {
+                names.extend(words.map(str::to_owned));
+            }
+        }
+    }
+    names.iter().filter_map(|name| declared.get(name).cloned()).collect()
+}
+
+fn names_section(word: &str) -> bool {
+    word.contains('.') && word.split('.').all(|part| part.parse::<u8>().is_ok())
+}
+
+/// Whether a section comes after another one of the same chapter.
+fn is_later(section: &str, other: &str) -> bool {
+    let part = |section: &str| section.split('.').nth(1).and_then(|part| part.parse::<u8>().ok());
+    names_section(section) && part(section) > part(other)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_section_has_the_excerpts_since_the_one_before() {
+        let first_lines = |after: Option<&str>, section: &str| -> Vec<String> {
+            let excerpts = excerpts_between(after, section);
+            excerpts
+                .iter()
+                .map(|excerpt| excerpt.text.lines().next().unwrap_or_default().to_owned())
+                .collect()
+        };
+        let glass = first_lines(Some("11.3"), "11.4");
+        assert_eq!(glass.len(), 2, "{glass:?}");
+        assert!(glass.iter().all(|line| line.contains("fn reflectance")), "{glass:?}");
+        // The code of 5.1 is new in the picture of 5.2, which is the chapter's first.
+        assert!(first_lines(Some("4.2"), "5.2").iter().any(|line| line.contains("fn book_root")));
+        assert_eq!(first_lines(Some("10.5"), "10.6"), Vec::<String>::new());
+        assert_eq!(first_lines(None, "99.1"), Vec::<String>::new());
+    }
+}
