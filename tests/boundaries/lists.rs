@@ -196,6 +196,8 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         &[
             "files",
             "stages",
+            "explain",
+            "render_cpu",
             "chart",
             "web",
             "console",
