@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
 use weekender::failure::{self, Failure};
-use weekender::{app, batch, bench, compare, diff, gallery, interrupt, report, stress};
+use weekender::{app, batch, bench, check, compare, diff, gallery, interrupt, report, stress};
 
 fn main() -> ExitCode {
     failure::install_panic_hook();
@@ -25,6 +25,7 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Report(options) => report::run(&options),
         Request::Stress(options) => stress::run(&options),
         Request::Gallery(options) => gallery::run(&options),
+        Request::Check(options) => check::run(&options),
         Request::Batch(options) => batch::run(*options),
     }
 }
