@@ -9,6 +9,7 @@ use crate::scene::{Material, Scene};
 use crate::stages::{DielectricLaws, Diffuse, Rules, Transfer};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use thiserror::Error;
 
 /// A picture that could be mine, in linear radiance, and how its bytes are to be read.
 #[derive(Clone, Debug)]
@@ -175,14 +176,28 @@ pub struct Studio {
     last: Option<(Recipe, u64, Vec<[f64; 3]>)>,
 }
 
-/// How many paths a picture may cost.
+/// Why a picture cannot be rendered.
+#[derive(Debug, Error)]
+pub enum StudioError {
+    /// No thread can be started.
+    #[error(transparent)]
+    Threads(#[from] CpuError),
+    /// A picture cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+}
+
+/// Samples per pixel of a picture up to the size of [`PIXELS`]; larger ones get as many paths.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Paths of the program's own tracer.
+    /// Samples of the program's own tracer.
     pub fast: u64,
-    /// Paths of the plain tracer.
+    /// Samples of the plain tracer.
     pub plain: u64,
 }
+
+/// The book's 400 x 225 pixels.
+const PIXELS: u64 = 90_000;
 
 impl Studio {
     /// For pictures of `recipe`.
@@ -208,9 +223,10 @@ impl Studio {
     pub fn render(&mut self, hypothesis: &Hypothesis, effort: Effort) -> Result<Expected, RenderError> {
         let RenderSettings { width, height, .. } = self.recipe.settings;
         let pixels = u64::from(width) * u64::from(height);
-        let samples = |paths: u64| match self.recipe.rules.antialiasing || self.recipe.samples_per_pixel > 1 {
-            true => (paths / pixels).clamp(1, 4096),
-            false => 1,
+        let is_exact = !self.recipe.rules.antialiasing && self.recipe.samples_per_pixel == 1;
+        let samples = |samples: u64| match is_exact {
+            true => 1,
+            false => (samples * PIXELS / pixels).clamp(1, samples),
         };
         let linear = match &hypothesis.making {
             Making::Plain => {

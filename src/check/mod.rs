@@ -4,15 +4,21 @@
 //! camera can express it, otherwise by a plain tracer that follows the book. A picture is right if it differs from ours
 //! by noise only; otherwise the mistake whose picture comes nearest is named.
 
+mod compared;
+mod details;
 mod hypothesis;
 mod judge;
+mod likeness;
 mod mistake;
 mod picture;
 mod program;
 mod tracer;
 mod words;
 
-pub use judge::{Compared, Finding, JudgeError, judge, stages};
+pub use compared::Compared;
+pub use hypothesis::StudioError;
+pub use judge::{Finding, judge};
+pub use likeness::stages;
 pub use mistake::{About, Mistake};
 pub use picture::{Damage, Mine, PIXEL_LIMIT, ReadError};
 pub use program::run;

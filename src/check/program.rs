@@ -1,6 +1,7 @@
 //! `weekender check`: reads the picture, prints the finding, writes the pictures.
 
-use super::judge::{Finding, judge, stages};
+use super::judge::{Finding, judge};
+use super::likeness::stages;
 use super::picture::Mine;
 use super::words::{FindingJson, text};
 use crate::cli::{CheckOptions, JsonTarget};

@@ -1,6 +1,7 @@
 //! The finding as text and as JSON.
 
-use super::judge::{Compared, Finding};
+use super::compared::Compared;
+use super::judge::Finding;
 use super::picture::Mine;
 use serde::Serialize;
 use std::fmt::Write;

@@ -112,7 +112,7 @@ fn damages_are_repaired_and_told() {
         assert_eq!(mine.bytes.len(), 2, "{word}");
     }
     for (file, word) in [
-        (&b"P3 2 2 255 0 0 0"[..], "1 of 2 rows"),
+        (&b"P3 2 2 255 0 0 0 0 0 0 0"[..], "1 of 2 rows"),
         (b"P3 2 2 255 0 0 0", "12 numbers"),
         (b"P3", "header"),
         (b"P6 2 1 255\n12", "6 bytes"),
