@@ -62,9 +62,8 @@ fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &Expected, width: usi
         let pixels =
             || block.y.clone().flat_map(|y| block.x.clone().map(move |x| y as usize * width + x as usize));
         let count = pixels().count() as f64;
-        for channel in 0..3 {
+        for (channel, mean) in block.means.into_iter().enumerate() {
             let bright = pixels().map(|pixel| expected.pixels[pixel][channel]).sum::<f64>() / count;
-            let mean = block.means[channel];
             let spread: f64 = pixels().map(|pixel| (values[pixel][channel] - mean).powi(2)).sum();
             let noise = spread / (count * (count - 1.0).max(1.0));
             // The derivative of the square root takes linear errors to displayed ones.

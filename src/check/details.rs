@@ -35,14 +35,14 @@ pub fn by_pixels(
         if column == 0 || row == 0 || column + 1 == width || row + 1 == height {
             continue;
         }
-        for channel in 0..3 {
+        for (channel, byte) in bytes.iter().enumerate() {
             let at = |pixel: usize| right.expected.pixels[pixel][channel];
             let across = (at(index + 1) - at(index - 1)).abs();
             if across.max((at(index + width) - at(index - width)).abs()) < EDGE {
                 continue;
             }
             pixels += 1;
-            let [linear, _] = right.hypothesis.linear(bytes[channel], row, height);
+            let [linear, _] = right.hypothesis.linear(*byte, row, height);
             own += (linear - at(index)).powi(2);
             for (error, (_, rival)) in errors.iter_mut().zip(&rivals) {
                 *error += (linear - rival.pixels[index][channel]).powi(2);
@@ -83,10 +83,10 @@ pub fn times_integer(mine: &Mine, right: &Compared) -> Option<Compared> {
     let (mut product, mut square, mut scaled, mut count) = (0.0, 0.0, 0.0, 0.0);
     for (index, (bytes, expected)) in mine.bytes.iter().zip(&right.expected.pixels).enumerate() {
         let row = index / width;
-        for channel in 0..3 {
-            let [linear, _] = right.hypothesis.linear(bytes[channel], row, height);
-            let x = expected[channel];
-            if bytes[channel] >= 254 || x > 0.98 || x < 0.05 {
+        for (byte, x) in bytes.iter().copied().zip(expected.iter().copied()) {
+            let [linear, _] = right.hypothesis.linear(byte, row, height);
+            // At the upper end, 255 is a limit and not a value.
+            if byte >= 254 || !(0.05..=0.98).contains(&x) {
                 continue;
             }
             let loss = x - right.hypothesis.times_255(x, row, height);

@@ -306,3 +306,69 @@ impl Hypothesis {
         (self.shown.levels * value.clamp(0.0, 0.999)) as u8
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::{Shading, Stage, SurfaceRule};
+    use crate::statistics::blocks::{BlockTest, Differences, Noise};
+
+    /// Acne depends on the precision, and the gradient has no rays.
+    fn is_traced(stage: &&Stage) -> bool {
+        let rules = stage.setup.rules;
+        stage.id != "book" && rules.shading != Shading::ImageGradient && rules.surface != SurfaceRule::Acne
+    }
+
+    #[test]
+    fn without_a_mistake_the_plain_tracer_makes_the_right_picture() {
+        for stage in Stage::ALL.iter().filter(is_traced) {
+            let mut recipe = stage.recipe();
+            (recipe.settings.width, recipe.settings.height) = (96, 54);
+            let mut studio = Studio::new(&recipe).unwrap();
+            let effort = Effort { fast: 256, plain: 32 };
+            let right = studio.render(&Hypothesis::right(&recipe), effort).unwrap().pixels;
+            let plain = Tracer::new(&recipe, None).means(32);
+            // The grid of one sample per pixel meets edges where the precisions may differ.
+            let values: Vec<[f64; 3]> =
+                right.iter().zip(&plain).map(|(a, b)| [0, 1, 2].map(|i| b[i] - a[i])).collect();
+            let test = BlockTest::of(&Differences {
+                width: 96,
+                values: &values,
+                noise: Noise::Spread,
+                steps: None,
+                tolerance: 2e-3,
+                rare: 0.0,
+            });
+            assert!(test.largest_excess() < 6.0 && test.largest < 7.0, "{}: {:?}", stage.id, test.excess);
+        }
+    }
+
+    #[test]
+    fn every_mistake_shows_in_some_stage() {
+        for mistake in Mistake::ALL {
+            let shows = |stage: &Stage| {
+                let recipe = stage.recipe();
+                let is_direct = mistake == Mistake::Truncated;
+                mistake.applies_to(&recipe) && (is_direct || !Hypothesis::of(mistake, &recipe).is_empty())
+            };
+            assert!(Stage::ALL.iter().any(shows), "{mistake:?}");
+        }
+    }
+
+    #[test]
+    fn bytes_and_linear_values_belong_together() {
+        for id in ["sky", "metal", "gamut"] {
+            let recipe = Stage::find(id).unwrap().recipe();
+            let right = Hypothesis::right(&recipe);
+            let others = [Mistake::NoGamma, Mistake::GammaEarly, Mistake::GammaTwice, Mistake::TimesInteger];
+            let others = others.into_iter().flat_map(|mistake| Hypothesis::of(mistake, &recipe));
+            for hypothesis in others.chain([right]) {
+                for byte in 0..254 {
+                    let [linear, half_step] = hypothesis.linear(byte, 3, 9);
+                    assert_eq!(hypothesis.byte_of(linear, 3, 9), byte, "{id}, {:?}", hypothesis.mistake);
+                    assert!(half_step > 0.0);
+                }
+            }
+        }
+    }
+}

@@ -18,20 +18,23 @@ pub fn stages() -> impl Iterator<Item = &'static Stage> {
 /// Cutting off paths of more rays than this shows nowhere.
 const LONG_PATH: u32 = 20;
 
-/// The stages whose pictures differ: of two that show the same, the first.
-fn distinct() -> Vec<&'static Stage> {
+/// The stages whose pictures differ: of two that show the same, the one whose width is nearer, else the first.
+fn distinct(width: u32) -> Vec<&'static Stage> {
     let mut distinct: Vec<(&'static Stage, Recipe)> = Vec::new();
     for stage in stages() {
         let recipe = stage.recipe();
-        let shows_same = |(_, other): &(&Stage, Recipe)| {
+        let shows_same = |(_, other): &&mut (&Stage, Recipe)| {
             let depth = |recipe: &Recipe| recipe.settings.max_depth.min(LONG_PATH);
             other.scene == recipe.scene
                 && other.camera == recipe.camera
                 && other.rules == recipe.rules
                 && depth(other) == depth(&recipe)
         };
-        if !distinct.iter().any(shows_same) {
-            distinct.push((stage, recipe));
+        let distance = |recipe: &Recipe| recipe.settings.width.abs_diff(width);
+        match distinct.iter_mut().find(shows_same) {
+            None => distinct.push((stage, recipe)),
+            Some(same) if distance(&recipe) < distance(&same.1) => *same = (stage, recipe),
+            Some(_) => {}
         }
     }
     distinct.into_iter().map(|(stage, _)| stage).collect()
@@ -52,7 +55,7 @@ pub fn candidates(mine: &Mine) -> Result<Vec<&'static Stage>, StudioError> {
     let mut ranked = Vec::new();
     for is_thorough in [false, true] {
         ranked.clear();
-        for stage in distinct() {
+        for stage in distinct(mine.width) {
             let mut studio = Studio::new(&recipe_of(stage, mine.width / factor, mine.height / factor))?;
             let mut hypotheses = vec![Hypothesis::right(studio.recipe())];
             hypotheses.extend(
@@ -81,7 +84,7 @@ fn rough_difference(mine: &Mine, factor: u32, hypothesis: &Hypothesis, expected:
     let mut sum = 0.0;
     for (index, pixel) in expected.pixels.iter().enumerate() {
         let (x, y) = (index % width, index / width);
-        for channel in 0..3 {
+        for (channel, linear) in pixel.iter().enumerate() {
             let mut mean = 0.0;
             for dy in 0..factor as usize {
                 for dx in 0..factor as usize {
@@ -90,7 +93,7 @@ fn rough_difference(mine: &Mine, factor: u32, hypothesis: &Hypothesis, expected:
                 }
             }
             mean /= f64::from(factor * factor);
-            let shown = f64::from(hypothesis.byte_of(pixel[channel], y, height));
+            let shown = f64::from(hypothesis.byte_of(*linear, y, height));
             sum += ((mean - shown) / 256.0).powi(2);
         }
     }

@@ -3,6 +3,7 @@
 use super::compared::Compared;
 use super::judge::Finding;
 use super::picture::Mine;
+use crate::stages::Shading;
 use serde::Serialize;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -90,14 +91,15 @@ pub fn text(path: &Path, mine: &Mine, finding: &Finding, files: &[PathBuf]) -> S
     match &finding.mistake {
         None if finding.is_right() => {
             lines.push(("verdict", "right: it differs from ours by noise only".to_owned()));
-            if mine.width == mine.height {
+            if mine.width == mine.height && stage.setup.rules.shading != Shading::ImageGradient {
                 let note = "the picture is square; if you wanted 16:9, divide 16.0 by 9.0, not 16 by 9";
                 lines.push(("note", note.to_owned()));
             }
         }
         None => {
             let verdict = "not right, but none of the known mistakes explains it; name the stage with --stage if it is \
-                           another one, and see with --out DIR where it differs";
+                           another one, and see with --out DIR where it differs (the final picture of section 14.1 \
+                           cannot be checked: its small spheres are random)";
             lines.push(("verdict", verdict.to_owned()));
         }
         Some(found) => lines.extend(of_mistake(found)),
