@@ -13,6 +13,7 @@ mod mistake;
 mod picture;
 mod program;
 mod tracer;
+mod views;
 mod words;
 
 pub use compared::Compared;
@@ -22,3 +23,5 @@ pub use likeness::stages;
 pub use mistake::{About, Mistake};
 pub use picture::{Damage, Mine, PIXEL_LIMIT, ReadError};
 pub use program::run;
+pub use views::pictures;
+pub use words::text;

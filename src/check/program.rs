@@ -3,11 +3,11 @@
 use super::judge::{Finding, judge};
 use super::likeness::stages;
 use super::picture::Mine;
+use super::views::pictures;
 use super::words::{FindingJson, text};
 use crate::cli::{CheckOptions, JsonTarget};
 use crate::failure::{FAILED, Failure};
 use crate::files::{check_writable, replace_file};
-use crate::heat::HeatScale;
 use crate::terminal::{print_beside, write_json};
 use anyhow::{Context, Result, bail};
 use image::{ImageFormat, RgbImage};
@@ -64,22 +64,8 @@ fn checked(options: &CheckOptions) -> Result<ExitCode> {
 
 /// Writes mine, ours and their difference, and returns the files.
 fn write_pictures(directory: &Path, mine: &Mine, finding: &Finding) -> Result<Vec<PathBuf>> {
-    let (width, height) = (mine.width as usize, mine.height as usize);
-    let right = &finding.right;
-    let ours: Vec<[u8; 3]> = right
-        .expected
-        .pixels
-        .iter()
-        .enumerate()
-        .map(|(index, pixel)| pixel.map(|x| right.hypothesis.byte_of(x, index / width, height)))
-        .collect();
-    let difference = mine.bytes.iter().zip(&ours).map(|(mine, ours)| {
-        let square = |channel: usize| ((f64::from(mine[channel]) - f64::from(ours[channel])) / 255.0).powi(2);
-        HeatScale::ERROR.colour(((square(0) + square(1) + square(2)) / 3.0).sqrt())
-    });
-    let pictures = [mine.bytes.clone(), ours.clone(), difference.collect()];
     let mut files = Vec::new();
-    for (name, pixels) in FILES.into_iter().zip(pictures) {
+    for (name, pixels) in FILES.into_iter().zip(pictures(mine, finding)) {
         let path = directory.join(name);
         let image = RgbImage::from_raw(mine.width, mine.height, pixels.into_iter().flatten().collect());
         let image = image.context("a picture has another size than its pixels")?;
