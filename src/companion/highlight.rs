@@ -74,9 +74,10 @@ mod tests {
         for part in [
             "<span class=\"hl-k\">fn</span>",
             "<span class=\"hl-f\">hit</span>",
-            "<span class=\"hl-t\">'a</span>",
+            "<span class=\"hl-t\">&#39;a</span>",
             "<span class=\"hl-t\">f32</span>",
             "<span class=\"hl-c\">/* a <span class=\"hl-c\">/* b */</span> */</span>",
+            "<span class=\"hl-s\">&#39;a&#39;</span>",
             "<span class=\"hl-s\">&quot;}&quot;</span>",
         ] {
             assert!(rust.contains(part), "{part} in {rust}");
