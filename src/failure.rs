@@ -20,7 +20,7 @@ pub const INTERRUPTED: u8 = 130;
 
 /// The exit codes as `--help` explains them.
 pub const EXIT_CODES: &str = "\
-Exit codes: 0 success; 1 failure during the run (compare and diff: the inputs differ); 2 the request cannot be carried \
+Exit codes: 0 success; 1 failure during the run (compare and diff: the inputs differ; check: a mistake); 2 the request cannot be carried \
 out, nothing was started; 3 the render failed, but what it had rendered is saved; 130 interrupted, what had been \
 rendered is saved";
 

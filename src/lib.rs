@@ -9,6 +9,7 @@ pub mod baseline;
 pub mod batch;
 pub mod bench;
 pub mod chart;
+pub mod check;
 pub mod cli;
 pub mod companion;
 pub mod compare;

@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
 use weekender::failure::{self, Failure};
-use weekender::{app, batch, bench, companion, compare, diff, gallery, interrupt, report, stress};
+use weekender::{app, batch, bench, check, companion, compare, diff, gallery, interrupt, report, stress};
 
 fn main() -> ExitCode {
     failure::install_panic_hook();
@@ -26,6 +26,7 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Stress(options) => stress::run(&options),
         Request::Companion(options) => companion::run(&options),
         Request::Gallery(options) => gallery::run(&options),
+        Request::Check(options) => check::run(&options),
         Request::Batch(options) => batch::run(*options),
     }
 }

@@ -1,4 +1,5 @@
 //! `weekender gallery`: what is rendered again, what an interruption and a full disk leave, and the page.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
 

@@ -186,5 +186,6 @@ fn a_device_that_always_leaves_samples_out_fails() {
     let mut film = job.new_film();
     let error = short.accumulate(&job, 0..8, &mut film, &go_on()).unwrap_err().to_string();
     assert!(error.contains("the device added only 0 of 144 samples") && error.contains("CPU"), "{error}");
+    assert!(error.contains("in 1 blocks of tiles 0 to 3 from row 0 on"), "{error}");
     assert!(film == job.new_film());
 }

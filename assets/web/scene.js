@@ -86,23 +86,28 @@ export function dolly(camera, factor) {
 }
 
 // Whether the stage's buffers serve this camera. The program sorts and anchors the spheres for an eye outside all of
-// them, and measures coordinates from a point that is close enough for the smallest.
+// them, and measures coordinates from a point that is close enough for the smallest length around the eye. Below the
+// smallest spheres, it would move the anchor of the ground to the eye.
 export function isServed(stage, camera) {
   const { stride, reference, inward, radius } = data.records.ShadingRecord;
   const bytes = view(stage.buffers[3]);
   const vector = (at) => [0, 4, 8].map((i) => bytes.getFloat32(at + i, true));
   const eye = minus(camera.from, stage.origin);
-  let smallest = Infinity;
+  let [smallest, lowest, lowestAnchored] = [Infinity, Infinity, Infinity];
   for (let row = 0; row < bytes.byteLength; row += stride) {
     const r = bytes.getFloat32(row + radius, true);
     if (r === 0) continue;
-    smallest = Math.min(smallest, r);
     const point = vector(row + reference);
-    const height = length(minus(eye, plus(point, times(vector(row + inward), r)))) - r;
+    const toCentre = times(vector(row + inward), r);
+    const height = length(minus(eye, plus(point, toCentre))) - r;
     if (height < lensRadius(camera) + 0.002 * length(minus(eye, point))) return false;
+    smallest = Math.min(smallest, r);
+    lowest = Math.min(lowest, height);
+    if (length(toCentre) > 0) lowestAnchored = Math.min(lowestAnchored, height);
   }
   const [distance, first] = [camera, stage.camera].map(({ from, at }) => length(minus(from, at)));
-  return distance > first / 20 && distance < first * 5 && Math.max(...eye.map(Math.abs)) < 125 * smallest;
+  const isNear = Math.max(...eye.map(Math.abs)) < 125 * Math.min(smallest, lowest);
+  return isNear && lowestAnchored >= 1.01 * smallest && distance > first / 20 && distance < first * 5;
 }
 
 // ---- Bytes ----

@@ -24,13 +24,23 @@ pub struct Resumed {
     pub film: SavedFilm,
 }
 
+/// A file that was not opened.
+pub struct NotOpened {
+    /// The file.
+    pub path: PathBuf,
+    /// Why, in words.
+    pub reason: String,
+    /// It may be a picture of another program, which says nothing about how it was made.
+    pub is_picture: bool,
+}
+
 /// Files being read and written. The answers are the path, or why it failed.
 #[derive(Default)]
 pub struct Files {
     /// Files that were written.
     pub saved: Answers<Result<PathBuf, String>>,
     /// Files that were opened.
-    pub opened: Answers<Result<Opened, String>>,
+    pub opened: Answers<Result<Opened, NotOpened>>,
     /// Films to resume.
     pub resumed: Answers<Result<Resumed, String>>,
     /// Films to compare with.
@@ -74,7 +84,18 @@ impl Files {
 
     /// Reads a scene file, picture or film.
     pub fn open(&self, context: &Context, path: PathBuf) {
-        read(&self.opened, context, move || saved::open(&path));
+        let opened = path.clone();
+        let work = move || {
+            saved::open(&path).map_err(|error| NotOpened {
+                is_picture: matches!(error, OpenError::Picture(_)),
+                reason: error.to_string(),
+                path,
+            })
+        };
+        if let Err(error) = self.opened.ask("files", context, work) {
+            let reason = format!("the file cannot be read: no thread could be started ({error})");
+            self.opened.answer(context).give(Err(NotOpened { path: opened, reason, is_picture: false }));
+        }
     }
 
     /// Reads the film of `job`, which is the job of `document`.

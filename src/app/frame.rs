@@ -164,6 +164,7 @@ impl Window {
         if let Some(room) = touch.room {
             self.toasts.ui(ui, room);
         }
+        self.check.ui(ui.ctx());
         if let Some((purpose, path)) = self.dialogs.ui(ui, &facts, &mut self.commands) {
             let context = ui.ctx().clone();
             self.use_path(&context, purpose, path);

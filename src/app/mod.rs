@@ -8,6 +8,7 @@
 
 mod answers;
 mod changes;
+mod check;
 mod code;
 mod command;
 mod dialogs;

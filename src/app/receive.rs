@@ -1,7 +1,7 @@
 //! Handles the answers of background threads.
 
 use super::command::Command;
-use super::files::Resumed;
+use super::files::{NotOpened, Resumed};
 use super::model::device::Device;
 use super::model::document::Document;
 use super::model::origin::{Origin, Source};
@@ -25,8 +25,14 @@ impl Window {
         while let Some(outcome) = self.files.opened.take() {
             match outcome {
                 Ok(opened) => self.show_opened(opened),
-                Err(reason) => self.toasts.bad(format!("Not opened: {reason}")),
+                Err(NotOpened { path, is_picture: true, .. }) if path.exists() => {
+                    self.check.begin(context, &path, None);
+                }
+                Err(NotOpened { reason, .. }) => self.toasts.bad(format!("Not opened: {reason}")),
             }
+        }
+        if let Some(reason) = self.check.follow() {
+            self.toasts.bad(format!("Not checked: {reason}"));
         }
         while let Some(outcome) = self.files.resumed.take() {
             match outcome {

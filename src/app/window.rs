@@ -1,6 +1,7 @@
 //! The window's state. Only this file and its extensions (`frame`, `perform`, `receive`) know all of it.
 
 use super::changes::Changes;
+use super::check::Check;
 use super::code::Code;
 use super::command::Command;
 use super::dialogs::Dialogs;
@@ -51,6 +52,7 @@ pub struct Window {
     pub(super) paths: Paths,
     pub(super) packet: Packet,
     pub(super) code: Code,
+    pub(super) check: Check,
     pub(super) files: Files,
     pub(super) dialogs: Dialogs,
     pub(super) toasts: Toasts,
@@ -117,6 +119,7 @@ impl Window {
             paths: Paths::default(),
             packet: Packet::default(),
             code: Code::default(),
+            check: Check::default(),
             files: Files::default(),
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
@@ -224,6 +227,11 @@ impl Window {
     /// The steps of the shown packet without and with refill, once they are recorded.
     pub fn packet_steps(&self) -> Option<[usize; 2]> {
         self.packet.steps()
+    }
+
+    /// What was found about the reader's picture that is shown.
+    pub fn finding(&self) -> Option<&str> {
+        self.check.words()
     }
 
     /// The number of listed paths.

@@ -5,7 +5,7 @@ use crate::cli::RenderOptions;
 use crate::describe::describe;
 use crate::files::FileIdentity;
 use crate::film::{Film, SaveOutcome, SharedFile};
-use crate::output::{OutputFormat, write_image};
+use crate::output::{OutputFormat, write_image_as};
 use crate::progressive::Status;
 use crate::saved::same_job;
 use anyhow::anyhow;
@@ -100,7 +100,7 @@ pub(super) fn write(
     if places.out.is_none() {
         say(&render.out);
         let transfer = render.job.rules().transfer;
-        match write_image(&render.out, film, transfer, &description) {
+        match write_image_as(&render.out, film, transfer, &description, render.ppm) {
             Ok(()) => written.files.push(render.out.clone()),
             Err(error) => failures.push(error.to_string()),
         }

@@ -1,6 +1,7 @@
 //! The command line, parsed and validated.
 
 mod bench;
+mod check;
 mod companion;
 mod compare;
 mod diff;
@@ -16,6 +17,7 @@ mod subcommands;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
+pub use check::CheckOptions;
 pub use companion::CompanionOptions;
 pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice, SideChoice};
@@ -59,6 +61,8 @@ pub enum Request {
     Companion(Box<CompanionOptions>),
     /// Render the figures of the book.
     Gallery(Box<GalleryOptions>),
+    /// Find the mistake in a picture.
+    Check(Box<CheckOptions>),
     /// Render to files.
     Batch(Box<BatchOptions>),
 }
@@ -108,6 +112,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
             .map_err(Failure::input),
         Some(RawCommand::Gallery(raw)) => {
             gallery::gallery(*raw).map(|options| Request::Gallery(Box::new(options))).map_err(Failure::input)
+        }
+        Some(RawCommand::Check(raw)) => {
+            check::check(*raw).map(|options| Request::Check(Box::new(options))).map_err(Failure::input)
         }
         None if raw.render.list => Ok(Request::List),
         None => render::request(raw.render).map_err(Failure::input),

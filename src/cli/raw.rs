@@ -5,6 +5,7 @@ use super::values::{
     Level, Simd, parse_duration, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds,
     parse_simd, parse_size, parse_vector,
 };
+use crate::output::PpmForm;
 use crate::recipe::Recipe;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
 use clap::builder::PossibleValue;
@@ -90,10 +91,13 @@ pub(super) struct RawRender {
           allow_hyphen_values = true, help_heading = "Device")]
     pub threads: Option<u64>,
 
-    /// The picture: .png, .ppm (binary P6) or .exr (linear film); with --stage all, the directory
+    /// The picture: .png, .ppm or .exr (linear film); with --stage all, the directory
     /// [default: SCENE.png]
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub out: Option<PathBuf>,
+    /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
+    #[arg(long, value_enum, help_heading = "Files")]
+    pub ppm: Option<RawPpm>,
     /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C
     #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
     pub checkpoint: Option<PathBuf>,
@@ -213,6 +217,21 @@ impl ValueEnum for SamplerKind {
 
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(PossibleValue::new(self.name()))
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum RawPpm {
+    Binary,
+    Ascii,
+}
+
+impl RawPpm {
+    pub fn form(self) -> PpmForm {
+        match self {
+            RawPpm::Binary => PpmForm::Binary,
+            RawPpm::Ascii => PpmForm::Ascii,
+        }
     }
 }
 

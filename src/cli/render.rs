@@ -3,11 +3,11 @@
 use super::Request;
 use super::error::CliError;
 use super::paths::Paths;
-use super::raw::{self, DrawWith, ProgressChoice, RawDevice, RawRender};
+use super::raw::{self, DrawWith, ProgressChoice, RawDevice, RawPpm, RawRender};
 use super::sources::{self, ChosenRecipe};
 use super::values::{JsonTarget, Level, Simd};
 use crate::backends::BackendChoice;
-use crate::output::OutputFormat;
+use crate::output::{OutputFormat, PpmForm};
 use crate::progressive::{Plan, Stop};
 use crate::recipe::{Recipe, plain_name};
 use crate::render::RenderJob;
@@ -82,6 +82,8 @@ pub struct RenderOptions {
     pub every: Duration,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// How a PPM holds its numbers.
+    pub ppm: PpmForm,
 }
 
 /// A scene file to write.
@@ -147,6 +149,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         ("--checkpoint", raw.checkpoint.is_some()),
         ("--every", raw.every.is_some()),
         ("--json", raw.json.is_some()),
+        ("--ppm", raw.ppm.is_some()),
         ("--sample-range", raw.sample_range.is_some()),
     ] {
         if is_given {
@@ -197,7 +200,11 @@ fn render(mut chosen: ChosenRecipe, raw: &RawRender, out: PathBuf) -> Result<Ren
             reason: "the error is estimated from the film's two halves",
         });
     }
-    OutputFormat::from_path(&out)?;
+    let format = OutputFormat::from_path(&out)?;
+    if raw.ppm.is_some() && format != OutputFormat::P6 {
+        let reason = "it is about how a PPM holds its numbers";
+        return Err(CliError::Needs { flag: "--ppm", other: "--out FILE.ppm", reason });
+    }
     if raw.every.is_some() && raw.checkpoint.is_none() {
         let reason = "it is the interval at which that film is written";
         return Err(CliError::Needs { flag: "--every", other: "--checkpoint FILE.exr", reason });
@@ -211,6 +218,7 @@ fn render(mut chosen: ChosenRecipe, raw: &RawRender, out: PathBuf) -> Result<Ren
         checkpoint: raw.checkpoint.clone(),
         every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
         resume: raw.resume.clone(),
+        ppm: raw.ppm.map_or(PpmForm::Binary, RawPpm::form),
     })
 }
 

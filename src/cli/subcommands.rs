@@ -1,6 +1,7 @@
 //! The whole command line as clap parses it: rendering, or a subcommand.
 
 use super::bench::RawBench;
+use super::check::RawCheck;
 use super::companion::RawCompanion;
 use super::compare::RawCompare;
 use super::diff::RawDiff;
@@ -65,4 +66,9 @@ pub(super) enum RawCommand {
     ///
     /// Only pictures that are missing, damaged or changed are rendered. After Ctrl-C, the same command goes on.
     Gallery(Box<RawGallery>),
+    /// Find the mistake in a picture that your own program has rendered
+    ///
+    /// Finds the stage of the book that the picture shows, and the likeliest mistake with what to change. The exit code
+    /// is 0 if the picture is right, 1 if there is a mistake and 2 if it could not be checked.
+    Check(Box<RawCheck>),
 }

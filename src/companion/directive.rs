@@ -5,12 +5,12 @@ use super::library::FOLDER;
 use super::measured;
 use super::site::{Site, Uses};
 use super::text::typographic;
+use super::timeline;
 use crate::gallery::{Figure, is_about_pixels};
 use maud::{Markup, PreEscaped, html};
 
 /// The directives with what follows them.
-const KNOWN: &str =
-    "figure ID, excerpt NAME, pair NAME NAME, table NAME, chart NAME, diagram NAME, glossary, references";
+const KNOWN: &str = "figure ID, excerpt NAME, pair NAME NAME, table NAME, chart NAME, diagram NAME, timeline STAGE, glossary, references";
 
 /// Stands where the glossary is to be put, until all chapters are rendered.
 pub const GLOSSARY_MARK: &str = "<!-- glossary -->";
@@ -34,6 +34,7 @@ pub fn html(site: &Site, directive: &str, uses: &mut Uses) -> Result<Markup, Str
         ["table", name] => measured::table(&site.measured, name),
         ["chart", name] => measured::chart(&site.measured, name),
         ["diagram", name] => diagram(site, name, uses),
+        ["timeline", stage] => timeline::figure(stage),
         ["glossary"] => Ok(PreEscaped(GLOSSARY_MARK.to_owned())),
         ["references"] => Ok(PreEscaped(REFERENCES_MARK.to_owned())),
         _ => Err(format!("{{{{{directive}}}}} is no directive; use one of {KNOWN}")),

@@ -16,6 +16,7 @@ mod reference;
 mod section;
 mod site;
 mod text;
+mod timeline;
 
 pub use excerpt::Excerpt;
 pub use faults::{Fault, Faults};

@@ -53,7 +53,7 @@ impl Fingerprints {
         let mut checksum = Checksum::default();
         checksum.text(file::to_toml(recipe).as_bytes());
         for sum in film.halves().iter().flatten() {
-            sum.0.iter().for_each(|channel| checksum.word(*channel as u64));
+            sum.0.iter().for_each(|channel| checksum.word(*channel));
         }
         Ok(checksum.finish())
     }

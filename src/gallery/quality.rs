@@ -27,16 +27,20 @@ const FULL_SAMPLES: u64 = 1024;
 /// Stages about single pixels; neither their size nor their samples may change.
 const PIXELS: [&str; 3] = ["ppm-tiny", "aliased", "antialiased"];
 
-/// Whether a stage is about single pixels, so that an enlarged still must show them.
+/// A still of fewer pixels across is enlarged.
+const FEW_PIXELS: u32 = 100;
+
+/// Whether a still of the stage has so few pixels that it must be enlarged, with every pixel a square. (Stills that are
+/// reduced must not be shown so: their edges would become steps.)
 pub fn is_about_pixels(stage: &Stage) -> bool {
-    PIXELS.contains(&stage.id)
+    stage.setup.width < FEW_PIXELS
 }
 
 impl Quality {
     /// The picture of `stage`: its own recipe in the size and with the samples of this quality.
     pub fn recipe(self, stage: &Stage) -> Recipe {
         let mut recipe = stage.recipe();
-        if is_about_pixels(stage) {
+        if PIXELS.contains(&stage.id) {
             return recipe;
         }
         let settings = &mut recipe.settings;
@@ -71,7 +75,7 @@ mod tests {
                     .map(|settings| f64::from(settings.width) / f64::from(settings.height));
                 assert!((shape / own_shape - 1.0).abs() < 0.01, "{}: {shape}", stage.id);
                 assert_eq!(recipe.samples_per_pixel == 1, own.samples_per_pixel == 1, "{}", stage.id);
-                if is_about_pixels(stage) {
+                if PIXELS.contains(&stage.id) {
                     assert_eq!(recipe, own);
                 }
             }

@@ -1,4 +1,4 @@
-//! Picture files: 8-bit PNG, binary PPM (P6), and OpenEXR with the whole film. All of them contain a [`Description`].
+//! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film. All of them contain a [`Description`].
 //! Pictures of other programs can be read, too: [`read_picture`].
 
 mod limits;
@@ -94,6 +94,16 @@ pub enum OutputError {
     },
 }
 
+/// How a PPM holds its numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PpmForm {
+    /// As bytes (P6).
+    #[default]
+    Binary,
+    /// As text (P3), as the book writes them.
+    Ascii,
+}
+
 /// Writes a picture to `path`, replacing an existing file, in the format of its extension. `transfer` only matters
 /// for 8-bit formats; an EXR file is linear and holds the film.
 ///
@@ -105,10 +115,24 @@ pub fn write_image(
     transfer: Transfer,
     description: &Description,
 ) -> Result<(), OutputError> {
+    write_image_as(path, film, transfer, description, PpmForm::Binary)
+}
+
+/// As [`write_image`]; a PPM has the form `ppm`.
+///
+/// # Errors
+/// As for [`write_image`].
+pub fn write_image_as(
+    path: &Path,
+    film: &Film,
+    transfer: Transfer,
+    description: &Description,
+    ppm: PpmForm,
+) -> Result<(), OutputError> {
     let format = OutputFormat::from_path(path)?;
     replace_file(path, |writer| match format {
         OutputFormat::Png => png::write(film, transfer, description, writer),
-        OutputFormat::P6 => ppm::write(film, transfer, description, writer),
+        OutputFormat::P6 => ppm::write(film, transfer, description, ppm, writer),
         OutputFormat::Exr => checkpoint::write(film, description, writer),
     })?;
     Ok(())
@@ -132,7 +156,7 @@ pub fn decode_description(mut reader: impl BufRead + Seek, path: &Path) -> Resul
     let start = start_of(&mut reader).map_err(unreadable)?;
     let found = match start.as_slice() {
         [0x89, b'P', b'N', b'G', ..] => png::read_description(reader).map_err(unreadable)?,
-        [b'P', b'6', ..] => ppm::read_description(reader).map_err(unreadable)?,
+        [b'P', b'3' | b'6', ..] => ppm::read_description(reader).map_err(unreadable)?,
         start if start.starts_with(&checkpoint::MAGIC) => checkpoint::read_description(reader, path)?,
         _ => None,
     };

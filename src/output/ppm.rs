@@ -1,7 +1,7 @@
-//! Binary PPM (P6). Comments in the header hold the description: lines `# key: value`, then a line with the recipe's
+//! PPM, binary (P6) or as text (P3). Comments in the header hold the description: lines `# key: value`, then a line with the recipe's
 //! key alone, then the lines of the recipe.
 
-use super::{Description, RECIPE_KEY, TEXT_LIMIT, write_rows};
+use super::{Description, PpmForm, RECIPE_KEY, TEXT_LIMIT, write_rows};
 use crate::film::Film;
 use crate::stages::Transfer;
 use std::io::{self, BufRead, Write};
@@ -10,9 +10,10 @@ pub(super) fn write(
     film: &Film,
     transfer: Transfer,
     description: &Description,
+    form: PpmForm,
     writer: &mut impl Write,
 ) -> io::Result<()> {
-    writeln!(writer, "P6")?;
+    writeln!(writer, "{}", if form == PpmForm::Ascii { "P3" } else { "P6" })?;
     for line in description.lines() {
         writeln!(writer, "# {line}")?;
     }
@@ -21,7 +22,27 @@ pub(super) fn write(
         writeln!(writer, "# {line}")?;
     }
     writeln!(writer, "{} {}\n255", film.width(), film.height())?;
-    write_rows(film, transfer, writer)
+    match form {
+        PpmForm::Binary => write_rows(film, transfer, writer),
+        PpmForm::Ascii => write_rows(film, transfer, &mut Numbers(writer)),
+    }
+}
+
+/// Writes bytes as numbers, one pixel on a line. It is given whole pixels.
+struct Numbers<W>(W);
+
+impl<W: Write> Write for Numbers<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        for pixel in bytes.chunks(3) {
+            let numbers: Vec<String> = pixel.iter().map(u8::to_string).collect();
+            writeln!(self.0, "{}", numbers.join(" "))?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
 }
 
 pub(super) fn read_description(reader: impl BufRead) -> io::Result<Option<Description>> {

@@ -151,4 +151,16 @@ mod tests {
         (status.stats, status.trace) = (Stats::default(), Duration::ZERO);
         assert_eq!((status.paths_per_second(), status.lane_occupancy()), (0.0, None));
     }
+
+    #[test]
+    fn backends_with_other_options_are_credited_apart() {
+        let info = |lanes| BackendInfo { name: "cpu", device: "x".to_owned(), lanes, threads: 1 };
+        let mut status = Status::default();
+        for (lanes, samples) in [(8, 4), (1, 2), (8, 16)] {
+            status.credit(&info(lanes), samples);
+        }
+        let found: Vec<_> =
+            status.contributions.iter().map(|part| (part.backend.lanes, part.samples_per_pixel)).collect();
+        assert_eq!(found, [(8, 20), (1, 2)]);
+    }
 }

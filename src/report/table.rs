@@ -283,6 +283,7 @@ fn number(x: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::data::{Rounding, Settings};
 
     #[test]
     fn numbers_have_three_digits() {
@@ -388,5 +389,36 @@ mod tests {
         );
         assert!(text.contains("| predicted | actual | predicted / actual |"), "{text}");
         assert!(text.contains("| s | cpu | sobol | 16 | 24 | 0.0110 | 0.0100 | 1.100 ± 0.020 |\n"), "{text}");
+    }
+
+    #[test]
+    fn a_floor_that_is_too_low_to_tell_has_a_limit() {
+        let row = |floor| Rounding {
+            scene: "s".to_owned(),
+            backend: "cpu".to_owned(),
+            samples: 64,
+            bias: -2e-6,
+            rms: 3e-5,
+            floor,
+            floor_limit: 5e-6,
+        };
+        let settings = Settings {
+            software: String::new(),
+            size: (1, 1),
+            seeds: 1,
+            time_limit: 1.0,
+            max_samples: 64,
+            estimate_error: true,
+            reference_samples: 64,
+            reference: String::new(),
+        };
+        let rounded = vec![row(Some(4e-6)), row(None)];
+        let data = Data { schema: 1, settings, references: Vec::new(), runs: Vec::new(), rounding: rounded };
+        let mut half = curve("cpu", "sobol", 1.0);
+        half.points.push(CurvePoint { samples: 64, rmse: 0.01, ..half.points[0].clone() });
+        let mut text = String::new();
+        rounding(&mut text, &data, &[half]);
+        assert!(text.contains("| s | cpu | 64 | -2.0e-6 | 3.0e-5 | 4.0e-6 | ~4e8 |\n"), "{text}");
+        assert!(text.ends_with("| s | cpu | 64 | -2.0e-6 | 3.0e-5 | < 5.0e-6 | ~> 3e8 |\n"), "{text}");
     }
 }

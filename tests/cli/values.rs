@@ -168,3 +168,18 @@ fn a_report_has_each_target_once_and_the_chosen_one_first() {
     assert_eq!(targets(&["--target", "0.02"]), [0.02, 0.01, 0.001]);
     assert_eq!(targets(&["--target", "0.001"]), [0.001, 0.01]);
 }
+
+/// Without a number of samples, a time limit or a noise target is the only end.
+#[test]
+fn what_ends_a_render_is_what_was_asked_for() {
+    let samples = |flags: &[&str]| {
+        let words = ["weekender", "--batch", "--scene", "three-spheres"].iter().chain(flags).map(Into::into);
+        let Ok(Request::Batch(options)) = parse(words) else { panic!("{flags:?}") };
+        options.renders[0].plan.stop.samples
+    };
+    assert!(samples(&[]).is_some());
+    assert_eq!(samples(&["--samples", "7", "--noise-target", "0.01"]), Some(7));
+    for flags in [["--noise-target", "0.01"], ["--time-limit", "5"]] {
+        assert_eq!(samples(&flags), None, "{flags:?}");
+    }
+}

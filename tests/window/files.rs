@@ -77,7 +77,7 @@ fn failures_are_told_in_words() {
     until(&mut harness, "a picture", has_samples(1));
     for (name, content, told) in [
         ("missing.png", None, "cannot read"),
-        ("broken.png", Some("nothing of the kind"), "does not say how it was made"),
+        ("broken.png", Some("nothing of the kind"), "Not checked: "),
         ("broken.toml", Some("[camera"), "broken.toml"),
         ("broken.exr", Some("nothing"), "is not an EXR file"),
     ] {
@@ -100,6 +100,34 @@ fn failures_are_told_in_words() {
     until(&mut harness, "refused", |window| {
         window.messages().iter().any(|text| text.starts_with("Not saved"))
     });
+}
+
+/// A picture that says nothing about how it was made is checked as a reader's own.
+#[test]
+fn a_picture_of_another_program_is_checked() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut recipe = Stage::find("normals").unwrap().recipe();
+    (recipe.settings.width, recipe.settings.height) = (160, 90);
+    let mut progressive = Progressive::spawn().unwrap();
+    let backend = weekender::backends::BackendChoice::Cpu(weekender::render_cpu::CpuOptions::default());
+    progressive.start(RenderRequest::new(recipe.job().unwrap(), backend, Plan::samples(1)));
+    progressive.wait_until_over();
+    let mut rgb8 = progressive.finish().unwrap().to_rgb8(recipe.rules.transfer);
+    for pixel in rgb8.chunks_exact_mut(3) {
+        pixel.swap(0, 2);
+    }
+    let mut picture = b"P6\n160 90\n255\n".to_vec();
+    picture.extend(rgb8);
+    let path = directory.path().join("mine.ppm");
+    std::fs::write(&path, picture).unwrap();
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    until(&mut harness, "the finding", |window| window.finding().is_some());
+    let words = harness.state().finding().unwrap().to_owned();
+    assert!(words.contains("normals, section 6.1") && words.contains("a mistake: "), "{words}");
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("difference").is_some());
 }
 
 #[test]

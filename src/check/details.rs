@@ -1,0 +1,107 @@
+//! Mistakes that blocks cannot show: at edges, pixel by pixel, and in the last bit of all bytes.
+
+use super::compared::{Compared, compare};
+use super::hypothesis::{Effort, Hypothesis, Studio};
+use super::mistake::Mistake;
+use super::picture::Mine;
+use crate::render::RenderError;
+
+/// Least difference of a pixel's neighbours at an edge, linear radiance.
+const EDGE: f64 = 0.1;
+
+/// Decides among hypotheses that differ at edges only, pixel by pixel: the right picture, all samples at the centre of
+/// the pixel, or pixels that are shifted.
+pub fn by_pixels(
+    mine: &Mine,
+    studio: &mut Studio,
+    right: &Compared,
+    effort: Effort,
+) -> Result<Option<Compared>, RenderError> {
+    let recipe = studio.recipe().clone();
+    let mut rivals = Vec::new();
+    for mistake in Mistake::ALL.into_iter().filter(|mistake| mistake.is_of_pixels()) {
+        if mistake.applies_to(&recipe) {
+            for hypothesis in Hypothesis::of(mistake, &recipe) {
+                let expected = studio.render(&hypothesis, effort)?;
+                rivals.push((hypothesis, expected));
+            }
+        }
+    }
+    let (width, height) = (mine.width as usize, mine.height as usize);
+    let (mut own, mut pixels) = (0.0, 0);
+    let mut errors = vec![0.0; rivals.len()];
+    for (index, bytes) in mine.bytes.iter().enumerate() {
+        let (column, row) = (index % width, index / width);
+        if column == 0 || row == 0 || column + 1 == width || row + 1 == height {
+            continue;
+        }
+        for (channel, byte) in bytes.iter().enumerate() {
+            let at = |pixel: usize| right.expected.pixels[pixel][channel];
+            let across = (at(index + 1) - at(index - 1)).abs();
+            if across.max((at(index + width) - at(index - width)).abs()) < EDGE {
+                continue;
+            }
+            pixels += 1;
+            let [linear, _] = right.hypothesis.linear(*byte, row, height);
+            own += (linear - at(index)).powi(2);
+            for (error, (_, rival)) in errors.iter_mut().zip(&rivals) {
+                *error += (linear - rival.pixels[index][channel]).powi(2);
+            }
+        }
+    }
+    let least = errors.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(match least {
+        Some((index, error)) if pixels > 0 && error < BETTER * own => {
+            let (hypothesis, expected) = rivals.swap_remove(index);
+            Some(compare(mine, hypothesis, expected))
+        }
+        _ => None,
+    })
+}
+
+/// A rival must leave less than this part of the squared error at edges.
+const BETTER: f64 = 0.8;
+
+/// Whether nearly all bytes are 0 or 255, though the picture should have values between.
+pub fn is_truncated(mine: &Mine, right: &Compared) -> bool {
+    let (width, height) = (mine.width as usize, mine.height as usize);
+    let is_end = |byte: &u8| *byte <= 1 || *byte >= 254;
+    let all = 3 * mine.bytes.len();
+    let ends = mine.bytes.iter().flatten().filter(|byte| is_end(byte)).count();
+    let expected = right.expected.pixels.iter().enumerate();
+    let expected_ends = expected
+        .flat_map(|(index, pixel)| pixel.map(|x| right.hypothesis.byte_of(x, index / width, height)))
+        .filter(|byte| is_end(byte))
+        .count();
+    100 * ends >= 99 * all && 2 * expected_ends < all
+}
+
+/// Bytes of 255 times the value instead of 256 times, cut off: values are then smaller by 1/256 everywhere.
+pub fn times_integer(mine: &Mine, right: &Compared) -> Option<Compared> {
+    let (width, height) = (mine.width as usize, mine.height as usize);
+    // Noise is without bias in linear values, so the loss is fitted there.
+    let (mut product, mut square, mut scaled, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for (index, (bytes, expected)) in mine.bytes.iter().zip(&right.expected.pixels).enumerate() {
+        let row = index / width;
+        for (byte, x) in bytes.iter().copied().zip(expected.iter().copied()) {
+            let [linear, _] = right.hypothesis.linear(byte, row, height);
+            // At the upper end, 255 is a limit and not a value.
+            if byte >= 254 || !(0.05..=0.98).contains(&x) {
+                continue;
+            }
+            let loss = x - right.hypothesis.times_255(x, row, height);
+            product += (linear - x) * loss;
+            square += loss * loss;
+            scaled += (linear - x).powi(2) * loss * loss;
+            count += 1.0;
+        }
+    }
+    if count < 1000.0 {
+        return None;
+    }
+    let (slope, deviation) = (-product / square, scaled.sqrt() / square);
+    ((slope - 1.0).abs() < 0.4 && slope > 6.0 * deviation).then(|| {
+        let hypothesis = right.hypothesis.blamed_on(Mistake::TimesInteger);
+        Compared { hypothesis, ..right.clone() }
+    })
+}
