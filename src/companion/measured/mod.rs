@@ -119,7 +119,7 @@ fn origin(kept: &Kept, machine: Option<&str>) -> Markup {
         @if let Some(machine) = machine { ", " (machine) }
         ", by "
         // A flag must not be broken after its first hyphen.
-        code { @for word in kept.command.split_inclusive(' ') { span .nb { (word) } } }
+        code { @for word in kept.command.split(' ') { span .nb { (word) } " " } }
         "."
     }
 }
