@@ -161,7 +161,7 @@ impl GpuWay {
         };
         let limit = if way == Way::Pixels { exported.block_limit } else { 1 };
         let ranges: Vec<_> = match way {
-            Way::Pixels => vec![0..samples],
+            Way::Pixels => std::iter::once(0..samples).collect(),
             _ => (0..samples).map(|sample| sample..sample + 1).collect(),
         };
         let blocks: Vec<GpuBlock> = ranges
@@ -261,7 +261,7 @@ impl GpuWay {
             Way::SamplesOfATile => [tiles, samples, 1],
             Way::SamplesOfAPixel => {
                 anyhow::ensure!(
-                    samples % WORKGROUP_SIZE == 0,
+                    samples.is_multiple_of(WORKGROUP_SIZE),
                     "samples must be a multiple of {WORKGROUP_SIZE}"
                 );
                 [pixels.min(65_535), samples / WORKGROUP_SIZE, pixels.div_ceil(65_535)]
