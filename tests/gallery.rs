@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod gpu_common;
+mod html_common;
 
-use gpu_common::say_loudly;
 use serde_json::Value;
 use std::collections::HashSet;
 use std::io::{BufRead, BufReader};
@@ -224,13 +224,5 @@ fn the_page_is_complete_and_needs_no_network() {
     assert!(values(&page, "alt").iter().all(|alt| alt.len() > 20));
     assert!(!page.contains("<script") && !page.contains("@import") && !page.contains("url("));
 
-    match Command::new("html-validate").arg(&path).output() {
-        Ok(output) => assert!(output.status.success(), "{}", text(&output.stdout)),
-        Err(_) if std::env::var("WEEKENDER_REQUIRE_HTML").as_deref() == Ok("1") => {
-            panic!("html-validate is not installed (npm install --global html-validate)")
-        }
-        Err(_) => {
-            say_loudly("no html-validate (npm install --global html-validate): the page was not validated")
-        }
-    }
+    html_common::assert_valid(&path);
 }

@@ -5,6 +5,8 @@ mod faults;
 #[path = "../gpu_common/mod.rs"]
 mod gpu_common;
 mod html;
+#[path = "../html_common/mod.rs"]
+mod html_common;
 mod valid;
 
 use html::Html;
