@@ -63,8 +63,8 @@ mod tests {
                 .collect()
         };
         let glass = first_lines(Some("11.3"), "11.4");
-        assert_eq!(glass.len(), 2, "{glass:?}");
-        assert!(glass.iter().all(|line| line.contains("fn reflectance")), "{glass:?}");
+        assert_eq!(glass.len(), 4, "{glass:?}");
+        assert!(glass[..2].iter().all(|line| line.contains("fn reflectance")), "{glass:?}");
         // The code of 5.1 is new in the picture of 5.2, which is the chapter's first.
         assert!(first_lines(Some("4.2"), "5.2").iter().any(|line| line.contains("fn book_root")));
         assert_eq!(first_lines(Some("10.5"), "10.6"), Vec::<String>::new());
