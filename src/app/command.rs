@@ -265,9 +265,8 @@ impl Command {
             Command::Plot => "Estimated error against seconds",
             Command::Packet => "What each lane does step by step, with and without refill",
             Command::FullScreen => "Fill the whole screen with the window",
-            Command::NextRay | Command::PreviousRay => {
-                "Go through the highlighted path ray by ray, with the reason for each direction"
-            }
+            Command::NextRay => "Go on along the highlighted path, with the reason for the next direction",
+            Command::PreviousRay => "Go back along the highlighted path, towards the camera",
             Command::Theme(_) => "Colours of the window",
             Command::Pause => "Pause or resume tracing; no samples are lost",
             Command::Restart => "Discard all samples and render from the beginning",

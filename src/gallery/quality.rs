@@ -8,7 +8,7 @@ use crate::stages::Stage;
 pub enum Quality {
     /// Small and with visible noise, for a first look.
     Quick,
-    /// For pages: twice as many pixels across as most figures are wide, and hardly any noise.
+    /// For pages: almost twice as many pixels across as most figures are wide, and hardly any noise.
     Full,
 }
 
@@ -19,7 +19,7 @@ const QUICK_WIDTH: u32 = 480;
 const QUICK_SAMPLES: u64 = 64;
 
 /// Least width of a full still, pixels.
-const FULL_WIDTH: u32 = 960;
+const FULL_WIDTH: u32 = 880;
 
 /// Samples per pixel of a full still: the estimated error is then 0.003 or less, about half a step of 8 bits.
 const FULL_SAMPLES: u64 = 1024;
