@@ -94,7 +94,7 @@ fn a_full_picture_is_also_good_enough_for_quick_ones() {
     assert_eq!(pictures(at)[0]["width"], 480);
     // One sample more or less would not be the figure, so its full picture is the quick one.
     assert_eq!(rendered(at, &only), ["sky"]);
-    assert_eq!(pictures(at)[0]["width"], 960);
+    assert_eq!(pictures(at)[0]["width"], 880);
     assert!(rendered(at, &quick).is_empty());
 }
 

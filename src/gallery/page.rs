@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(page.matches("<img ").count(), 2, "{page}");
         let panels: usize = Figure::ALL.iter().map(|figure| figure.panels.len()).sum();
         assert_eq!(page.matches("Not rendered yet").count(), panels - 2);
-        assert!(page.contains("960 × 540 pixels, 1024 samples per pixel"));
+        assert!(page.contains("880 × 495 pixels, 1024 samples per pixel"));
         assert!(!page.contains("<script") && !page.contains("style=\""));
     }
 }

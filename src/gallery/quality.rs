@@ -88,7 +88,7 @@ mod tests {
             })
         };
         assert_eq!(sizes("book"), [(480, 270, 64), (1200, 675, 1024)]);
-        assert_eq!(sizes("sky"), [(480, 270, 1), (960, 540, 1)]);
+        assert_eq!(sizes("sky"), [(480, 270, 1), (880, 495, 1)]);
         assert_eq!(sizes("antialiased"), [(480, 270, 64); 2]);
     }
 }

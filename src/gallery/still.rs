@@ -256,7 +256,7 @@ mod tests {
         let mut still = still("metal");
         assert_eq!(
             still.settings_words(),
-            "960 × 540 pixels, 1024 samples per pixel, at most 50 rays per path"
+            "880 × 495 pixels, 1024 samples per pixel, at most 50 rays per path"
         );
         assert_eq!(
             (still.time_words().as_str(), still.error_words().as_str()),
@@ -269,6 +269,6 @@ mod tests {
             ("8.3 s", "error 1.2e-3 ± 0.8 %")
         );
         let sky = self::still("sky").settings_words();
-        assert_eq!(sky, "960 × 540 pixels, 1 ray through the centre of each pixel");
+        assert_eq!(sky, "880 × 495 pixels, 1 ray through the centre of each pixel");
     }
 }
