@@ -4,7 +4,7 @@ use super::answers::Answers;
 use super::texture::Texture;
 use crate::check::{Mine, judge, pictures, text};
 use crate::stages::Stage;
-use eframe::egui::{self, RichText, TextureOptions, vec2};
+use eframe::egui::{self, Align2, RichText, TextureOptions, vec2};
 use std::path::{Path, PathBuf};
 
 /// The largest width of each of the three pictures, in points.
@@ -90,6 +90,8 @@ impl Check {
         if let Some(path) = &self.waiting {
             egui::Window::new("Checking your picture")
                 .id(egui::Id::unique("checking"))
+                .pivot(Align2::CENTER_CENTER)
+                .default_pos(context.content_rect().center())
                 .collapsible(false)
                 .show(context, |ui| {
                     ui.horizontal(|ui| {
@@ -103,6 +105,8 @@ impl Check {
         egui::Window::new("Your picture")
             .id(egui::Id::unique("check"))
             .open(&mut is_open)
+            .pivot(Align2::CENTER_CENTER)
+            .default_pos(context.content_rect().center())
             .default_width(3.0 * PICTURE_WIDTH + 40.0)
             .show(context, |ui| {
                 ui.label(RichText::new(shown.path.display().to_string()).weak());

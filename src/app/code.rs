@@ -4,7 +4,10 @@ use super::command::Command;
 use super::facts::Facts;
 use crate::companion::{Excerpt, excerpts_between};
 use crate::stages::Stage;
-use eframe::egui::{self, RichText, Ui};
+use eframe::egui::{self, Align2, FontId, RichText, Ui};
+
+/// Size of the code's letters, in points.
+const CODE_SIZE: f32 = 11.5;
 
 /// The code of one stage.
 #[derive(Default)]
@@ -27,7 +30,9 @@ impl Code {
         egui::Window::new(title)
             .id(egui::Id::unique("code"))
             .open(&mut is_open)
-            .default_size([680.0, 420.0])
+            .pivot(Align2::CENTER_CENTER)
+            .default_pos(ui.ctx().content_rect().center())
+            .default_size([720.0, 440.0])
             .show(ui.ctx(), |ui| match (stage, self.excerpts.as_slice()) {
                 (None, _) => _ = ui.label("This picture is not a stage of the book."),
                 (Some(_), []) => {
@@ -55,7 +60,7 @@ fn excerpts_of(stage: &'static Stage) -> Vec<Excerpt> {
 fn excerpt_ui(ui: &mut Ui, excerpt: &Excerpt) {
     let weak = ui.visuals().weak_text_color();
     ui.label(RichText::new(format!("{}, line {}", excerpt.file, excerpt.first)).small().color(weak));
-    let code = RichText::new(excerpt.text.trim_end()).monospace().small();
+    let code = RichText::new(excerpt.text.trim_end()).font(FontId::monospace(CODE_SIZE));
     ui.add(egui::Label::new(code).wrap_mode(egui::TextWrapMode::Extend));
     ui.add_space(10.0);
 }
