@@ -214,7 +214,7 @@ pub(super) const STAGES: &[Stage] = &[
                       that accepts every distance above 0.",
         why: "A computed hit point lies a hair above or below the true surface. From below, the ray meets the \
               same surface again at once. All the other stages know which sphere a ray starts on.",
-        look_for: "Dark speckles and rings on both surfaces, which are real rounding and not added noise. Their \
+        look_for: "Dark speckles and lines on both surfaces, which are real rounding and not added noise. Their \
                    pattern follows the spacing of the numbers.",
         pair: Some("diffuse-limited"),
         setup: Setup { rules: Rules { surface: SurfaceRule::Acne, ..HEMISPHERE }, ..HALF_ENERGY_LIMITED },
