@@ -129,6 +129,8 @@ pub enum Command {
     Code,
     /// Open the book's web page.
     Book,
+    /// Open the page that accompanies the book.
+    Companion,
     /// Open the palette, which lists all commands.
     Palette,
     /// Show the keys and mouse actions.
@@ -164,7 +166,7 @@ impl Command {
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Pause, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
-        all.extend([PreviousStage, NextStage, Code, Book]);
+        all.extend([PreviousStage, NextStage, Code, Book, Companion]);
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
         all.push(BookArithmetic);
         all.extend(shown_cases().iter().map(Extreme));
@@ -217,6 +219,7 @@ impl Command {
             Command::Extreme(case) => case.title().to_owned(),
             Command::Code => "Code of this stage".into(),
             Command::Book => "Read this section of the book".into(),
+            Command::Companion => "Read this in the companion".into(),
             Command::Palette => "Command palette".into(),
             Command::Help => "Keyboard and mouse".into(),
         }
@@ -278,6 +281,7 @@ impl Command {
             Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
             Command::Code => "The lines of the tracer that are new in this stage, in Rust and WGSL",
             Command::Book => "Opens the web browser",
+            Command::Companion => "Opens the page that \"weekender companion --out companion\" has written",
             Command::Palette => "Find any command by its name",
             Command::Help => "All keys, and what the mouse does",
         }
@@ -308,7 +312,8 @@ impl Command {
             | Command::NextStage
             | Command::Stage(_)
             | Command::Code
-            | Command::Book => Group::Stage,
+            | Command::Book
+            | Command::Companion => Group::Stage,
             Command::BookArithmetic | Command::Extreme(_) => Group::Extreme,
             Command::Palette | Command::Help => Group::Help,
             _ => Group::View,

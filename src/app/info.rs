@@ -44,10 +44,14 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
         ui.add(egui::Label::new(text).wrap());
     }
     ui.add_space(6.0);
-    let button = egui::Button::new("Code").selected(facts.is_on(Command::Code));
-    if ui.add(button).on_hover_text(Command::Code.help()).clicked() {
-        commands.push(Command::Code);
-    }
+    ui.horizontal_wrapped(|ui| {
+        for (name, command) in [("Code", Command::Code), ("Companion", Command::Companion)] {
+            let button = egui::Button::new(name).selected(facts.is_on(command));
+            if ui.add(button).on_hover_text(command.help()).clicked() {
+                commands.push(command);
+            }
+        }
+    });
     ui.add_space(10.0);
 }
 

@@ -11,7 +11,9 @@ use super::model::view::Mode;
 use super::plot;
 use super::theme;
 use super::window::Window;
+use crate::gallery::Figure;
 use crate::recipe::file;
+use crate::stages::Stage;
 use eframe::egui::{self, ViewportCommand};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -116,6 +118,7 @@ impl Window {
                 self.toasts.good(format!("Opening {url}"));
                 context.open_url(egui::OpenUrl::new_tab(url));
             }
+            Command::Companion => self.open_companion(context),
             Command::Palette => self.dialogs.open(Dialog::Palette(Palette::typed(context))),
             Command::Help => self.dialogs.open(Dialog::Help),
         }
@@ -132,6 +135,29 @@ impl Window {
             self.toasts.good(format!("No {} here: {}", show.name(), lower_first(&reason)));
             self.model.view.leave_show();
         }
+    }
+
+    /// Opens the companion at the stage's figure, if the page has been written.
+    fn open_companion(&mut self, context: &egui::Context) {
+        let page = std::path::absolute("companion/index.html").unwrap_or_default();
+        if !page.is_file() {
+            let message =
+                "There is no companion/index.html here; write it with: weekender companion --out companion";
+            self.toasts.bad(message.to_owned());
+            return;
+        }
+        // Characters that end or change a path in a URL.
+        let path = page.display().to_string().replace('%', "%25").replace('#', "%23").replace('?', "%3F");
+        let path = path.replace(' ', "%20").replace('\\', "/");
+        let shows = |stage: &Stage| {
+            let has_stage = |figure: &&Figure| figure.panels.iter().any(|panel| panel.stage == stage);
+            Figure::ALL.iter().find(has_stage)
+        };
+        let figure = self.document().stage().and_then(shows);
+        let anchor = figure.map_or_else(String::new, |figure| format!("#figure-{}", figure.id));
+        let url = format!("file:///{}{anchor}", path.trim_start_matches('/'));
+        self.toasts.good(format!("Opening {url}"));
+        context.open_url(egui::OpenUrl::new_tab(url));
     }
 
     fn toggle_panel(&mut self, command: Command) {

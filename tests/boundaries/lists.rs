@@ -249,6 +249,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "statistics",
             "cli",
             "companion",
+            "gallery",
             "check",
             "stress",
             "files",

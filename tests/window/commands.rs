@@ -104,6 +104,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::Plot => remembered.has_plot,
         Command::Packet => remembered.has_packet,
         Command::Code => remembered.has_code,
+        Command::Companion => window.messages().iter().any(|text| text.contains("companion")),
         Command::Theme(theme) => remembered.theme == theme,
         Command::Pause => window.is_paused(),
         Command::Restart => window.status().run > 1,
