@@ -1,5 +1,7 @@
 //! All commands that the user can give. Menus, buttons, shortcuts, the palette and the help are generated from this.
 
+mod words;
+
 use super::model::device::Device;
 use super::model::remembered::Theme;
 use super::model::show::Show;
@@ -172,119 +174,6 @@ impl Command {
         all.extend(shown_cases().iter().map(Extreme));
         all.extend([Palette, Help]);
         all
-    }
-
-    /// The name in menus and in the palette.
-    pub fn name(self) -> String {
-        match self {
-            Command::Open => "Open…".into(),
-            Command::Save(OutputFormat::Png) => "Save as PNG…".into(),
-            Command::Save(OutputFormat::P6) => "Save as PPM (P6)…".into(),
-            Command::Save(OutputFormat::Exr) => "Save film (EXR checkpoint)…".into(),
-            Command::SaveScene => "Save scene file…".into(),
-            Command::CopyCommand => "Copy as command".into(),
-            Command::LoadReference => "Load reference film…".into(),
-            Command::CopyPlot => "Copy error against time".into(),
-            Command::SavePlot => "Save error against time (CSV)…".into(),
-            Command::Quit => "Quit".into(),
-            Command::Undo => "Undo".into(),
-            Command::Redo => "Redo".into(),
-            Command::Home => "Camera of the stage".into(),
-            Command::ResetAll => "Reset everything".into(),
-            Command::AddBookmark => "Bookmark this camera".into(),
-            Command::Show(show) => format!("Show {}", show.name()),
-            Command::Wipe => "Wipe against the other stage".into(),
-            Command::WipeDifference => "Difference from the other stage".into(),
-            Command::BookArithmetic => "The book's arithmetic".into(),
-            Command::Fit => "Fit in the window".into(),
-            Command::ActualSize => "Actual size (100 %)".into(),
-            Command::ZoomIn => "Zoom in".into(),
-            Command::ZoomOut => "Zoom out".into(),
-            Command::Panels => "Hide or show all panels".into(),
-            Command::Controls => "Controls panel".into(),
-            Command::Info => "Stage and pixel panel".into(),
-            Command::Plot => "Error plot".into(),
-            Command::Packet => "Lanes of a packet".into(),
-            Command::FullScreen => "Full screen".into(),
-            Command::NextRay => "Next ray of the path".into(),
-            Command::PreviousRay => "Previous ray of the path".into(),
-            Command::Theme(theme) => format!("{} theme", theme.name()),
-            Command::Pause => "Pause or go on".into(),
-            Command::Restart => "Start again".into(),
-            Command::SwitchDevice => "Switch between CPU and GPU".into(),
-            Command::Device(device) => format!("Trace on {}", device.label()),
-            Command::PreviousStage => "Previous stage".into(),
-            Command::NextStage => "Next stage".into(),
-            Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
-            Command::Extreme(case) => case.title().to_owned(),
-            Command::Code => "Code of this stage".into(),
-            Command::Book => "Read this section of the book".into(),
-            Command::Companion => "Read this in the companion".into(),
-            Command::Palette => "Command palette".into(),
-            Command::Help => "Keyboard and mouse".into(),
-        }
-    }
-
-    /// What the command does, in one sentence.
-    pub fn help(self) -> &'static str {
-        match self {
-            Command::Open => {
-                "Open a scene file (.toml), or restore the view of a .png, .ppm or .exr that Weekender wrote"
-            }
-            Command::Save(OutputFormat::Png) => {
-                "The picture with 8 bits per channel and a description of how it was made"
-            }
-            Command::Save(OutputFormat::P6) => "The book's picture format, in its binary form",
-            Command::Save(OutputFormat::Exr) => {
-                "Linear picture with the exact sums, which can be resumed and merged"
-            }
-            Command::SaveScene => "Scene, camera and settings as text",
-            Command::CopyCommand => {
-                "The command line that renders this picture; on the CPU it is the same to the bit"
-            }
-            Command::LoadReference => "Choose a film (.exr) of the same size for the difference view",
-            Command::CopyPlot => "The plot's points as CSV, on the clipboard",
-            Command::SavePlot => "The plot's points as CSV: backend, samples, seconds, errors",
-            Command::Quit => "Close the window",
-            Command::Undo => "Take back the last change",
-            Command::Redo => "Make the change again",
-            Command::Home => "Reset camera and lens to the stage's values",
-            Command::ResetAll => "Reset camera, lens, settings and stop conditions to the stage's values",
-            Command::AddBookmark => "Save camera and lens to return to later",
-            Command::Show(show) => show.help(),
-            Command::Wipe => "Drag a divider between this stage and its pair or the next stage; same camera",
-            Command::WipeDifference => "Where this stage and its pair differ, and by how much",
-            Command::BookArithmetic => {
-                "Drag a divider between this picture and one made with the book's own quadratic and its smallest \
-                 distance of .001"
-            }
-            Command::Fit => "The whole picture, as large as possible",
-            Command::ActualSize => "One pixel of the picture per pixel of the screen",
-            Command::ZoomIn => "Make the picture larger; Ctrl and the wheel zoom at the pointer",
-            Command::ZoomOut => "Make the picture smaller; Ctrl and the wheel zoom at the pointer",
-            Command::Panels => "Nothing but the picture",
-            Command::Controls => "Camera, lens, render, stop and output",
-            Command::Info => "What the stage shows, and the pixel under the pointer",
-            Command::Plot => "Estimated error against seconds",
-            Command::Packet => "What each lane does step by step, with and without refill",
-            Command::FullScreen => "Fill the whole screen with the window",
-            Command::NextRay => "Go on along the highlighted path, with the reason for the next direction",
-            Command::PreviousRay => "Go back along the highlighted path, towards the camera",
-            Command::Theme(_) => "Colours of the window",
-            Command::Pause => "Pause or resume tracing; no samples are lost",
-            Command::Restart => "Discard all samples and render from the beginning",
-            Command::SwitchDevice => "The same picture continues on the other device",
-            Command::Device(device) => device.help(),
-            Command::PreviousStage => "One step back in the book",
-            Command::NextStage => "One step forward in the book",
-            Command::Stage(stage) => stage.what_is_new,
-            Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
-            Command::Code => "The lines of the tracer that are new in this stage, in Rust and WGSL",
-            Command::Book => "Opens the web browser",
-            Command::Companion => "Opens the page that \"weekender companion --out companion\" has written",
-            Command::Palette => "Find any command by its name",
-            Command::Help => "All keys, and what the mouse does",
-        }
     }
 
     /// Whether the command opens a dialog first.
