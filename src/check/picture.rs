@@ -9,6 +9,9 @@ use thiserror::Error;
 /// Longest file that is read, bytes.
 const LENGTH_LIMIT: u64 = 256 << 20;
 
+/// Least width and height, pixels: those of the book's first picture. In fewer pixels, almost any picture could be right.
+const SIZE_MIN: [u32; 2] = [16, 9];
+
 /// Most pixels of a picture.
 pub const PIXEL_LIMIT: u64 = 4_000_000;
 
@@ -59,7 +62,19 @@ impl Mine {
     /// [`ReadError`], which says what to do.
     pub fn read(path: &Path) -> Result<Mine, ReadError> {
         let bytes = files::read(path, "a picture", LENGTH_LIMIT)?;
-        Mine::decode(&bytes).map_err(|reason| ReadError::Content { path: path.to_owned(), reason })
+        let mine = Mine::decode(&bytes).and_then(Mine::large_enough);
+        mine.map_err(|reason| ReadError::Content { path: path.to_owned(), reason })
+    }
+
+    fn large_enough(self) -> Result<Mine, String> {
+        let ([least_width, least_height], Mine { width, height, .. }) = (SIZE_MIN, &self);
+        if *width >= least_width && *height >= least_height {
+            return Ok(self);
+        }
+        Err(format!(
+            "it has {width} x {height} pixels, fewer than {least_width} x {least_height}, too few to tell whether it is \
+             right; render it at 400 x 225"
+        ))
     }
 
     /// The same from the bytes of a file.

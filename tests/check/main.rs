@@ -205,3 +205,16 @@ fn a_render_as_text_is_the_same_picture() {
     assert_eq!(binary.bytes, ascii.bytes);
     assert!(weekender::output::read_description(&at.join("a.ppm")).unwrap().get("Stage") == Some("metal"));
 }
+
+/// Almost any picture of a few pixels could be right, so none is called right.
+#[test]
+fn a_picture_of_few_pixels_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    for [width, height] in [[1, 1], [3, 2], [15, 9], [16, 8]] {
+        let path = directory.path().join("tiny.ppm");
+        let pixels = "0 0 0\n".repeat(width * height);
+        std::fs::write(&path, format!("P3\n{width} {height}\n255\n{pixels}")).unwrap();
+        let refused = Mine::read(&path).unwrap_err().to_string();
+        assert!(refused.contains(&format!("{width} x {height} pixels, fewer than 16 x 9")), "{refused}");
+    }
+}
