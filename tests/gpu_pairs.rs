@@ -194,8 +194,8 @@ fn block_differences(sides: [(&mut dyn Renderer, &RenderJob); 2]) -> Vec<f64> {
     z
 }
 
-/// Whether two sides show the same picture.
-fn blocks_agree(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> bool {
+/// The sum of the squares of the differences of blocks, its bound for equal pictures, and the largest difference.
+fn differences_of_blocks(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> [f64; 3] {
     let z = block_differences(sides);
     let degrees = (2 * PICTURES - 2) as f64;
     // Mean and variance of the square of a number with Student's distribution.
@@ -207,6 +207,12 @@ fn blocks_agree(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> bool
     // The channels of a block are correlated, so only a third of the numbers are independent.
     let bound = count * mean + 4.0 * (3.0 * variance * count).sqrt();
     println!("{name:24} {count} blocks: squares {square_sum:.1} of {bound:.1}, largest {largest:.2}");
+    [square_sum, bound, largest]
+}
+
+/// Whether two sides show the same picture.
+fn blocks_agree(name: &str, sides: [(&mut dyn Renderer, &RenderJob); 2]) -> bool {
+    let [square_sum, bound, largest] = differences_of_blocks(name, sides);
     square_sum <= bound && largest <= LARGEST_BLOCK
 }
 
@@ -216,10 +222,18 @@ fn blocks_of_other_samples_agree() {
     let mut cpu = cpu();
     let mut unfused = unfused();
     let mut failures = jobs(48, 32);
-    // Stages such as shadow-acne show rounding itself; the device rounds in one of the CPU's two ways.
     failures.retain(|(name, job)| {
-        !blocks_agree(name, [(&mut gpu, job), (&mut cpu, job)])
-            && !blocks_agree(name, [(&mut gpu, job), (&mut unfused, job)])
+        let [squares, bound, largest] = differences_of_blocks(name, [(&mut gpu, job), (&mut cpu, job)]);
+        if squares <= bound && largest <= LARGEST_BLOCK {
+            return false;
+        }
+        // Stages such as shadow-acne show rounding itself. A device may round in one of the CPU's two ways, or fuse some
+        // operations of its choice; then it differs from the CPU about as much as those two do from each other.
+        let [by_rounding, _, largest_by_rounding] =
+            differences_of_blocks(name, [(&mut unfused, job), (&mut cpu, job)]);
+        job.rules().surface == SurfaceRule::Exact
+            || squares > 2.0 * by_rounding.max(bound)
+            || largest > 1.5 * largest_by_rounding.max(LARGEST_BLOCK)
     });
     let names: Vec<_> = failures.into_iter().map(|(name, _)| name).collect();
     assert!(names.is_empty(), "{names:?}");
@@ -251,7 +265,9 @@ fn both_samplers_and_two_halves_are_paired() {
                 difference.add(&one(&mut gpu, &job, index), &one(&mut cpu, &job, index));
             }
             assert!(difference.mean().abs() < 2e-6 && difference.rms() < 5e-5, "{difference:?}");
-            assert!(difference.diverged <= 3, "{difference:?}");
+            // Four deviations more than the mean of a Poisson distribution.
+            let expected = DIVERGED_SHARE * difference.samples as f64;
+            assert!(difference.diverged as f64 <= expected + 4.0 * expected.sqrt(), "{difference:?}");
         }
     }
 }

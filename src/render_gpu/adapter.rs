@@ -1,6 +1,7 @@
 //! Adapters: what they are, what they can do, and which comes first.
 
 use std::fmt;
+use std::sync::OnceLock;
 
 /// Number of storage buffers that the path tracer binds.
 pub const STORAGE_BUFFERS: u32 = 8;
@@ -129,14 +130,25 @@ pub fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, 
 }
 
 fn adapters_of(backends: wgpu::Backends) -> Vec<(AdapterInfo, wgpu::Adapter)> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends,
-        // Without this, debug builds would load the driver's validation layers, which slow everything down.
-        flags: wgpu::InstanceFlags::empty(),
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    });
-    let found = pollster::block_on(instance.enumerate_adapters(backends));
+    let found = pollster::block_on(instance(backends).enumerate_adapters(backends));
     found.into_iter().map(|adapter| (AdapterInfo::of(&adapter), adapter)).collect()
+}
+
+/// The instance for these backends. It lives as long as the program: the loader unloads the driver together with its
+/// last instance, and a thread that has used NVIDIA's driver then crashes when it ends, because what it should call to
+/// clean up is gone.
+fn instance(backends: wgpu::Backends) -> &'static wgpu::Instance {
+    static PRIMARY: OnceLock<wgpu::Instance> = OnceLock::new();
+    static GL: OnceLock<wgpu::Instance> = OnceLock::new();
+    let kept = if backends == wgpu::Backends::GL { &GL } else { &PRIMARY };
+    kept.get_or_init(|| {
+        wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends,
+            // Without this, debug builds would load the driver's validation layers, which slow everything down.
+            flags: wgpu::InstanceFlags::empty(),
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        })
+    })
 }
 
 /// All adapters of this machine, the default one first. Software adapters come after hardware.

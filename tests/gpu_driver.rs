@@ -1,0 +1,27 @@
+//! The graphics driver stays loaded once an adapter has been looked for: threads that have used it may end later.
+//! A test binary of its own, because a renderer of another test would keep the driver loaded.
+#![cfg(target_os = "linux")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+mod gpu_common;
+
+use std::collections::BTreeSet;
+use weekender::render_gpu::GpuOptions;
+
+/// The shared libraries that are mapped into this process.
+fn libraries() -> BTreeSet<String> {
+    let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+    let files = maps.lines().filter_map(|line| line.split_whitespace().nth(5));
+    files.filter(|file| file.contains(".so")).map(str::to_owned).collect()
+}
+
+#[test]
+fn the_driver_stays_loaded_after_the_last_renderer() {
+    let before = libraries();
+    let Some(gpu) = gpu_common::gpu(GpuOptions::default()) else { return };
+    let while_open = libraries();
+    assert!(while_open.len() > before.len(), "no library was loaded: {while_open:?}");
+    drop(gpu);
+    let unloaded: Vec<_> = while_open.difference(&libraries()).cloned().collect();
+    assert!(unloaded.is_empty(), "{unloaded:?} were unloaded with the renderer");
+}
