@@ -12,6 +12,10 @@ use crate::render_gpu::{AdapterInfo, GpuOptions, adapters};
 use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// How long a GPU is kept busy before each measured run.
+const WAKING: Duration = Duration::from_millis(300);
 
 /// Shortest warm-up run whose speed is meaningful, seconds.
 const WARM_UP_SECONDS: f64 = 0.2;
@@ -154,8 +158,18 @@ impl Candidate {
     /// # Errors
     /// [`Cancelled`]. A candidate that fails is skipped from then on.
     pub fn measure(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), Cancelled> {
+        if self.row.kind == Kind::Gpu {
+            self.wake(job, cancel)?;
+        }
         let run = self.run(job, self.row.samples_per_pixel, cancel)?;
         self.row.runs.extend(run);
+        Ok(())
+    }
+
+    /// Keeps a GPU busy for a moment: while it waits for its turn, it lowers its clock, and takes a while to raise it.
+    fn wake(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), Cancelled> {
+        let begin = Instant::now();
+        while begin.elapsed() < WAKING && self.run(job, self.row.samples_per_pixel, cancel)?.is_some() {}
         Ok(())
     }
 

@@ -1,7 +1,9 @@
 //! Helpers that the GPU tests share.
 #![allow(dead_code, reason = "each test uses some of it")]
 
+use std::cell::RefCell;
 use std::io::Write;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, RenderSettings, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
@@ -10,9 +12,24 @@ use weekender::scene::builtin::BuiltinScene;
 use weekender::scene::{Camera, Scene};
 use weekender::stages::{Rules, Stage};
 
+thread_local! {
+    /// Held by the thread of a test until it ends.
+    static TURN: RefCell<Option<MutexGuard<'static, ()>>> = const { RefCell::new(None) };
+}
+
+/// Waits until no other test of this binary uses the adapter. NVIDIA's driver crashed or hung when many tests opened and
+/// closed devices at once.
+fn take_turn() {
+    static DEVICE: Mutex<()> = Mutex::new(());
+    TURN.with_borrow_mut(|turn| {
+        turn.get_or_insert_with(|| DEVICE.lock().unwrap_or_else(PoisonError::into_inner));
+    });
+}
+
 /// A renderer on any adapter, including software, or on the one that `WEEKENDER_TEST_ADAPTER` names. Without an
 /// adapter, a message is printed and the test passes, unless `WEEKENDER_REQUIRE_GPU=1`.
 pub fn gpu(options: GpuOptions) -> Option<GpuRenderer> {
+    take_turn();
     let adapter = std::env::var("WEEKENDER_TEST_ADAPTER").ok();
     match GpuRenderer::new(GpuOptions { adapter, allow_software: true, ..options }) {
         Ok(renderer) => Some(renderer),
