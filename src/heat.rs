@@ -8,8 +8,8 @@ pub struct HeatScale {
     /// The values at the two ends.
     limits: [f64; 2],
     is_logarithmic: bool,
-    /// Values with labels in a legend.
-    pub marks: &'static [(f64, &'static str)],
+    /// Values with labels in a legend; if there are none, they follow from the limits.
+    marks: &'static [(f64, &'static str)],
 }
 
 /// Colours from dark to bright, evenly spaced.
@@ -48,6 +48,27 @@ impl HeatScale {
         marks: &[(0.0, "0 %"), (0.25, "25"), (0.5, "50"), (0.75, "75"), (1.0, "100 %")],
     };
 
+    /// Luminance, from `2^low` to `2^high`.
+    pub fn luminance([low, high]: [f64; 2]) -> HeatScale {
+        HeatScale {
+            title: "luminance, linear",
+            limits: [low.exp2(), high.exp2()],
+            is_logarithmic: true,
+            marks: &[],
+        }
+    }
+
+    /// Values with labels for a legend, evenly spaced from end to end.
+    pub fn marks(&self) -> Vec<(f64, String)> {
+        const PARTS: i32 = 4;
+        if !self.marks.is_empty() {
+            return self.marks.iter().map(|(value, name)| (*value, (*name).to_owned())).collect();
+        }
+        let [low, high] = self.limits;
+        let value = |part: i32| low * (high / low).powf(f64::from(part) / f64::from(PARTS));
+        (0..=PARTS).map(value).map(|value| (value, short(value))).collect()
+    }
+
     /// Position of a value on the scale, `0..=1`.
     pub fn place(&self, value: f64) -> f64 {
         let [low, high] = self.limits;
@@ -64,6 +85,13 @@ impl HeatScale {
     pub fn colour(&self, value: f64) -> [u8; 3] {
         colour_at(self.place(value))
     }
+}
+
+/// A number with two digits that count.
+fn short(value: f64) -> String {
+    let decimals = (1.0 - value.abs().log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
 /// The colour at a position on any scale, `0..=1`.
@@ -106,10 +134,19 @@ mod tests {
     }
 
     #[test]
+    fn a_range_in_stops_has_its_numbers() {
+        let scale = HeatScale::luminance([-8.0, 4.0]);
+        let names: Vec<_> = scale.marks().into_iter().map(|(_, name)| name).collect();
+        assert_eq!(names, ["0.0039", "0.031", "0.25", "2", "16"]);
+        assert_eq!(scale.colour(0.25), [159, 42, 99], "the middle");
+    }
+
+    #[test]
     fn marks_are_evenly_spaced_from_end_to_end() {
-        for scale in SCALES {
-            let last = scale.marks.len() - 1;
-            for (index, (value, _)) in scale.marks.iter().enumerate() {
+        for scale in SCALES.into_iter().chain([HeatScale::luminance([-3.0, 2.0])]) {
+            let marks = scale.marks();
+            let last = marks.len() - 1;
+            for (index, (value, _)) in marks.iter().enumerate() {
                 assert!((scale.place(*value) - index as f64 / last as f64).abs() < 1e-12, "{value}");
             }
         }

@@ -72,6 +72,15 @@ impl Facts {
         match command {
             Command::Undo if !self.can_undo => no("Nothing has been changed yet"),
             Command::Redo if !self.can_redo => no("Nothing has been undone"),
+            Command::Brighter | Command::Darker | Command::NoExposure
+                if self.model.view.show() != Show::Picture
+                    || self.model.view.mode() == Some(Mode::Difference) =>
+            {
+                no("Exposure changes the picture, which is not shown now; press Ctrl+1 first")
+            }
+            Command::NoExposure if self.model.view.tone.exposure == 0.0 => {
+                no("The picture is already shown as bright as it is saved")
+            }
             Command::NextRay | Command::PreviousRay if !self.has_paths => {
                 no("No paths are listed; Alt-click a pixel first")
             }

@@ -3,6 +3,7 @@
 use super::frame_log::FrameTimes;
 use super::input::{self, Keyboard};
 use super::model::Model;
+use super::model::show::Show;
 use super::tracer::Want;
 use super::viewport::{Handle, Pictures};
 use super::window::Window;
@@ -97,7 +98,19 @@ impl Window {
     fn layout(&mut self, ui: &mut egui::Ui) {
         let facts = self.facts();
         let Window {
-            model, main, second, layers, viewport, inspector, paths, packet, code, commands, ..
+            model,
+            main,
+            second,
+            layers,
+            tone,
+            values,
+            viewport,
+            inspector,
+            paths,
+            packet,
+            code,
+            commands,
+            ..
         } = self;
         let Model { document, view, remembered, .. } = model;
         let is_narrow = ui.available_width() < NARROW;
@@ -105,6 +118,7 @@ impl Window {
         let has = &facts.model.remembered;
         let mut info = |ui: &mut egui::Ui, commands: &mut Vec<_>| {
             info::ui(ui, &mut view.is_with_next, &facts, commands);
+            tone.ui(ui, view, &facts);
             let value =
                 inspector.pixel().and_then(|pixel| layers.value_at(pixel.at)).filter(|_| layer.is_some());
             inspector.ui(ui, facts.document(), value);
@@ -149,6 +163,7 @@ impl Window {
                     (&mut shown.texture, shown.divisor, title)
                 }),
                 paths,
+                values,
             };
             let handle = Handle { camera: &mut document.camera, divider: &mut view.divider };
             viewport.ui(ui, handle, pictures, &facts, commands)
@@ -206,6 +221,10 @@ impl Window {
             self.files.save(context, (document, &self.main), self.seconds_before, named);
         }
         self.inspector.follow(document, &self.main, context);
+        self.tone.follow(document, view.tone.white(), &self.main, context);
+        let is_picture = view.mode().is_none() && view.show() == Show::Picture;
+        let area = self.viewport.room().filter(|_| is_picture);
+        self.values.follow(document, self.viewport.placement.rect(), area, &self.main, context);
         self.paths.follow(document, context);
         let has_packet = self.model.remembered.has_panels && self.model.remembered.has_packet;
         let lanes = has_packet.then(|| self.model.remembered.lanes_in_use());

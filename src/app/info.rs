@@ -91,7 +91,7 @@ fn view_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     let show = facts.model.view.show();
     control(
         ui,
-        About::new("View", "What the window shows in place of the picture (Ctrl+1 to Ctrl+7)"),
+        About::new("View", "What the window shows in place of the picture (Ctrl+1 to Ctrl+8)"),
         |ui| {
             egui::ComboBox::from_id_salt("view")
                 .width(ui.available_width())

@@ -7,6 +7,7 @@ use super::model::device::{self, Device};
 use super::model::origin::{Origin, Source};
 use super::model::remembered::Bookmark;
 use super::model::show::Show;
+use super::model::tone::Tone;
 use super::model::view::Mode;
 use super::plot;
 use super::theme;
@@ -68,6 +69,9 @@ impl Window {
                 self.model.view.toggle(Mode::Difference, is_by_book);
             }
             Command::BookArithmetic => self.model.view.toggle(Mode::Wipe, true),
+            Command::Brighter => self.model.view.tone.expose(Tone::STEP),
+            Command::Darker => self.model.view.tone.expose(-Tone::STEP),
+            Command::NoExposure => self.model.view.tone.exposure = 0.0,
             Command::Fit => self.viewport.placement.fit(),
             Command::ActualSize => self.viewport.placement.actual_size(),
             Command::ZoomIn => self.viewport.placement.zoom_by(1.25),

@@ -6,7 +6,7 @@ use super::model::document::Document;
 use super::model::origin::Origin;
 use super::model::view::{Mode, Other, ViewState, differ_in_camera};
 use super::tracer::{Shown, Tracer, Want};
-use crate::progressive::{ReferenceMeans, View};
+use crate::progressive::ReferenceMeans;
 use crate::scene::Camera;
 use eframe::egui::Context;
 use std::sync::{Arc, Weak};
@@ -90,7 +90,7 @@ impl Second {
         // Both pictures have the same stop condition, so that they do not differ in their noise.
         let stop = document.stop;
         let is_possible =
-            tracer.want(&Want { document: &document, stop, view: View::Picture, ..*want }).is_ok();
+            tracer.want(&Want { document: &document, stop, view: view.tone.of_picture(), ..*want }).is_ok();
         let is_full = tracer.is_full(&document);
         let has_picture = tracer.shown().is_some_and(|shown| shown.document.has_same_film(&document));
         let is_waiting = self.waiting.strong_count() > 0;

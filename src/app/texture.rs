@@ -20,6 +20,16 @@ impl Texture {
         Texture { image, handle }
     }
 
+    /// The colour of a pixel, column and row from the upper left.
+    pub fn colour(&self, [x, y]: [u32; 2]) -> Option<[u8; 3]> {
+        let [width, height] = self.image.size;
+        let (x, y) = (x as usize, y as usize);
+        (x < width && y < height).then(|| {
+            let [red, green, blue, _] = self.image[(x, y)].to_array();
+            [red, green, blue]
+        })
+    }
+
     /// The texture for drawing, with square or smoothed pixels.
     pub fn id(&mut self, context: &Context, options: TextureOptions) -> TextureId {
         match &mut self.handle {

@@ -19,8 +19,10 @@ use super::model::show::Show;
 use super::model::view::ViewState;
 use super::packet::Packet;
 use super::paths::Paths;
+use super::pixel_values::PixelValues;
 use super::second::Second;
 use super::toasts::Toasts;
+use super::tone::ToneUi;
 use super::tracer::Tracer;
 use super::viewport::Viewport;
 use crate::cli::WindowOptions;
@@ -47,6 +49,8 @@ pub struct Window {
     pub(super) main: Tracer,
     pub(super) second: Second,
     pub(super) layers: Layers,
+    pub(super) tone: ToneUi,
+    pub(super) values: PixelValues,
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
     pub(super) paths: Paths,
@@ -114,6 +118,8 @@ impl Window {
             main: Tracer::new().context("cannot start the render thread")?,
             second: Second::default(),
             layers: Layers::default(),
+            tone: ToneUi::default(),
+            values: PixelValues::default(),
             viewport: Viewport::default(),
             inspector: Inspector::default(),
             paths: Paths::default(),
@@ -167,6 +173,11 @@ impl Window {
     /// Samples per pixel of the displayed picture, and the factor by which it is smaller than requested.
     pub fn shown(&self) -> Option<(u64, u32)> {
         self.main.shown().map(|shown| (shown.samples, shown.divisor))
+    }
+
+    /// The colour of a pixel of the displayed picture.
+    pub fn shown_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
+        self.main.shown().and_then(|shown| shown.texture.colour(at))
     }
 
     /// Whether the displayed picture is of the current document.

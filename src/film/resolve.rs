@@ -28,8 +28,13 @@ impl Film {
 
     /// The picture in 8 bits: `transfer`, then `floor(256 clamp(v, 0, .999))`; top row first.
     pub fn to_rgb8(&self, transfer: Transfer) -> Vec<u8> {
+        self.exposed(transfer, 0.0)
+    }
+
+    /// The picture in 8 bits with all radiance multiplied by `2^stops` first.
+    pub fn exposed(&self, transfer: Transfer, stops: f64) -> Vec<u8> {
         let mut bytes = vec![0; self.width as usize * self.height as usize * 3];
-        self.resolve_rows(0..self.height, transfer, &mut bytes);
+        self.resolve_sums(0..self.height, transfer, self.fixed_point_of_1() / stops.exp2(), &mut bytes);
         bytes
     }
 
@@ -39,7 +44,12 @@ impl Film {
     /// # Panics
     /// If a row is below the picture, or `bytes` has another length.
     pub fn resolve_rows(&self, rows: Range<u32>, transfer: Transfer, bytes: &mut [u8]) {
-        let (unit, height) = (self.fixed_point_of_1(), self.height as usize);
+        self.resolve_sums(rows, transfer, self.fixed_point_of_1(), bytes);
+    }
+
+    /// The same, where a sum of `unit` is white.
+    fn resolve_sums(&self, rows: Range<u32>, transfer: Transfer, unit: f64, bytes: &mut [u8]) {
+        let height = self.height as usize;
         let (pixels, []) = bytes.as_chunks_mut::<3>() else { panic!("a pixel has 3 bytes") };
         assert_eq!(pixels.len(), self.width as usize * rows.len(), "3 bytes for each pixel of {rows:?}");
         // Chosen once per row, outside the loop over its pixels.

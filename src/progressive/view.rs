@@ -12,6 +12,10 @@ pub enum View {
     /// The picture with the job's transfer.
     #[default]
     Picture,
+    /// The picture with radiance multiplied by two to the power of this many stops.
+    Exposed(f64),
+    /// Luminance as a heat map from one power of two to another.
+    Luminance([f64; 2]),
     /// The standard error of each pixel's mean, estimated from the halves; black with only one half.
     StandardError,
     /// The difference of each pixel from a reference. A film of another size is shown as a picture.
@@ -54,7 +58,8 @@ impl View {
     /// The scale of the heat map; `None` for the picture itself.
     pub fn scale(&self) -> Option<HeatScale> {
         match self {
-            View::Picture => None,
+            View::Picture | View::Exposed(_) => None,
+            View::Luminance(stops) => Some(HeatScale::luminance(*stops)),
             View::StandardError | View::Difference(_) => Some(HeatScale::ERROR),
             View::Occupancy => Some(HeatScale::OCCUPANCY),
         }
@@ -88,9 +93,16 @@ impl View {
                 let at = [(pixel % width) as u32, (pixel / width) as u32];
                 occupancy.and_then(|tiles| tiles.share_at(at)).unwrap_or(0.0)
             }),
+            View::Luminance(_) => heat(&|pixel| luminance(film.mean(pixel))),
+            View::Exposed(stops) => film.exposed(transfer, *stops),
             View::Picture | View::Difference(_) => film.to_rgb8(transfer),
         }
     }
+}
+
+/// The luminance of a linear RGB colour, by Rec. 709.
+pub fn luminance([red, green, blue]: [f64; 3]) -> f64 {
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
 fn root_mean_square(v: [f64; 3]) -> f64 {
@@ -165,6 +177,19 @@ mod tests {
         let picture = film.to_rgb8(Transfer::Linear);
         assert_eq!(shown(View::Difference(Arc::new(other_size)), None), picture);
         assert_eq!(shown(View::Picture, None), picture);
+    }
+
+    #[test]
+    fn brightness_is_shown_in_stops() {
+        let mut film = Film::new(1, 1, 1);
+        // Luminance: .7152 / 4 + .0722 / 4 + .2126 / 4 = 1/4, the middle of the scale.
+        film.halves_mut()[0][0] = PixelSum([1 << 22; 3]);
+        film.record(0..1, 0).unwrap();
+        let shown = |view: View| view.resolve(&film, Transfer::Linear, None);
+        assert_eq!(shown(View::Luminance([-8.0, 4.0])), [159, 42, 99]);
+        assert_eq!([shown(View::Exposed(1.0)), shown(View::Exposed(-1.0))], [[128; 3], [32; 3]]);
+        let green = luminance([0.0, 1.0, 0.0]);
+        assert!(green > luminance([1.0, 0.0, 0.0]) && luminance([1.0; 3]) == 1.0);
     }
 
     #[test]

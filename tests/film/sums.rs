@@ -88,6 +88,18 @@ fn bytes_step_where_the_book_has_them_step() {
 }
 
 #[test]
+fn exposure_multiplies_before_the_transfer() {
+    let film = film_of(&[0.25, 0.125, 100.0]);
+    let shown = |stops| film.exposed(Transfer::Gamma2, stops).iter().step_by(3).copied().collect::<Vec<_>>();
+    assert_eq!(shown(0.0), [128, 90, 255]);
+    assert_eq!(shown(1.0), [181, 128, 255], "twice as bright");
+    assert_eq!(shown(-2.0), [64, 45, 255]);
+    assert_eq!(shown(-10.0), [8, 5, 80]);
+    assert_eq!(film.exposed(Transfer::Linear, 1.0)[0], 128);
+    assert_eq!(film.exposed(Transfer::Gamma2, 0.0), film.to_rgb8(Transfer::Gamma2));
+}
+
+#[test]
 fn the_upper_half_can_stay_linear() {
     let mut film = Film::new(1, 3, 1);
     for pixel in 0..3 {

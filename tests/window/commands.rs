@@ -117,6 +117,8 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::Quit | Command::Book | Command::FullScreen => true,
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
         Command::NextRay | Command::PreviousRay => true,
+        // See tone.rs.
+        Command::Brighter | Command::Darker | Command::NoExposure => true,
     }
 }
 

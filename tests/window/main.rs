@@ -14,5 +14,6 @@ mod remembered;
 mod resuming;
 mod snapshots;
 mod stages;
+mod tone;
 mod viewport;
 mod wipe;

@@ -85,6 +85,12 @@ pub enum Command {
     WipeDifference,
     /// Compare the picture with the same picture by the book's own arithmetic.
     BookArithmetic,
+    /// Show the picture brighter.
+    Brighter,
+    /// Show the picture darker.
+    Darker,
+    /// Show the picture as bright as it is saved.
+    NoExposure,
     /// Zoom so that the whole picture fits.
     Fit,
     /// Zoom so that one pixel of the picture is one pixel of the screen.
@@ -163,7 +169,7 @@ impl Command {
         all.extend([SaveScene, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
         all.extend(self::Show::ALL.map(Show));
-        all.extend([Wipe, WipeDifference, Fit, ActualSize, ZoomIn, ZoomOut]);
+        all.extend([Wipe, WipeDifference, Brighter, Darker, NoExposure, Fit, ActualSize, ZoomIn, ZoomOut]);
         all.extend([NextRay, PreviousRay, Panels, Controls, Info, Plot, Packet, FullScreen]);
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Pause, Restart, SwitchDevice]);
@@ -216,6 +222,8 @@ impl Command {
             named
                 .replace("OpenBracket", "[")
                 .replace("CloseBracket", "]")
+                .replace("Plus", "+")
+                .replace("Minus", "-")
                 .replace("PageUp", "Page Up")
                 .replace("PageDown", "Page Down"),
         )
@@ -240,6 +248,9 @@ impl Command {
             }
             Command::Wipe => key(Key::C),
             Command::WipeDifference => key(Key::X),
+            Command::Brighter => key(Key::Plus),
+            Command::Darker => key(Key::Minus),
+            Command::NoExposure => key(Key::Num0),
             Command::Fit => key(Key::F),
             Command::ActualSize => key(Key::Num1),
             Command::ZoomIn => key(Key::CloseBracket),

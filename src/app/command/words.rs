@@ -26,6 +26,9 @@ impl Command {
             Command::Wipe => "Wipe against the other stage".into(),
             Command::WipeDifference => "Difference from the other stage".into(),
             Command::BookArithmetic => "The book's arithmetic".into(),
+            Command::Brighter => "Brighter".into(),
+            Command::Darker => "Darker".into(),
+            Command::NoExposure => "No exposure".into(),
             Command::Fit => "Fit in the window".into(),
             Command::ActualSize => "Actual size (100 %)".into(),
             Command::ZoomIn => "Zoom in".into(),
@@ -88,6 +91,9 @@ impl Command {
                 "Drag a divider between this picture and one made with the book's own quadratic and its smallest \
                  distance of .001"
             }
+            Command::Brighter => "Show the picture with half a stop more light; files are saved without it",
+            Command::Darker => "Show the picture with half a stop less light; files are saved without it",
+            Command::NoExposure => "Show the picture as bright as it is saved",
             Command::Fit => "The whole picture, as large as possible",
             Command::ActualSize => "One pixel of the picture per pixel of the screen",
             Command::ZoomIn => "Make the picture larger; Ctrl and the wheel zoom at the pointer",

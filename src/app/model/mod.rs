@@ -7,6 +7,7 @@ pub mod document;
 pub mod origin;
 pub mod remembered;
 pub mod show;
+pub mod tone;
 pub mod view;
 
 use crate::backends::BackendChoice;

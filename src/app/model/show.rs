@@ -1,5 +1,6 @@
 //! The views of a film.
 
+use super::tone::Tone;
 use crate::heat::HeatScale;
 use crate::layers::Layer;
 use crate::progressive::{ReferenceMeans, View};
@@ -23,11 +24,13 @@ pub enum Show {
     Occupancy,
     /// Difference from a loaded film.
     Difference,
+    /// Luminance in false colours.
+    Luminance,
 }
 
 impl Show {
     /// All views.
-    pub const ALL: [Show; 7] = [
+    pub const ALL: [Show; 8] = [
         Show::Picture,
         Show::Normals,
         Show::Albedo,
@@ -35,6 +38,7 @@ impl Show {
         Show::Error,
         Show::Occupancy,
         Show::Difference,
+        Show::Luminance,
     ];
 
     /// The name, to follow "Show".
@@ -47,6 +51,7 @@ impl Show {
             Show::Error => "standard error",
             Show::Occupancy => "lane occupancy",
             Show::Difference => "difference to reference",
+            Show::Luminance => "luminance",
         }
     }
 
@@ -65,6 +70,9 @@ impl Show {
                  of its tile"
             }
             Show::Difference => "Difference from a loaded film, linear radiance",
+            Show::Luminance => {
+                "How bright each pixel is, in false colours with a scale, also where the picture is black or white"
+            }
         }
     }
 
@@ -74,25 +82,27 @@ impl Show {
             Show::Normals => Some(Layer::Normals),
             Show::Albedo => Some(Layer::Albedo),
             Show::Bounces => Some(Layer::RaysPerPath),
-            Show::Picture | Show::Error | Show::Occupancy | Show::Difference => None,
+            Show::Picture | Show::Error | Show::Occupancy | Show::Difference | Show::Luminance => None,
         }
     }
 
     /// The view for resolving the film; `reference` is the loaded film, if any.
-    pub fn of_film(self, reference: Option<&Arc<ReferenceMeans>>) -> View {
+    pub fn of_film(self, reference: Option<&Arc<ReferenceMeans>>, tone: &Tone) -> View {
         match (self, reference) {
             (Show::Error, _) => View::StandardError,
             (Show::Occupancy, _) => View::Occupancy,
             (Show::Difference, Some(reference)) => View::Difference(Arc::clone(reference)),
+            (Show::Luminance, _) => tone.of_luminance(),
             (Show::Difference, None) | (Show::Picture | Show::Normals | Show::Albedo | Show::Bounces, _) => {
-                View::Picture
+                tone.of_picture()
             }
         }
     }
 
     /// The scale, if the view is a heat map.
-    pub fn scale(self) -> Option<HeatScale> {
+    pub fn scale(self, tone: &Tone) -> Option<HeatScale> {
         match self {
+            Show::Luminance => Some(tone.scale()),
             Show::Bounces => Some(HeatScale::RAYS),
             Show::Error | Show::Difference => Some(HeatScale::ERROR),
             Show::Occupancy => Some(HeatScale::OCCUPANCY),

@@ -3,6 +3,7 @@
 use super::document::Document;
 use super::origin::Origin;
 use super::show::Show;
+use super::tone::Tone;
 use crate::progressive::{ReferenceMeans, View};
 use crate::recipe::Recipe;
 use crate::stages::Stage;
@@ -57,6 +58,8 @@ pub struct ViewState {
     pub is_with_next: bool,
     /// Position of the wipe's divider, `0..=1` of the picture's width.
     pub divider: f32,
+    /// How bright the picture is shown.
+    pub tone: Tone,
     /// A loaded film to compare with.
     pub reference: Option<Arc<ReferenceMeans>>,
 }
@@ -69,6 +72,7 @@ impl Default for ViewState {
             is_by_book: false,
             is_with_next: false,
             divider: 0.5,
+            tone: Tone::default(),
             reference: None,
         }
     }
@@ -118,7 +122,7 @@ impl ViewState {
     pub fn of_film(&self, other: Option<&Arc<ReferenceMeans>>) -> View {
         match (self.mode, other) {
             (Some(Mode::Difference), Some(other)) => View::Difference(Arc::clone(other)),
-            _ => self.show.of_film(self.reference.as_ref()),
+            _ => self.show.of_film(self.reference.as_ref(), &self.tone),
         }
     }
 

@@ -37,6 +37,8 @@ pub struct Viewport {
     is_dragging_divider: bool,
     /// Where the context menu was opened, if on the picture.
     menu_at: Option<Pos2>,
+    /// The area of the viewport when it was last drawn.
+    room: Option<Rect>,
 }
 
 /// The input of a frame.
@@ -61,6 +63,11 @@ pub struct Handle<'a> {
 }
 
 impl Viewport {
+    /// The area of the viewport when it was last drawn.
+    pub fn room(&self) -> Option<Rect> {
+        self.room
+    }
+
     /// Draws the picture and handles input on it.
     pub fn ui(
         &mut self,
@@ -74,6 +81,7 @@ impl Viewport {
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+        self.room = Some(room);
         let settings = facts.document().settings;
         let (size, pixels) =
             (vec2(settings.width as f32, settings.height as f32), [settings.width, settings.height]);

@@ -3,8 +3,10 @@
 use super::placement::{Placement, Zoom};
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
+use crate::app::model::show::Show;
 use crate::app::model::view::Mode;
 use crate::app::paths::Paths;
+use crate::app::pixel_values::PixelValues;
 use crate::app::texture::Texture;
 use crate::app::theme;
 use crate::heat::{HeatScale, colour_at};
@@ -16,6 +18,9 @@ use eframe::egui::{
 use std::time::{Duration, Instant};
 
 const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
+
+/// From this many screen pixels per pixel on, pixels are drawn as squares.
+const SQUARES: f32 = 8.0;
 
 /// How long a click's marker stays.
 const MARK: Duration = Duration::from_millis(1600);
@@ -30,6 +35,8 @@ pub struct Pictures<'a> {
     pub second: Option<(&'a mut Texture, u32, String)>,
     /// Paths to draw over the picture.
     pub paths: &'a Paths,
+    /// Numbers to draw in large pixels.
+    pub values: &'a PixelValues,
 }
 
 /// Draws the picture at `rect`, within `room`.
@@ -44,12 +51,13 @@ pub(super) fn paint(
 ) {
     let painter = ui.painter().with_clip_rect(room);
     let options = |divisor: u32| {
-        // At 100 % and above, pixels are drawn as squares, but not the larger pixels of a preview.
-        let is_square = divisor == 1 && placement.times() >= 1.0 - 1e-4;
+        // Smooth until pixels are large, except where each is one of the screen's. A preview is always smooth.
+        let is_exact = (placement.times() - 1.0).abs() < 1e-4;
+        let is_square = divisor == 1 && (is_exact || placement.times() >= SQUARES);
         if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     };
     let context = ui.ctx();
-    let Pictures { main, has_film, second, paths } = pictures;
+    let Pictures { main, has_film, second, paths, values } = pictures;
     let second = second.map(|(texture, divisor, title)| (texture.id(context, options(divisor)), title));
     let main = main.map(|(texture, divisor)| (texture.id(context, options(divisor)), divisor));
     // The hole is one point smaller, so that no gap stays between picture and background.
@@ -68,7 +76,7 @@ pub(super) fn paint(
         paint_wipe(ui, &painter, rect, divider, texture, &titles);
     }
     let is_difference = view.mode() == Some(Mode::Difference);
-    let scale = if is_difference { Some(HeatScale::ERROR) } else { view.show().scale() };
+    let scale = if is_difference { Some(HeatScale::ERROR) } else { view.show().scale(&view.tone) };
     if let Some(scale) = scale {
         paint_scale(ui, &painter, rect.intersect(room), &scale);
     }
@@ -89,6 +97,12 @@ pub(super) fn paint(
         let text = format!("{:.0} %", 100.0 * times);
         badge(ui, &painter, corners.right_top() + vec2(-8.0, 8.0), Align2::RIGHT_TOP, &text, &font);
     }
+    if facts.model.view.tone.exposure != 0.0 && view.show() == Show::Picture && !is_difference {
+        let text = format!("exposure {:+.1} stops", view.tone.exposure);
+        let at = corners.left_bottom() + vec2(8.0, -8.0);
+        badge(ui, &painter, at, Align2::LEFT_BOTTOM, &text, &font);
+    }
+    values.paint(ui, room, rect, [document.settings.width, document.settings.height], &view.tone);
     paths.paint(document, ui, &painter, rect);
 }
 
@@ -160,8 +174,8 @@ fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, scale: &HeatScale) 
             Color32::from_rgb(red, green, blue),
         );
     }
-    for (value, name) in scale.marks {
-        let at = pos2(bar.left() + bar.width() * scale.place(*value) as f32, bar.bottom() + 2.0);
+    for (value, name) in scale.marks() {
+        let at = pos2(bar.left() + bar.width() * scale.place(value) as f32, bar.bottom() + 2.0);
         painter.text(at, Align2::CENTER_TOP, name, font.clone(), ui.visuals().text_color());
     }
 }

@@ -11,7 +11,8 @@ pub enum Zoom {
     Times(f32),
 }
 
-const ZOOM_LIMITS: [f32; 2] = [0.05, 64.0];
+/// Screen pixels per pixel of the picture. The numbers of a pixel need some 90 on a screen of high resolution.
+const ZOOM_LIMITS: [f32; 2] = [0.05, 128.0];
 
 /// The position and scale of the picture.
 pub struct Placement {

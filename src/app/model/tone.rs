@@ -1,0 +1,102 @@
+//! How bright the picture is shown. Files are saved without it.
+
+use crate::heat::HeatScale;
+use crate::progressive::View;
+
+/// The exposure of the picture, and the range of the luminance view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tone {
+    /// Radiance is multiplied by two to the power of this many stops.
+    pub exposure: f64,
+    /// The darkest and the brightest luminance of the luminance view, as powers of two.
+    pub range: [f64; 2],
+}
+
+impl Default for Tone {
+    fn default() -> Self {
+        Tone { exposure: 0.0, range: [-8.0, 4.0] }
+    }
+}
+
+impl Tone {
+    /// Stops that a key changes the exposure by.
+    pub const STEP: f64 = 0.5;
+
+    /// The largest exposure and the smallest, in stops.
+    pub const EXPOSURES: std::ops::RangeInclusive<f64> = -12.0..=12.0;
+
+    /// The range of luminances that the luminance view can show, as powers of two.
+    pub const RANGES: std::ops::RangeInclusive<f64> = -20.0..=7.0;
+
+    /// Makes the picture brighter by this many stops, as far as the limits allow.
+    pub fn expose(&mut self, stops: f64) {
+        self.exposure = (self.exposure + stops).clamp(*Self::EXPOSURES.start(), *Self::EXPOSURES.end());
+    }
+
+    /// The radiance that is shown as white.
+    pub fn white(&self) -> f64 {
+        (-self.exposure).exp2()
+    }
+
+    /// The view of the picture.
+    pub fn of_picture(&self) -> View {
+        if self.exposure == 0.0 { View::Picture } else { View::Exposed(self.exposure) }
+    }
+
+    /// The luminance view.
+    pub fn of_luminance(&self) -> View {
+        View::Luminance(self.range)
+    }
+
+    /// The scale of the luminance view.
+    pub fn scale(&self) -> HeatScale {
+        HeatScale::luminance(self.range)
+    }
+
+    /// Keeps the range at least one stop wide, by moving the end that was not changed.
+    pub fn mend_range(&mut self, before: [f64; 2]) {
+        let [low, high] = self.range;
+        let [lowest, highest] = [*Self::RANGES.start(), *Self::RANGES.end()];
+        if high - low >= 1.0 {
+            return;
+        }
+        self.range = if low == before[0] {
+            let low = (high - 1.0).max(lowest);
+            [low, low + 1.0]
+        } else {
+            let high = (low + 1.0).min(highest);
+            [high - 1.0, high]
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exposure_stays_within_its_limits() {
+        let mut tone = Tone::default();
+        assert_eq!((tone.white(), tone.of_picture()), (1.0, View::Picture));
+        tone.expose(1.5);
+        assert_eq!((tone.exposure, tone.of_picture()), (1.5, View::Exposed(1.5)));
+        tone.expose(-3.5);
+        assert_eq!(tone.white(), 4.0);
+        tone.expose(-1e3);
+        assert_eq!(tone.exposure, -12.0);
+    }
+
+    #[test]
+    fn a_range_has_two_ends() {
+        let mended = |before: [f64; 2], range: [f64; 2]| {
+            let mut tone = Tone { range, ..Tone::default() };
+            tone.mend_range(before);
+            tone.range
+        };
+        assert_eq!(mended([-8.0, 4.0], [-7.0, 4.0]), [-7.0, 4.0]);
+        assert_eq!(mended([-8.0, 4.0], [5.0, 4.0]), [5.0, 6.0], "the upper end gives way");
+        assert_eq!(mended([-8.0, 4.0], [-8.0, -9.0]), [-10.0, -9.0], "the lower end gives way");
+        assert_eq!(mended([-8.0, 4.0], [7.0, 4.0]), [6.0, 7.0]);
+        assert_eq!(mended([-8.0, 4.0], [-8.0, -20.0]), [-20.0, -19.0]);
+    }
+}

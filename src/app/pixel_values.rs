@@ -1,0 +1,128 @@
+//! The numbers of pixels, drawn in them when they are large.
+
+use super::answers::Answers;
+use super::model::document::Document;
+use super::model::tone::Tone;
+use super::tracer::Tracer;
+use super::widgets::compact;
+use crate::progressive::luminance;
+use eframe::egui::{self, Align2, Color32, Rect, TextStyle, Ui, vec2};
+use std::sync::{Arc, Weak};
+
+/// The smallest side of a pixel, in points, in which its numbers have room.
+const ROOM: f32 = 44.0;
+
+/// A part of the film's picture.
+struct Part {
+    first: [u32; 2],
+    width: u32,
+    /// Linear RGB, row by row.
+    means: Vec<[f64; 3]>,
+}
+
+/// The numbers of the visible pixels.
+#[derive(Default)]
+pub struct PixelValues {
+    part: Option<Part>,
+    /// Run, samples and pixels of the last query.
+    asked: Option<(u64, u64, [[u32; 2]; 2])>,
+    /// Can be upgraded as long as the query waits for the film.
+    waiting: Weak<()>,
+    answers: Answers<Part>,
+}
+
+impl PixelValues {
+    /// Takes the film's answer, and asks again if other pixels are visible or have changed. The picture is drawn at `rect`;
+    /// `area` is the viewport.
+    pub fn follow(
+        &mut self,
+        document: &Document,
+        rect: Rect,
+        area: Option<Rect>,
+        main: &Tracer,
+        context: &egui::Context,
+    ) {
+        while let Some(part) = self.answers.take() {
+            self.part = Some(part);
+        }
+        let size = [document.settings.width, document.settings.height];
+        let visible = area.and_then(|area| visible(rect, area, size));
+        let Some([first, end]) = visible.filter(|_| main.has_samples(document)) else {
+            (self.part, self.asked) = (None, None);
+            return;
+        };
+        let question = (main.status().run, main.status().samples_per_pixel, [first, end]);
+        if self.asked == Some(question) || self.waiting.strong_count() > 0 {
+            return;
+        }
+        let guard = Arc::new(());
+        self.waiting = Arc::downgrade(&guard);
+        self.asked = Some(question);
+        let answer = self.answers.answer(context);
+        main.inspect(move |film| {
+            let means = (first[1]..end[1].min(film.height()))
+                .flat_map(|y| (first[0]..end[0].min(film.width())).map(move |x| [x, y]))
+                .map(|[x, y]| film.mean(y as usize * film.width() as usize + x as usize))
+                .collect();
+            // Dropped first: the answer wakes a frame, which may ask the next question.
+            drop(guard);
+            answer.give(Part { first, width: end[0] - first[0], means });
+        });
+    }
+
+    /// Draws the numbers over the picture at `rect`, which has `size` pixels.
+    pub fn paint(&self, ui: &Ui, clip: Rect, rect: Rect, size: [u32; 2], tone: &Tone) {
+        let Some(part) = self.part.as_ref().filter(|_| visible(rect, clip, size).is_some()) else { return };
+        let side = rect.width() / size[0] as f32;
+        let painter = ui.painter().with_clip_rect(clip);
+        let font = TextStyle::Small.resolve(ui.style());
+        for (place, mean) in part.means.iter().enumerate() {
+            let place = [place as u32 % part.width, place as u32 / part.width];
+            let at = [0, 1].map(|axis| (part.first[axis] + place[axis]) as f32 + 0.5);
+            let middle = rect.min + vec2(at[0], at[1]) * side;
+            // Middle grey as seen is about a fifth of white.
+            let is_bright = luminance(*mean) > 0.2 * tone.white();
+            let colour = if is_bright { Color32::BLACK } else { Color32::WHITE };
+            for (row, value) in mean.iter().enumerate() {
+                let down = (row as f32 - 1.0) * (font.size + 1.0);
+                painter.text(
+                    middle + vec2(0.0, down),
+                    Align2::CENTER_CENTER,
+                    compact(*value),
+                    font.clone(),
+                    colour,
+                );
+            }
+        }
+    }
+}
+
+/// The first visible pixel of a picture of `size` pixels at `rect`, and the one after the last. `None` if pixels have no
+/// room for numbers, or none is visible.
+fn visible(rect: Rect, area: Rect, size: [u32; 2]) -> Option<[[u32; 2]; 2]> {
+    let side = rect.width() / size[0] as f32;
+    let seen = rect.intersect(area);
+    if side < ROOM || !seen.is_positive() {
+        return None;
+    }
+    let (from, to) = ((seen.min - rect.min) / side, (seen.max - rect.min) / side);
+    let first = [from.x.floor() as u32, from.y.floor() as u32];
+    Some([first, [(to.x.ceil() as u32).min(size[0]), (to.y.ceil() as u32).min(size[1])]])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::pos2;
+
+    #[test]
+    fn numbers_are_drawn_only_in_large_pixels_that_are_seen() {
+        let area = Rect::from_min_max(pos2(0.0, 0.0), pos2(200.0, 100.0));
+        let rect = Rect::from_min_size(pos2(-120.0, -30.0), vec2(3200.0, 1800.0));
+        assert_eq!(visible(rect, area, [64, 36]), Some([[2, 0], [7, 3]]));
+        assert_eq!(visible(rect, area, [80, 45]), None, "40 points are too few");
+        assert_eq!(visible(rect.translate(vec2(5000.0, 0.0)), area, [64, 36]), None, "out of sight");
+        let right = rect.translate(vec2(-3000.0, 0.0));
+        assert_eq!(visible(right, area, [64, 36]), Some([[62, 0], [64, 3]]), "no pixel beyond the last");
+    }
+}

@@ -1,0 +1,92 @@
+//! Exposure, luminance in false colours, and the histogram.
+
+use crate::common::{SMALL, control, open, save, send, until};
+use eframe::egui::vec2;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use weekender::app::{Command, Show, Window};
+use weekender::film::to_byte;
+use weekender::heat::HeatScale;
+use weekender::output::OutputFormat;
+use weekender::progressive::{Phase, luminance};
+
+const AT: [u32; 2] = [3, 2];
+
+fn finished() -> Harness<'static, Window> {
+    let mut harness = open(&format!("{SMALL} --samples 8"));
+    until(&mut harness, "the end", |window| {
+        matches!(window.status().phase, Phase::Done(_)) && window.shown().is_some_and(|(count, _)| count == 8)
+    });
+    harness
+}
+
+/// The mean of the pixel, which the pointer asks for.
+fn mean(harness: &mut Harness<'_, Window>) -> [f64; 3] {
+    let rect = harness.state().picture_rect();
+    let share = |at: u32, size: f32| (at as f32 + 0.5) / size;
+    harness.hover_at(rect.lerp_inside(vec2(share(AT[0], 32.0), share(AT[1], 18.0))));
+    until(harness, "the pixel's value", |window| window.inspected().is_some_and(|(at, _)| at == AT));
+    harness.state().inspected().unwrap().1
+}
+
+#[test]
+fn exposure_is_seen_but_not_saved() {
+    let mut harness = finished();
+    let mean = mean(&mut harness);
+    let transfer = harness.state().document().rules().transfer;
+    let seen = |stops: f64| mean.map(|x| to_byte(x * stops.exp2(), transfer, AT[1] as usize, 18));
+    assert_eq!(harness.state().shown_pixel(AT), Some(seen(0.0)));
+    assert!(harness.state().disabled_reason(Command::NoExposure).is_some());
+    for _ in 0..3 {
+        send(&mut harness, Command::Darker);
+    }
+    until(&mut harness, "a darker picture", |window| window.shown_pixel(AT) == Some(seen(-1.5)));
+    assert!(seen(-1.5)[2] < seen(0.0)[2]);
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("saved.png");
+    save(&mut harness, OutputFormat::Png, &path);
+    let saved = image::open(&path).unwrap().to_rgb8();
+    assert_eq!(saved.get_pixel(AT[0], AT[1]).0, seen(0.0), "files are saved without the exposure");
+    send(&mut harness, Command::NoExposure);
+    until(&mut harness, "the picture", |window| window.shown_pixel(AT) == Some(seen(0.0)));
+}
+
+#[test]
+fn luminance_has_the_colours_of_its_scale() {
+    let mut harness = finished();
+    let mean = mean(&mut harness);
+    send(&mut harness, Command::Show(Show::Luminance));
+    assert!(harness.state().disabled_reason(Command::Brighter).is_some());
+    let colour = HeatScale::luminance([-8.0, 4.0]).colour(luminance(mean));
+    until(&mut harness, "false colours", |window| window.shown_pixel(AT) == Some(colour));
+    assert!(harness.query_by_label("Darkest luminance, power of two").is_some());
+}
+
+#[test]
+fn the_histogram_counts_what_is_clipped() {
+    let mut harness = finished();
+    assert!(harness.query_by_label_contains("clipped").is_none(), "it is folded at first");
+    control(&harness, "Histogram").click();
+    harness.run_steps(3);
+    let begin = std::time::Instant::now();
+    while harness.query_by_label_contains("of pixels clipped").is_none() {
+        assert!(begin.elapsed().as_secs() < 60, "no histogram");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        harness.step();
+    }
+    let clipped = |harness: &Harness<'_, Window>| {
+        let image = harness.get_by(|node| node.label().is_some_and(|label| label.starts_with("Histogram:")));
+        let label = image.accesskit_node().label().unwrap();
+        label["Histogram: ".len()..].split(' ').next().unwrap().parse::<f64>().unwrap()
+    };
+    let before = clipped(&harness);
+    for _ in 0..8 {
+        send(&mut harness, Command::Brighter);
+    }
+    let begin = std::time::Instant::now();
+    while clipped(&harness) <= before {
+        assert!(begin.elapsed().as_secs() < 60, "four stops more clip no pixel");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        harness.step();
+    }
+}
