@@ -216,7 +216,7 @@ fn figures(line: &str, wall: Duration) -> Option<BaselineRun> {
 /// A scene in the baseline's format.
 fn scene_text(scene: &Scene, camera: &Camera) -> String {
     let three = |v: DVec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
-    // vup may be parallel to the view, which the baseline does not expect; the basis has been corrected.
+    // vup may be almost parallel to the view; this is the same direction, to all digits.
     let up = camera.basis().v;
     let mut text = format!(
         "camera {} {} {} {:?} {:?} {:?}\nsky {} {}\n",

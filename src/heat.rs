@@ -24,13 +24,17 @@ const COLOURS: [[f64; 3]; 7] = [
 ];
 
 impl HeatScale {
-    /// Errors and differences, linear radiance.
+    /// Errors, linear radiance.
     pub const ERROR: HeatScale = HeatScale {
         title: "linear radiance",
         limits: [1e-4, 1.0],
         is_logarithmic: true,
         marks: &[(1e-4, "0.0001"), (1e-3, "0.001"), (1e-2, "0.01"), (0.1, "0.1"), (1.0, "1")],
     };
+
+    /// Differences of two pictures without their sign, linear radiance.
+    pub const DIFFERENCE: HeatScale =
+        HeatScale { title: "|difference|, linear radiance", ..HeatScale::ERROR };
 
     /// Rays of a path.
     pub const RAYS: HeatScale = HeatScale {

@@ -33,13 +33,7 @@ function unit(v) {
 // Unit vectors to the right, up and backwards.
 function basis({ from, at, up }) {
   const w = unit(minus(from, at));
-  let u = cross(unit(up), w);
-  if (!(length(u) >= 1e-9)) {
-    const alignment = (axis) => Math.abs(dot(axis, w));
-    const axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].sort((a, b) => alignment(a) - alignment(b));
-    u = cross(axes[0], w);
-  }
-  u = unit(u);
+  const u = unit(cross(unit(up), w));
   return { u, v: cross(w, u), w };
 }
 

@@ -4,6 +4,7 @@ use super::command::Command;
 use super::model::Model;
 use super::model::device::Device;
 use super::model::document::Document;
+use super::model::further::Further;
 use super::model::show::Show;
 use super::model::view::Mode;
 use crate::progressive::{Phase, Status};
@@ -16,10 +17,14 @@ pub struct Facts {
     pub model: Model,
     /// The status of the render.
     pub status: Arc<Status>,
+    /// Paths per second of tracing at present, if known.
+    pub speed: Option<f64>,
     /// Whether there is a change to undo.
     pub can_undo: bool,
     /// Whether there is a change to redo.
     pub can_redo: bool,
+    /// Whether the pointer has been over the picture.
+    pub has_pixel: bool,
     /// Whether there is a list of paths.
     pub has_paths: bool,
     /// Why the document cannot be rendered, if so.
@@ -30,6 +35,11 @@ impl Facts {
     /// The document that is shown.
     pub fn document(&self) -> &Document {
         &self.model.document
+    }
+
+    /// How a render that has ended can go on.
+    pub fn further(&self) -> Option<Further> {
+        self.document().further(&self.status).filter(|_| !self.model.is_paused)
     }
 
     /// Whether samples are being added.
@@ -82,7 +92,11 @@ impl Facts {
                 no("The picture is already shown as bright as it is saved")
             }
             Command::NextRay | Command::PreviousRay if !self.has_paths => {
-                no("No paths are listed; Alt-click a pixel first")
+                no("No paths are listed; point at a pixel and press T first")
+            }
+            Command::ListPaths if !self.has_pixel => no("Move the pointer over the picture first"),
+            Command::GoOn if self.further().is_none() => {
+                no("The render has not ended, or more samples would change nothing")
             }
             Command::Home if document.camera == document.origin.recipe.camera => {
                 no("This is already the stage's camera")

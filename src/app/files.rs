@@ -7,7 +7,7 @@ use super::tracer::Tracer;
 use crate::describe::describe;
 use crate::files::replace_file;
 use crate::output::{OutputFormat, write_image};
-use crate::progressive::ReferenceMeans;
+use crate::progressive::{FilmIdentity, ReferenceMeans};
 use crate::render::RenderJob;
 use crate::saved::{self, OpenError, Opened, SavedFilm};
 use eframe::egui::Context;
@@ -110,7 +110,8 @@ impl Files {
     pub fn load_reference(&self, context: &Context, path: PathBuf) {
         read(&self.references, context, move || {
             let (_, read) = saved::open_film(&path)?;
-            Ok((path, ReferenceMeans::of(&read.film)))
+            let identity = Some(FilmIdentity::of(&read.film));
+            Ok((path, ReferenceMeans { identity, ..ReferenceMeans::of(&read.film) }))
         });
     }
 }

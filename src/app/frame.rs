@@ -4,15 +4,23 @@ use super::frame_log::FrameTimes;
 use super::input::{self, Keyboard};
 use super::model::Model;
 use super::model::show::Show;
-use super::tracer::Want;
+use super::places::Place;
+use super::tracer::{Shown, Want};
 use super::viewport::{Handle, Pictures};
 use super::window::Window;
-use super::{info, menu, panels, plot, status_bar, theme};
+use super::{info, menu, panels, plot, status_bar, theme, widgets};
+use crate::scene::Camera;
 use eframe::egui;
 use std::time::{Duration, Instant};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
 const NARROW: f32 = 900.0;
+
+/// Seconds between press and release of a click. A frame can take long while the device prepares a large scene.
+const LONGEST_CLICK: f64 = 5.0;
+
+/// With this many samples per pixel, pictures differ by more than their noise.
+const CLEAR_SAMPLES: u64 = 16;
 
 impl Window {
     /// Draws a frame.
@@ -27,18 +35,21 @@ impl Window {
         self.layout(ui);
         self.perform_all(&context);
         self.follow(&context);
+        theme::paint_focus(&context);
         self.had_focus = context.memory(|memory| memory.focused().is_some())
             || egui::Popup::is_any_open(&context)
             || self.dialogs.is_open();
     }
 
-    fn dress(&mut self, context: &egui::Context) {
+    /// Chooses the colours, once.
+    pub(super) fn dress(&mut self, context: &egui::Context) {
         if self.is_dressed {
             return;
         }
         self.is_dressed = true;
         theme::install(context);
         theme::choose(context, self.model.remembered.theme);
+        context.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
         self.main.wake(context);
         if let Some((path, job)) = self.pending_resume.take() {
             self.files.resume(context, path, job, &self.model.document);
@@ -66,6 +77,7 @@ impl Window {
         let begin = Instant::now();
         let pictured = self.main.poll(context);
         self.frame_times.picture = begin.elapsed();
+        self.speed.follow(self.main.status());
         if let Some(log) = &mut self.frame_log {
             if let Some(begun) = pictured {
                 log.pictured(begun);
@@ -81,11 +93,37 @@ impl Window {
         for path in input::dropped(context) {
             self.files.open(context, path);
         }
-        let keyboard = Keyboard { had_focus: self.had_focus, is_full_screen: self.model.is_full_screen };
+        let Model { view, is_full_screen, .. } = &self.model;
+        let is_other_view = view.mode().is_some() || view.show() != Show::Picture;
+        let keyboard = Keyboard { had_focus: self.had_focus, is_other_view, is_full_screen: *is_full_screen };
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
+        let before = self.model.document.camera;
         if is_free && input::fly(context, &mut self.model.document.camera) {
+            self.stop_at_surfaces(&before);
             self.changes.note_move();
         }
+    }
+
+    /// Puts the divider of a new wipe where the two pictures differ most, once both are good enough to tell.
+    fn place_divider(&mut self) {
+        let view = &mut self.model.view;
+        if !view.is_divider_unplaced {
+            return;
+        }
+        let is_clear = |shown: &&Shown| shown.divisor == 1 && shown.samples >= CLEAR_SAMPLES;
+        let mine = self.main.shown().filter(|shown| is_clear(shown) || self.main.status().phase.is_over());
+        let theirs = self.second.shown().filter(|shown| is_clear(shown) || self.second.is_over());
+        if let (Some(mine), Some(theirs)) = (mine, theirs) {
+            view.divider = mine.texture.most_different_column(&theirs.texture).unwrap_or(view.divider);
+            view.is_divider_unplaced = false;
+        }
+    }
+
+    /// Ends a move of the camera from `before` in front of the first surface.
+    fn stop_at_surfaces(&mut self, before: &Camera) {
+        let document = &self.model.document;
+        let stopped = self.surfaces.stop(document, before, &document.camera);
+        self.model.document.camera = stopped;
     }
 
     fn perform_all(&mut self, context: &egui::Context) {
@@ -104,6 +142,8 @@ impl Window {
             layers,
             tone,
             values,
+            surfaces,
+            identity,
             viewport,
             inspector,
             paths,
@@ -121,35 +161,54 @@ impl Window {
             tone.ui(ui, view, &facts);
             let value =
                 inspector.pixel().and_then(|pixel| layers.value_at(pixel.at)).filter(|_| layer.is_some());
-            inspector.ui(ui, facts.document(), value);
+            let other = view.subtracted(second.film()).zip(inspector.pixel());
+            let other = other.and_then(|(film, pixel)| film.mean(pixel.at));
+            inspector.ui(ui, facts.document(), value, other);
             paths.ui(ui, facts.document());
         };
         if has.has_panels {
+            Place::Menu.begin(ui);
             menu::ui(ui, is_narrow, &facts, commands);
             status_bar::ui(ui, &facts);
             if has.has_plot {
+                Place::Plot.begin(ui);
                 plot::ui(ui, &mut document.stop.noise, &facts, commands);
             }
             if has.has_code {
+                Place::Code.begin(ui);
                 code.ui(ui, &facts, commands);
             }
             if has.has_packet {
+                Place::Packet.begin(ui);
                 packet.ui(ui, commands);
             }
             if has.has_controls {
                 let panel = egui::Panel::left("controls").default_size(244.0).size_range(190.0..=380.0);
+                Place::Controls.begin(ui);
                 scrolling(ui, panel, |ui| {
+                    let has_info_below = is_narrow && has.has_info;
+                    let help = "The window has no room for it at the right; it follows the controls";
+                    let is_asked =
+                        has_info_below && ui.button("Stage and pixel: below").on_hover_text(help).clicked();
                     panels::ui(ui, document, remembered, &facts, commands);
-                    if is_narrow && has.has_info {
+                    if is_asked {
+                        ui.scroll_to_cursor(Some(egui::Align::Min));
+                    }
+                    if has_info_below {
+                        Place::Info.begin(ui);
                         info(ui, commands);
                     }
                 });
             }
             if has.has_info && !is_narrow {
                 let panel = egui::Panel::right("info").default_size(256.0).size_range(190.0..=420.0);
+                Place::Info.begin(ui);
                 scrolling(ui, panel, |ui| info(ui, commands));
             }
         }
+        let before = document.camera;
+        let same = identity.is_same().then(|| "identical to the bit".to_owned());
+        let divider = view.divider;
         let touch = egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
             let has_film = main.shown().is_some();
             let pictures = Pictures {
@@ -164,20 +223,28 @@ impl Window {
                 }),
                 paths,
                 values,
+                notices: surfaces.inside(document).into_iter().chain(same).collect(),
             };
             let handle = Handle { camera: &mut document.camera, divider: &mut view.divider };
             viewport.ui(ui, handle, pictures, &facts, commands)
         });
         let touch = touch.inner;
+        if view.divider != divider {
+            view.is_divider_unplaced = false;
+        }
         self.inspector.hover(touch.hovered);
         if let Some(pixel) = touch.listed {
             self.paths.list(&self.model.document, pixel, ui.ctx());
         }
         if touch.is_move {
+            self.stop_at_surfaces(&before);
             self.changes.note_move();
         }
         if let Some(room) = touch.room {
             self.toasts.ui(ui, room);
+        }
+        if let Some(text) = widgets::take_told(ui.ctx()) {
+            self.toasts.good(text);
         }
         self.check.ui(ui.ctx());
         if let Some((purpose, path)) = self.dialogs.ui(ui, &facts, &mut self.commands) {
@@ -225,10 +292,13 @@ impl Window {
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;
         let area = self.viewport.room().filter(|_| is_picture);
         self.values.follow(document, self.viewport.placement.rect(), area, &self.main, context);
+        self.surfaces.follow(document, self.main.has_samples(document), context);
+        self.identity.follow(view, &self.main, context);
         self.paths.follow(document, context);
         let has_packet = self.model.remembered.has_panels && self.model.remembered.has_packet;
         let lanes = has_packet.then(|| self.model.remembered.lanes_in_use());
         self.packet.follow(context, document, lanes, is_moving);
+        self.place_divider();
         if !has_second {
             self.model.view.end_comparison();
         }

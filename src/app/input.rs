@@ -1,6 +1,7 @@
 //! Keyboard input, dropped files, and flying.
 
 use super::command::Command;
+use super::model::show::Show;
 use super::navigation;
 use crate::scene::Camera;
 use eframe::egui::{self, Key, Modifiers};
@@ -17,6 +18,8 @@ const FAST: f64 = 4.0;
 pub struct Keyboard {
     /// A control, a menu or a dialog had the keyboard focus.
     pub had_focus: bool,
+    /// The window shows something other than the picture.
+    pub is_other_view: bool,
     /// The window is in full-screen mode.
     pub is_full_screen: bool,
 }
@@ -50,18 +53,19 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
         }
     }
     let also = |key| context.input_mut(|input| input.consume_key(Modifiers::NONE, key));
-    if also(Key::F6) {
-        context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next));
-    }
     if also(Key::Questionmark) {
         commands.push(Command::Help);
     }
     if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Y)) {
         commands.push(Command::Redo);
     }
-    // Escape first leaves a control, then full-screen mode.
-    if !keyboard.had_focus && also(Key::Escape) && keyboard.is_full_screen {
-        commands.push(Command::FullScreen);
+    // Escape first leaves a control, then a comparison or another view, then full-screen mode.
+    if !keyboard.had_focus && also(Key::Escape) {
+        if keyboard.is_other_view {
+            commands.push(Command::Show(Show::Picture));
+        } else if keyboard.is_full_screen {
+            commands.push(Command::FullScreen);
+        }
     }
     true
 }

@@ -49,6 +49,11 @@ impl Inspector {
         }
     }
 
+    /// The pixel that the pointer was over last.
+    pub fn hovered(&self) -> Option<[u32; 2]> {
+        self.hovered
+    }
+
     /// Forgets the pixel, because the picture has changed.
     pub fn forget(&mut self) {
         *self = Inspector { hovered: self.hovered, ..Inspector::default() };
@@ -89,11 +94,18 @@ impl Inspector {
         });
     }
 
-    /// Draws the panel. `layer` is the displayed layer and its value at the pixel.
-    pub fn ui(&self, ui: &mut Ui, document: &Document, layer: Option<(Layer, [f64; 3])>) {
+    /// Draws the panel. `layer` is the displayed layer and its value at the pixel; `other` is the pixel's value in the
+    /// picture that is subtracted from this one.
+    pub fn ui(
+        &self,
+        ui: &mut Ui,
+        document: &Document,
+        layer: Option<(Layer, [f64; 3])>,
+        other: Option<[f64; 3]>,
+    ) {
         ui.label(RichText::new("Pixel").strong());
         match &self.pixel {
-            Some(pixel) => pixel_ui(document, pixel, layer, ui),
+            Some(pixel) => pixel_ui(document, pixel, layer, other, ui),
             None => {
                 let text = "Move the pointer over the picture.";
                 ui.label(RichText::new(text).color(ui.visuals().weak_text_color()));
@@ -108,7 +120,13 @@ pub fn names(scene: &Scene, sphere: usize) -> (String, String) {
     (format!("sphere {sphere}"), format!("{} ({})", named.name, named.material.kind()))
 }
 
-fn pixel_ui(document: &Document, pixel: &Pixel, layer: Option<(Layer, [f64; 3])>, ui: &mut Ui) {
+fn pixel_ui(
+    document: &Document,
+    pixel: &Pixel,
+    layer: Option<(Layer, [f64; 3])>,
+    other: Option<[f64; 3]>,
+    ui: &mut Ui,
+) {
     let [x, y] = pixel.at;
     let decimals = |v: [f64; 3]| v.map(|v| format!("{v:.5}"));
     egui::Grid::new("pixel").num_columns(4).spacing([8.0, 3.0]).show(ui, |ui| {
@@ -127,7 +145,14 @@ fn pixel_ui(document: &Document, pixel: &Pixel, layer: Option<(Layer, [f64; 3])>
         ui.monospace(format!("{y}"));
         ui.end_row();
         row(ui, "", ["red", "green", "blue"].map(str::to_owned));
-        row(ui, "linear", decimals(pixel.mean));
+        match other {
+            Some(other) => {
+                row(ui, "A, this", decimals(pixel.mean));
+                row(ui, "B, other", decimals(other));
+                row(ui, "A − B", [0, 1, 2].map(|i| format!("{:+.4}", pixel.mean[i] - other[i])));
+            }
+            None => row(ui, "linear", decimals(pixel.mean)),
+        }
         match pixel.error {
             Some(error) => row(ui, "error", error.map(|v| format!("{v:.5}"))),
             None => row(ui, "error", ["–", "–", "–"].map(str::to_owned)),
@@ -174,6 +199,20 @@ mod tests {
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
+    #[test]
+    fn a_difference_tells_both_sides() {
+        let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
+        let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3], samples: 1 };
+        let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some([0.25, 0.5, 1.0]), ui));
+        let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
+        let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
+        for text in ["A, this", "B, other", "A − B", "0.50000", "0.25000", "+0.2500", "-0.2500", "+0.0000"]
+        {
+            assert!(texts.iter().any(|found| found == text), "no {text} in {texts:?}");
+        }
+        assert!(!texts.iter().any(|text| text == "linear"));
+    }
+
     /// The sphere under the pointer is the one that the tracer's camera ray hits.
     #[test]
     fn the_sphere_under_the_pointer_is_named() {
@@ -186,7 +225,7 @@ mod tests {
                 format!("{object}, {material}\nat distance")
             });
             let pixel = Pixel { at, mean: [0.0; 3], error: None, bytes: [0; 3], samples: 1 };
-            let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, ui));
+            let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, None, ui));
             let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
             let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
             assert!(

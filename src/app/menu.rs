@@ -3,11 +3,11 @@
 use super::command::{Command, Group};
 use super::facts::Facts;
 use super::model::device::Device;
-use super::prediction::prediction_label;
+use super::model::further::Further;
 use super::theme;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
-use eframe::egui::{self, Align, Button, Layout, RichText, TextStyle, Ui};
+use eframe::egui::{self, Align, Button, Layout, RichText, Ui};
 
 /// Width of a menu in points, narrow enough that names and keys are close together.
 pub const MENU_WIDTH: f32 = 300.0;
@@ -35,9 +35,12 @@ pub fn ui(ui: &mut Ui, is_narrow: bool, facts: &Facts, commands: &mut Vec<Comman
                 stage_bar(ui, false, facts, commands);
                 ui.separator();
                 devices(ui, facts, commands);
-                pause(ui, facts, commands);
+                // Another button would begin another row.
+                match facts.further() {
+                    Some(further) => go_on(ui, "Go on", &further, commands),
+                    None => pause(ui, facts, commands),
+                }
                 save(ui, commands);
-                prediction(ui, facts);
             });
         }
     });
@@ -51,15 +54,19 @@ fn menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
                 stage_menu(ui, facts, commands);
                 return;
             }
-            let mut last = None;
-            for command in Command::all().into_iter().filter(|command| command.group() == group) {
-                let section = section(command);
-                if last.is_some_and(|last| last != section) {
-                    ui.separator();
+            // Low windows scroll it.
+            let height = (ui.ctx().content_rect().height() - 60.0).max(100.0);
+            egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
+                let mut last = None;
+                for command in Command::all().into_iter().filter(|command| command.group() == group) {
+                    let section = section(command);
+                    if last.is_some_and(|last| last != section) {
+                        ui.separator();
+                    }
+                    last = Some(section);
+                    item(ui, facts, commands, command);
                 }
-                last = Some(section);
-                item(ui, facts, commands, command);
-            }
+            });
         });
     }
 }
@@ -80,6 +87,7 @@ fn section(command: Command) -> u8 {
         | Command::Info
         | Command::Plot
         | Command::Packet
+        | Command::NextPanel
         | Command::FullScreen => 3,
         Command::Theme(_) => 4,
         Command::Device(_) | Command::Extreme(_) => 1,
@@ -130,11 +138,25 @@ fn has_just_opened(ui: &Ui) -> bool {
     })
 }
 
+/// Where a menu item that is on has a check mark.
+const ROOM_FOR_CHECK: &str = "      ";
+
 /// A menu item for a command.
 pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command) -> egui::Response {
     let disabled_reason = facts.disabled_reason(command);
-    let button = line(ui, command, facts.is_on(command));
+    let is_on = facts.is_on(command);
+    let button = line(ui, command, format!("{ROOM_FOR_CHECK}{}", command.name()), false);
     let mut response = ui.add_enabled(disabled_reason.is_none(), button).on_hover_text(command.help());
+    response = response.accessible_name(command.name());
+    if is_on {
+        let middle = response.rect.left_center() + egui::vec2(12.0, 0.0);
+        let mark = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + egui::vec2(x, y));
+        let stroke = egui::Stroke::new(1.5, ui.visuals().strong_text_color());
+        ui.painter().line(mark.to_vec(), stroke);
+        response
+            .ctx
+            .accesskit_node_builder(response.id, |node| node.set_toggled(egui::accesskit::Toggled::True));
+    }
     if let Some(reason) = disabled_reason {
         response = response.on_disabled_hover_text(reason);
     }
@@ -146,10 +168,10 @@ pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Co
 }
 
 /// A line with a command's name and keys.
-pub fn line(ui: &Ui, command: Command, is_chosen: bool) -> Button<'static> {
+pub fn line(ui: &Ui, command: Command, name: String, is_chosen: bool) -> Button<'static> {
     let visuals = ui.visuals();
     let colour = if is_chosen { visuals.selection.stroke.color } else { visuals.weak_text_color() };
-    let button = Button::selectable(is_chosen, command.name());
+    let button = Button::selectable(is_chosen, name);
     let button = match command.keys(ui.ctx()) {
         Some(keys) => button.shortcut_text(RichText::new(keys).color(colour)),
         None => button,
@@ -206,8 +228,10 @@ fn buttons(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     for device in Device::ALL.into_iter().rev() {
         device_button(ui, facts, commands, device);
     }
-    ui.add_space(8.0);
-    prediction(ui, facts);
+    if let Some(further) = facts.further() {
+        ui.add_space(8.0);
+        go_on(ui, &format!("Go on to {}", further.words), &further, commands);
+    }
 }
 
 fn save(ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -233,14 +257,12 @@ fn pause(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     }
 }
 
-/// When the target will be reached, if there is room. It comes last, so that a change of its text moves nothing
-/// else.
-fn prediction(ui: &mut Ui, facts: &Facts) {
-    let Some(words) = prediction_label(&facts.status, facts.document().stop.noise) else { return };
-    let text = RichText::new(words).small();
-    let galley = egui::WidgetText::from(text.clone()).into_galley(ui, None, f32::INFINITY, TextStyle::Small);
-    if galley.size().x < ui.available_size_before_wrap().x {
-        ui.label(text).on_hover_text("Predicted from the estimates so far, within two standard deviations");
+/// Offers to go on after the end of a render.
+fn go_on(ui: &mut Ui, label: &str, further: &Further, commands: &mut Vec<Command>) {
+    let button = Button::new(label).min_size(egui::vec2(58.0, 0.0));
+    let help = format!("Go on to {}; no sample is lost", further.words);
+    if ui.add(button).on_hover_text(help).clicked() {
+        commands.push(Command::GoOn);
     }
 }
 

@@ -16,6 +16,7 @@ mod facts;
 mod files;
 mod frame;
 mod frame_log;
+mod identity;
 mod info;
 mod input;
 mod inspector;
@@ -28,11 +29,14 @@ mod panels;
 mod paths;
 mod perform;
 mod pixel_values;
+mod places;
 mod plot;
 mod prediction;
 mod receive;
 mod second;
+mod speed;
 mod status_bar;
+mod surfaces;
 mod texture;
 mod theme;
 mod toasts;
@@ -73,7 +77,10 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
     for &renderer in renderers(options.draw_with) {
         let (native, options) = (native_options(renderer), options.clone());
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
-            Ok(Box::new(Window::new(options, context.storage)?) as Box<dyn eframe::App>)
+            let mut window = Window::new(options, context.storage)?;
+            // Before the first frame, which would have egui's own style otherwise.
+            window.dress(&context.egui_ctx);
+            Ok(Box::new(window) as Box<dyn eframe::App>)
         });
         match eframe::run_native("weekender", native, create) {
             Ok(()) => return Ok(ExitCode::SUCCESS),

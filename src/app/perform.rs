@@ -9,6 +9,7 @@ use super::model::remembered::Bookmark;
 use super::model::show::Show;
 use super::model::tone::Tone;
 use super::model::view::Mode;
+use super::places;
 use super::plot;
 use super::theme;
 use super::window::Window;
@@ -86,6 +87,12 @@ impl Window {
             Command::Controls | Command::Info | Command::Plot | Command::Packet | Command::Code => {
                 self.toggle_panel(command)
             }
+            Command::NextPanel => self.panel = places::next(context, self.panel, &self.model.remembered),
+            Command::ListPaths => {
+                if let Some(pixel) = self.inspector.hovered() {
+                    self.paths.list(&self.model.document, pixel, context);
+                }
+            }
             Command::FullScreen => {
                 self.model.is_full_screen = !self.model.is_full_screen;
                 context.send_viewport_cmd(ViewportCommand::Fullscreen(self.model.is_full_screen));
@@ -95,6 +102,11 @@ impl Window {
                 theme::choose(context, theme);
             }
             Command::Pause => self.toggle_pause(context),
+            Command::GoOn => {
+                if let Some(further) = self.facts().further() {
+                    self.model.document.stop = further.stop;
+                }
+            }
             Command::Restart => {
                 self.seconds_before = Some(0.0);
                 self.model.is_paused = false;
@@ -200,9 +212,6 @@ impl Window {
 
     /// Uses a file for the purpose for which it was chosen.
     pub(super) fn use_path(&mut self, context: &egui::Context, purpose: Purpose, path: PathBuf) {
-        if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
-            self.model.remembered.directory = Some(directory.to_owned());
-        }
         match purpose {
             Purpose::Open => self.files.open(context, path),
             Purpose::Save(format) => self.pending_save = Some((format, path)),

@@ -3,7 +3,7 @@
 
 use super::command::Command;
 use super::facts::Facts;
-use super::prediction::{FARTHEST, points, prediction, prediction_words};
+use super::prediction::{FARTHEST, points, prediction};
 use super::theme;
 use super::widgets::compact;
 use crate::progressive::{HistoryPoint, Status, Stop};
@@ -33,16 +33,25 @@ const GRIP: f32 = 8.0;
 pub fn ui(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut Vec<Command>) {
     let status = &facts.status;
     let frame = theme::panel(egui::Margin::symmetric(12, 6));
-    egui::Panel::bottom("plot")
+    egui::Panel::bottom("error plot")
         .frame(frame)
         .resizable(true)
-        .default_size(150.0)
-        .size_range(90.0..=400.0)
+        .default_size(240.0)
+        .size_range(120.0..=700.0)
         .show(ui, |ui| {
             header(ui, target, facts, commands);
             if points(status).is_empty() {
                 let weak = ui.visuals().weak_text_color();
-                ui.centered_and_justified(|ui| ui.label(RichText::new("No estimate yet").color(weak)));
+                let words = match status.error {
+                    Some(error) => {
+                        let rmse = compact(error.rmse);
+                        format!(
+                            "The film's estimated error is {rmse}; the curve begins with the next samples"
+                        )
+                    }
+                    None => "No estimate yet".to_owned(),
+                };
+                ui.centered_and_justified(|ui| ui.label(RichText::new(words).color(weak)));
             } else {
                 plot(ui, target, status);
             }
@@ -68,9 +77,6 @@ fn header(ui: &mut Ui, target: &mut Option<f64>, facts: &Facts, commands: &mut V
             if button.on_hover_text("End the render at an estimated error; its line in the plot can be dragged").clicked() {
                 *target = Some(Stop::NOISE);
             }
-        }
-        if let Some(prediction) = prediction(&facts.status, *target) {
-            ui.label(RichText::new(prediction_words(&prediction)).small());
         }
         for (label, command) in [("Copy data", Command::CopyPlot), ("Save data…", Command::SavePlot)] {
             let disabled_reason = facts.disabled_reason(command);
@@ -204,14 +210,23 @@ fn hover_words(history: &[HistoryPoint], [x, y]: [f64; 2]) -> String {
     }
 }
 
+/// What the guide line shows.
+const GUIDE: &str = "4x the time, half the error";
+
 /// The guide for independent samples from the first estimate on: four times the time halves the error.
 fn guide(plot: &mut PlotUi, points: &[Point], color: Color32) {
     let (Some(first), Some(last)) = (points.first(), points.last()) else { return };
     let [x, y] = logarithm(first);
     let across = logarithm(last)[0] - x;
     let ends = vec![[x, y], [x + across, y - 0.5 * across]];
-    let line = Line::new("4x the time, half the error", PlotPoints::from(ends));
+    let line = Line::new(GUIDE, PlotPoints::from(ends));
     plot.line(line.color(color).style(LineStyle::dotted_dense()).width(1.0).allow_hover(false));
+    // Shorter lines have no room for their name.
+    if across > 0.5 {
+        let words = RichText::new(GUIDE).small().color(color);
+        let middle = PlotPoint::new(x + 0.5 * across, y - 0.25 * across);
+        plot.text(Text::new("guide", middle, words).anchor(Align2::LEFT_BOTTOM).allow_hover(false));
+    }
 }
 
 /// From the newest estimate to the predicted time at the target, with its uncertainty.

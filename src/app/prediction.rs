@@ -38,12 +38,6 @@ pub fn prediction(status: &Status, target: Option<f64>) -> Option<Prediction> {
         .filter(|found| found.time < FARTHEST)
 }
 
-/// Text such as "RMSE .005 in about 38 s (33 to 44)"; `None` if no target is ahead.
-pub fn prediction_label(status: &Status, target: Option<f64>) -> Option<String> {
-    let prediction = prediction(status, target)?;
-    Some(format!("RMSE {} {}", target?, prediction_words(&prediction)))
-}
-
 /// Text such as "in about 38 s (33 to 44)". A range that rounds to one number is left out.
 pub fn prediction_words(prediction: &Prediction) -> String {
     let [low, high] = prediction.range;

@@ -7,10 +7,10 @@ use super::model::document::Document;
 use super::model::origin::{Origin, Source};
 use super::model::show::Show;
 use super::window::Window;
-use crate::progressive::{ReferenceMeans, Stop};
+use crate::progressive::{ReferenceMeans, Status, Stop};
 use crate::saved::{Content, Opened};
 use eframe::egui;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 impl Window {
@@ -18,7 +18,10 @@ impl Window {
     pub(super) fn receive(&mut self, context: &egui::Context) {
         while let Some(outcome) = self.files.saved.take() {
             match outcome {
-                Ok(path) => self.toasts.good(format!("Saved {}", path.display())),
+                Ok(path) => {
+                    self.remember_directory(&path);
+                    self.toasts.good(format!("Saved {}", path.display()));
+                }
                 Err(reason) => self.toasts.bad(format!("Not saved: {reason}")),
             }
         }
@@ -55,8 +58,16 @@ impl Window {
         self.tell_messages();
     }
 
+    /// The next dialog starts where this file is.
+    fn remember_directory(&mut self, path: &Path) {
+        if let Some(directory) = path.parent().filter(|directory| !directory.as_os_str().is_empty()) {
+            self.model.remembered.directory = Some(directory.to_owned());
+        }
+    }
+
     fn show_opened(&mut self, opened: Opened) {
         let Opened { path, recipe, stage, content, .. } = opened;
+        self.remember_directory(&path);
         let origin = match content {
             Content::Scene => Origin::new(recipe.clone(), Source::File(path.clone())),
             _ => Origin::guess(&recipe, stage),
@@ -88,6 +99,7 @@ impl Window {
     }
 
     fn take_reference(&mut self, path: PathBuf, reference: ReferenceMeans) {
+        self.remember_directory(&path);
         let settings = self.document().settings;
         if (reference.width, reference.height) == (settings.width, settings.height) {
             self.model.view.reference = Some(Arc::new(reference));
@@ -112,16 +124,55 @@ impl Window {
         let told = if run == status.run { told } else { 0 };
         self.told_messages = (status.run, status.messages.len());
         let news: Vec<String> = status.messages.iter().skip(told).cloned().collect();
-        if !news.is_empty() {
-            // After a failure, the device that continues becomes the chosen one.
-            if let Some(info) = &status.backend
-                && let Some(device) = Device::ALL.into_iter().find(|device| device.name() == info.name)
-            {
-                self.model.remembered.device = device;
-            }
-            for message in news {
-                self.toasts.bad(message);
-            }
+        for message in news {
+            self.toasts.bad(message);
         }
+        self.follow_failures();
+    }
+
+    /// After the chosen device has failed, the one that continues becomes the chosen one.
+    fn follow_failures(&mut self) {
+        let status = self.main.status();
+        let (run, known) = self.known_failures;
+        let known = if run == status.run { known } else { 0 };
+        let (device, known) = device_after(self.model.remembered.device, known, status);
+        self.model.remembered.device = device;
+        self.known_failures = (status.run, known);
+    }
+}
+
+/// The device to choose after the failures that are not among the `known` first ones, and the failures that are known
+/// then. Without a failure of the chosen device the choice stays: it may still be preparing.
+fn device_after(chosen: Device, known: usize, status: &Status) -> (Device, usize) {
+    let has_failed = status.given_up.iter().skip(known).any(|name| *name == chosen.name());
+    let name = status.backend.as_ref().map(|backend| backend.name);
+    let present = Device::ALL.into_iter().find(|device| Some(device.name()) == name);
+    match present {
+        Some(present) if has_failed && present != chosen => (present, status.given_up.len()),
+        // The next backend has not taken over yet.
+        _ if has_failed => (chosen, known),
+        _ => (chosen, status.given_up.len()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::BackendInfo;
+
+    #[test]
+    fn only_a_failure_of_the_chosen_device_changes_the_choice() {
+        let status = |name, given_up: &[&'static str]| {
+            let backend = BackendInfo { name, device: String::new(), lanes: 1, threads: 1 };
+            let messages = vec!["the estimate is doubtful".to_owned()];
+            Status { backend: Some(backend), given_up: given_up.to_vec(), messages, ..Status::default() }
+        };
+        let (cpu, gpu) = (Device::Cpu, Device::Gpu);
+        assert_eq!(device_after(gpu, 0, &status("cpu", &[])), (gpu, 0), "the GPU is being prepared");
+        assert_eq!(device_after(cpu, 0, &status("gpu", &[])), (cpu, 0));
+        assert_eq!(device_after(gpu, 0, &status("gpu", &["gpu"])), (gpu, 0), "nothing has taken over yet");
+        assert_eq!(device_after(gpu, 0, &status("cpu", &["gpu"])), (cpu, 1));
+        assert_eq!(device_after(gpu, 1, &status("cpu", &["gpu"])), (gpu, 1), "it is tried again");
+        assert_eq!(device_after(cpu, 0, &status("cpu", &["cpu"])), (cpu, 0), "its plainer code goes on");
     }
 }

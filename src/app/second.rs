@@ -30,6 +30,16 @@ impl Second {
         self.tracer.as_mut().and_then(Tracer::shown_mut)
     }
 
+    /// The newest second picture.
+    pub fn shown(&self) -> Option<&Shown> {
+        self.tracer.as_ref().and_then(Tracer::shown)
+    }
+
+    /// Whether the second picture is complete.
+    pub fn is_over(&self) -> bool {
+        self.tracer.as_ref().is_some_and(|tracer| tracer.status().phase.is_over())
+    }
+
     /// Its film, while the difference is shown.
     pub fn film(&self) -> Option<&Arc<ReferenceMeans>> {
         self.film.as_ref()

@@ -2,6 +2,7 @@
 //! numbers change.
 
 use super::facts::Facts;
+use super::model::device::Device;
 use super::prediction::{prediction, prediction_words};
 use super::theme;
 use crate::progressive::{Contribution, Phase, Status, Stop};
@@ -12,19 +13,39 @@ use std::borrow::Cow;
 pub fn ui(ui: &mut Ui, facts: &Facts) {
     let frame = theme::panel(egui::Margin::symmetric(12, 5));
     egui::Panel::bottom("status").frame(frame).show(ui, |ui| {
-        bar(ui, &facts.status, facts.document().stop, facts.model.is_paused);
+        let speed = facts.speed.unwrap_or_else(|| facts.status.paths_per_second());
+        let (stop, is_paused, next) = (facts.document().stop, facts.model.is_paused, next_device(facts));
+        bar(ui, &Bar { status: &facts.status, stop, is_paused, speed, next });
     });
 }
 
-fn bar(ui: &mut Ui, status: &Status, stop: Stop, is_paused: bool) {
+/// What the bar shows.
+struct Bar<'a> {
+    status: &'a Status,
+    stop: Stop,
+    is_paused: bool,
+    /// Paths per second.
+    speed: f64,
+    /// The chosen device, if it has not traced yet.
+    next: Option<Device>,
+}
+
+/// The chosen device, if another one has traced the newest samples.
+fn next_device(facts: &Facts) -> Option<Device> {
+    let chosen = facts.model.remembered.device;
+    facts.status.backend.as_ref().filter(|backend| backend.name != chosen.name()).map(|_| chosen)
+}
+
+fn bar(ui: &mut Ui, bar: &Bar<'_>) {
+    let status = bar.status;
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(14.0, 3.0);
-        for (text, widest, help) in figures(status, stop, is_paused) {
+        for (text, widest, help) in figures(bar) {
             figure(ui, &text, widest, &help);
         }
         rejected(ui, status);
         let room = ui.available_size_before_wrap().x;
-        let forms = who(status);
+        let forms = who(status, bar.next);
         let fitting = forms.iter().find(|words| text_width(ui, words) < room);
         match (fitting, forms.last()) {
             (Some(words), _) => {
@@ -70,7 +91,8 @@ fn figure(ui: &mut Ui, text: &str, widest: &str, help: &str) {
 }
 
 /// For each figure its text, its widest text, and its help.
-fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'static str, Cow<'static, str>)> {
+fn figures(bar: &Bar<'_>) -> Vec<(String, &'static str, Cow<'static, str>)> {
+    let Bar { status, stop, is_paused, speed, .. } = *bar;
     let samples = status.samples_per_pixel;
     let mut figures = vec![
         (phase_word(&status.phase, is_paused), "preparing", "What the tracer is doing".into()),
@@ -88,9 +110,13 @@ fn figures(status: &Status, stop: Stop, is_paused: bool) -> Vec<(String, &'stati
             "Seconds of tracing, without pauses".into(),
         ),
         (
-            format!("{:.1} Mpaths/s", status.paths_per_second() / 1e6),
+            format!("{:.1} Mpaths/s", speed / 1e6),
             "0000.0 Mpaths/s",
-            "Millions of paths finished per second of tracing".into(),
+            format!(
+                "Millions of paths finished per second, in the last second of tracing; {:.1} on average",
+                status.paths_per_second() / 1e6
+            )
+            .into(),
         ),
         (
             rays_per_path(status),
@@ -170,8 +196,15 @@ fn rejected(ui: &mut Ui, status: &Status) {
         .on_hover_text("Samples that were left out because they were NaN, infinite or negative");
 }
 
-/// Which backends traced how many samples: first the full text, then ever shorter versions.
-fn who(status: &Status) -> Vec<String> {
+/// Which backends traced how many samples, and which device is next: first the full text, then ever shorter versions.
+fn who(status: &Status, next: Option<Device>) -> Vec<String> {
+    let traced = traced_by(status);
+    let Some(next) = next.filter(|_| !traced.is_empty()) else { return traced };
+    let words = if status.phase.is_over() { "is next" } else { "is being prepared" };
+    traced.into_iter().map(|traced| format!("{traced}; {} {words}", next.label())).collect()
+}
+
+fn traced_by(status: &Status) -> Vec<String> {
     let total: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
     match status.contributions.as_slice() {
         [] => status.backend.iter().map(short_name).collect(),
@@ -265,11 +298,15 @@ mod tests {
 
     const STOP: Stop = Stop { samples: None, seconds: None, noise: Some(0.002) };
 
+    fn of(status: &Status) -> Bar<'_> {
+        Bar { status, stop: STOP, is_paused: false, speed: status.paths_per_second(), next: None }
+    }
+
     #[test]
     fn the_figures_are_those_of_the_status() {
         let mut status = status_of(parts()[..1].to_vec());
         (status.stats.busy_lanes, status.stats.offered_lanes) = (3, 4);
-        let texts: Vec<String> = figures(&status, STOP, false).into_iter().map(|(text, ..)| text).collect();
+        let texts: Vec<String> = figures(&of(&status)).into_iter().map(|(text, ..)| text).collect();
         let figures = ["tracing", "100 spp", "2.0 s", "0.5 Mpaths/s", "2.56 rays/path", "16 lanes 75 % full"];
         assert_eq!(texts[..6], figures);
         assert!(texts[6].starts_with("error 0.00400, 0.002 in about"), "{texts:?}");
@@ -281,7 +318,7 @@ mod tests {
             for count in 0..=3 {
                 let status = status_of(parts()[..count].to_vec());
                 let harness =
-                    Harness::builder().with_size([width, 200.0]).build_ui(|ui| bar(ui, &status, STOP, false));
+                    Harness::builder().with_size([width, 200.0]).build_ui(|ui| bar(ui, &of(&status)));
                 let rects: Vec<(String, Rect)> = harness
                     .get_all_by_role(egui::Role::Label)
                     .map(|node| (node.value().unwrap_or_default(), node.rect()))
@@ -302,7 +339,7 @@ mod tests {
         let status = status_of(parts().to_vec());
         let mut harness = Harness::builder().with_size([1296.0, 40.0]).wgpu().build_ui(|ui| {
             crate::app::theme::install(ui.ctx());
-            bar(ui, &status, STOP, false);
+            bar(ui, &of(&status));
         });
         harness.run_steps(2);
         let options = SnapshotOptions::new().threshold(2.0).max_failed_pixels(100_usize);
@@ -312,14 +349,18 @@ mod tests {
     #[test]
     fn who_traced_is_said_in_few_words() {
         let [cpu, gpu, _] = parts();
-        assert_eq!(who(&status_of(vec![cpu.clone()])), ["cpu avx2, 2 threads", "cpu avx2"]);
+        let one = status_of(vec![cpu.clone()]);
+        assert_eq!(who(&one, None), ["cpu avx2, 2 threads", "cpu avx2"]);
+        assert_eq!(who(&one, Some(Device::Gpu))[1], "cpu avx2; GPU is being prepared");
+        let done = Status { phase: Phase::Done(crate::progressive::EndReason::Samples), ..one };
+        assert_eq!(who(&done, Some(Device::Gpu))[1], "cpu avx2; GPU is next");
         assert_eq!(
-            who(&status_of(vec![cpu, gpu])),
+            who(&status_of(vec![cpu, gpu]), None),
             ["cpu avx2 33 % + gpu A Graphics Adapter With Quite a Name 67 %", "cpu 33 % + gpu 67 %"]
         );
         let one_thread = BackendInfo { threads: 1, ..part("cpu", "avx2", 1).backend };
         let alone = Contribution { backend: one_thread, samples_per_pixel: 1 };
-        assert_eq!(who(&status_of(vec![alone]))[0], "cpu avx2, 1 thread");
+        assert_eq!(who(&status_of(vec![alone]), None)[0], "cpu avx2, 1 thread");
     }
 
     #[test]

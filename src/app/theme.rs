@@ -103,7 +103,7 @@ fn dress(style: &mut Style, is_dark: bool) {
     style.spacing.menu_margin = Margin::same(6);
     style.spacing.slider_rail_height = 4.0;
     style.spacing.tooltip_width = 320.0;
-    style.interaction.tooltip_delay = 0.4;
+    style.interaction.tooltip_delay = 0.6;
     style.interaction.selectable_labels = false;
     style.visuals = visuals(is_dark);
 }
@@ -148,6 +148,16 @@ fn visuals(is_dark: bool) -> Visuals {
     widgets.noninteractive.bg_stroke = Stroke::new(1.0, colours.line);
     widgets.hovered.bg_stroke = Stroke::new(1.0, colours.line);
     visuals
+}
+
+/// Draws a ring around the control that has the keyboard focus.
+pub fn paint_focus(context: &Context) {
+    let focused = context.memory(|memory| memory.focused());
+    let Some(response) = focused.and_then(|id| context.read_response(id)) else { return };
+    let colours = palette(context.global_style().visuals.dark_mode);
+    let painter = context.layer_painter(response.layer_id).with_clip_rect(response.interact_rect.expand(3.0));
+    let kind = egui::StrokeKind::Outside;
+    painter.rect_stroke(response.rect, CornerRadius::same(5), Stroke::new(2.0, colours.accent), kind);
 }
 
 /// A frame for widgets that float over the picture.

@@ -8,7 +8,7 @@ use super::model::tone::Tone;
 use super::model::view::{Mode, ViewState};
 use super::theme;
 use super::tracer::Tracer;
-use super::widgets::{About, compact, limit, named, slider, under_name};
+use super::widgets::{About, compact, number, slider, under_name};
 use crate::film::Histogram;
 use eframe::egui::{
     self, Align2, Color32, Pos2, Rect, RichText, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
@@ -100,9 +100,8 @@ fn exposure_ui(ui: &mut Ui, tone: &mut Tone) {
         "Shows the picture brighter or darker, in stops: each stop doubles the light (keys + and -, 0 for none). \
          It changes only what you see; files are saved without it",
     );
-    let response = slider(ui, about, &mut tone.exposure, Tone::EXPOSURES, |slider| {
-        slider.step_by(0.1).custom_formatter(|stops, _| format!("{stops:+.1}"))
-    });
+    let ranges = (Tone::EXPOSURES, Tone::EXPOSURES);
+    let response = slider(ui, about, &mut tone.exposure, ranges, "", |slider| slider.step_by(0.1));
     if response.double_clicked() {
         tone.exposure = 0.0;
     }
@@ -117,11 +116,12 @@ fn range_ui(ui: &mut Ui, tone: &mut Tone) {
         ui.horizontal(|ui| {
             let before = tone.range;
             let [low, high] = &mut tone.range;
-            let low = limit(ui, low, |drag| drag.range(Tone::RANGES).speed(0.1).max_decimals(1));
-            named(&low, "Darkest luminance, power of two");
+            let size = vec2(56.0, ui.spacing().interact_size.y);
+            let place = ("Darkest luminance, power of two", size);
+            let low = number(ui, place, low, Tone::RANGES, |drag| drag.speed(0.1).max_decimals(1));
             ui.label("to");
-            let high = limit(ui, high, |drag| drag.range(Tone::RANGES).speed(0.1).max_decimals(1));
-            named(&high, "Brightest luminance, power of two");
+            let place = ("Brightest luminance, power of two", size);
+            let high = number(ui, place, high, Tone::RANGES, |drag| drag.speed(0.1).max_decimals(1));
             ui.label("stops");
             tone.mend_range(before);
             low.union(high).on_hover_text(about.help)

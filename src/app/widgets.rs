@@ -1,7 +1,11 @@
 //! Controls for panels. Each has a name and a tooltip; a disabled control also shows the reason.
 
-use eframe::egui::{self, DragValue, Response, RichText, Slider, Ui};
+use eframe::egui::{
+    self, DragValue, Rect, RectAlign, Response, RichText, Sense, Slider, SliderClamping, Tooltip, Ui,
+    UiBuilder, Vec2, vec2,
+};
 use glam::DVec3;
+use std::cell::Cell;
 use std::ops::RangeInclusive;
 
 /// A control's name, its tooltip with the unit, and the reason if it is disabled.
@@ -32,7 +36,7 @@ pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Respo
     under_name(ui, about, |ui| {
         let response = add(ui);
         named(&response, about.name);
-        explained(response, about)
+        explained(ui, response, about)
     })
 }
 
@@ -50,57 +54,65 @@ pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Re
     response
 }
 
-/// Adds the tooltip, and the reason if the control is disabled.
-pub fn explained(response: Response, about: About<'_>) -> Response {
-    let response = response.on_hover_text(about.help);
-    match about.disabled_reason {
-        Some(reason) => response.on_disabled_hover_text(format!("{}\n\n{reason}", about.help)),
-        None => response,
-    }
-}
-
-/// Lets a control change a number, but rejects NaN and infinities, which users can type.
-fn keep_finite(value: &mut f64, change: impl FnOnce(&mut f64) -> Response) -> Response {
-    let before = *value;
-    let response = change(value);
-    if !value.is_finite() {
-        *value = before;
+/// Adds the tooltip, and the reason if the control is disabled. It is shown beside the panel, so that it does not cover
+/// the next control.
+pub fn explained(ui: &Ui, response: Response, about: About<'_>) -> Response {
+    let row = Rect::from_x_y_ranges(ui.clip_rect().x_range(), response.rect.y_range());
+    let beside = |mut tip: Tooltip<'static>, text: String| {
+        tip.popup = tip.popup.anchor(row).align(RectAlign::RIGHT_START);
+        tip.show(|ui| ui.label(text));
+    };
+    beside(Tooltip::for_enabled(&response), about.help.to_owned());
+    if let Some(reason) = about.disabled_reason {
+        beside(Tooltip::for_disabled(&response), format!("{}\n\n{reason}", about.help));
     }
     response
 }
 
-/// A slider with its number.
+/// A slider with its number. The slider covers the usual values `track`; the number takes any within `limits`.
 pub fn slider(
     ui: &mut Ui,
     about: About<'_>,
     value: &mut f64,
-    range: RangeInclusive<f64>,
+    (track, limits): (RangeInclusive<f64>, RangeInclusive<f64>),
+    suffix: &str,
     change: impl FnOnce(Slider<'_>) -> Slider<'_>,
 ) -> Response {
-    control(ui, about, |ui| {
-        let digits = ui.text_style_height(&egui::TextStyle::Body) * 5.0;
-        ui.spacing_mut().slider_width =
-            (ui.available_width() - digits - ui.spacing().item_spacing.x).max(40.0);
-        ui.spacing_mut().interact_size.x = digits;
-        keep_finite(value, |value| ui.add(change(Slider::new(value, range))))
+    under_name(ui, about, |ui| {
+        ui.horizontal(|ui| {
+            let digits = ui.text_style_height(&egui::TextStyle::Body) * 5.0;
+            ui.spacing_mut().slider_width =
+                (ui.available_width() - digits - ui.spacing().item_spacing.x).max(40.0);
+            let speed = 0.002 * (track.end() - track.start()).min(value.abs().max(0.1) * 5.0);
+            let slider = Slider::new(value, track).show_value(false).clamping(SliderClamping::Edits);
+            let slid = ui.add(change(slider));
+            named(&slid, about.name);
+            let size = vec2(digits, ui.spacing().interact_size.y);
+            let typed =
+                number(ui, (about.name, size), value, limits, |drag| drag.speed(speed).suffix(suffix));
+            explained(ui, slid, about).union(explained(ui, typed, about))
+        })
+        .inner
     })
 }
 
-/// Controls for the three components of a vector.
-pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, speed: f64) -> Response {
+/// Controls for the three components of a vector, each within `limits`.
+pub fn vector(
+    ui: &mut Ui,
+    about: About<'_>,
+    value: &mut DVec3,
+    limits: RangeInclusive<f64>,
+    speed: f64,
+) -> Response {
     under_name(ui, about, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
-            let width = (ui.available_width() - 8.0) / 3.0;
+            let size = vec2((ui.available_width() - 8.0) / 3.0, ui.spacing().interact_size.y);
             let mut all: Option<Response> = None;
-            for (axis, number) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
-                let size = [width, ui.spacing().interact_size.y];
-                let response = keep_finite(number, |number| {
-                    let drag = DragValue::new(number).speed(speed).max_decimals(4).range(-1e15..=1e15);
-                    ui.add_sized(size, drag.custom_formatter(|n, _| compact(n)))
-                });
-                named(&response, &format!("{} {axis}", about.name));
-                let response = explained(response, about);
+            for (axis, component) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
+                let name = format!("{} {axis}", about.name);
+                let response = number(ui, (&name, size), component, limits.clone(), |drag| drag.speed(speed));
+                let response = explained(ui, response, about);
                 all = Some(match all {
                     Some(earlier) => earlier.union(response),
                     None => response,
@@ -113,9 +125,80 @@ pub fn vector(ui: &mut Ui, about: About<'_>, value: &mut DVec3, speed: f64) -> R
     })
 }
 
-/// A number to type or drag. It changes only when the edit is complete.
-pub fn limit(ui: &mut Ui, value: &mut f64, change: impl FnOnce(DragValue<'_>) -> DragValue<'_>) -> Response {
-    keep_finite(value, |value| ui.add(change(DragValue::new(value).update_while_editing(false))))
+/// A number to type or drag. A typed number counts when the edit is complete. The control keeps its size, however long
+/// the text is, and a number beyond the limits is told with [`tell`].
+pub fn number(
+    ui: &mut Ui,
+    (name, size): (&str, Vec2),
+    value: &mut f64,
+    limits: RangeInclusive<f64>,
+    change: impl FnOnce(DragValue<'_>) -> DragValue<'_>,
+) -> Response {
+    let before = *value;
+    let beyond = Cell::new(None);
+    let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
+    let layout = egui::Layout::centered_and_justified(egui::Direction::LeftToRight);
+    let mut within = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
+    within.shrink_clip_rect(rect);
+    let is_given_up = is_given_up(&within, within.next_auto_id());
+    let parse = |text: &str| {
+        let typed = if is_given_up { before } else { parsed(text, before)? };
+        let kept = typed.clamp(*limits.start(), *limits.end());
+        beyond.set((typed != kept).then_some((typed, kept)));
+        Some(kept)
+    };
+    let drag = DragValue::new(value)
+        .range(limits.clone())
+        .update_while_editing(false)
+        .custom_formatter(|n, _| compact(n))
+        .custom_parser(parse)
+        .clip_text(true)
+        .min_size(size);
+    let response = within.add(change(drag));
+    named(&response, name);
+    if !value.is_finite() {
+        *value = before;
+    }
+    if let Some((typed, kept)) = beyond.get() {
+        let (typed, kept) = (compact(typed), compact(kept));
+        tell(ui.ctx(), format!("{name} is {kept}, its limit: {typed} is beyond it"));
+    }
+    response
+}
+
+/// Whether Escape has ended the edit of the number `id` a moment ago. egui sees it in the first of the two frames in which
+/// it applies the text.
+fn is_given_up(ui: &Ui, id: egui::Id) -> bool {
+    const FRAMES: u64 = 2;
+    let (place, now) = (id.with("given up"), ui.ctx().cumulative_frame_nr());
+    let has_focus = ui.memory(|memory| memory.had_focus_last_frame(id));
+    if has_focus && ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        ui.data_mut(|data| data.insert_temp(place, now));
+    }
+    ui.data(|data| data.get_temp::<u64>(place)).is_some_and(|then| now <= then + FRAMES)
+}
+
+/// The number of a text; `before` if the text is what is shown of that.
+fn parsed(text: &str, before: f64) -> Option<f64> {
+    let text: String = text.chars().filter(|c| !c.is_whitespace()).collect();
+    if text == compact(before) {
+        return Some(before);
+    }
+    text.replace('\u{2212}', "-").trim_end_matches('°').parse().ok().filter(|number: &f64| !number.is_nan())
+}
+
+fn told() -> egui::Id {
+    egui::Id::unique("told by a control")
+}
+
+/// Leaves a message for the user.
+fn tell(context: &egui::Context, text: String) {
+    context.data_mut(|data| data.insert_temp(told(), text));
+}
+
+/// Takes the message that a control has left.
+pub fn take_told(context: &egui::Context) -> Option<String> {
+    context.data_mut(|data| data.remove_temp(told()))
 }
 
 /// A whole number to type or drag.
@@ -126,16 +209,35 @@ pub fn whole(
     range: RangeInclusive<u64>,
     speed: f64,
 ) -> Response {
-    control(ui, about, |ui| {
-        let size = [ui.available_width(), ui.spacing().interact_size.y];
-        ui.add_sized(size, DragValue::new(value).range(range).speed(speed))
+    under_name(ui, about, |ui| {
+        let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+        let response = whole_number(ui, (about.name, size), value, range, |drag| drag.speed(speed));
+        explained(ui, response, about)
     })
+}
+
+/// Like [`number`], for whole numbers up to 2^53, with all their digits.
+pub fn whole_number(
+    ui: &mut Ui,
+    place: (&str, Vec2),
+    value: &mut u64,
+    range: RangeInclusive<u64>,
+    change: impl FnOnce(DragValue<'_>) -> DragValue<'_>,
+) -> Response {
+    let mut real = *value as f64;
+    let limits = *range.start() as f64..=*range.end() as f64;
+    let response =
+        number(ui, place, &mut real, limits, |drag| change(drag.custom_formatter(|n, _| format!("{n:.0}"))));
+    if response.changed() {
+        *value = (real.round() as u64).clamp(*range.start(), *range.end());
+    }
+    response
 }
 
 /// A check box. What it enables is shown only while it is checked.
 pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
     let response = ui.add_enabled(about.disabled_reason.is_none(), egui::Checkbox::new(value, about.name));
-    explained(response, about)
+    explained(ui, response, about)
 }
 
 /// Formats a number in few characters.
@@ -155,6 +257,18 @@ pub fn compact(n: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_text_that_was_not_edited_keeps_all_digits() {
+        let third = 1.0 / 3.0;
+        assert_eq!(parsed(&compact(third), third), Some(third));
+        assert_eq!(parsed(" 0.3334 ", third), Some(0.3334));
+        assert_eq!(parsed("\u{2212}45°", 1.0), Some(-45.0));
+        assert_eq!(parsed("1e30", 1.0), Some(1e30));
+        for text in ["", "x", "nan"] {
+            assert_eq!(parsed(text, 1.0), None, "{text}");
+        }
+    }
 
     #[test]
     fn numbers_stay_short() {

@@ -8,6 +8,7 @@ use super::dialogs::Dialogs;
 use super::facts::Facts;
 use super::files::Files;
 use super::frame_log::{FrameLog, FrameTimes};
+use super::identity::Identity;
 use super::inspector::Inspector;
 use super::layers::Layers;
 use super::model::Model;
@@ -20,7 +21,10 @@ use super::model::view::ViewState;
 use super::packet::Packet;
 use super::paths::Paths;
 use super::pixel_values::PixelValues;
+use super::places::Place;
 use super::second::Second;
+use super::speed::Speed;
+use super::surfaces::Surfaces;
 use super::toasts::Toasts;
 use super::tone::ToneUi;
 use super::tracer::Tracer;
@@ -51,6 +55,9 @@ pub struct Window {
     pub(super) layers: Layers,
     pub(super) tone: ToneUi,
     pub(super) values: PixelValues,
+    pub(super) surfaces: Surfaces,
+    pub(super) identity: Identity,
+    pub(super) speed: Speed,
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
     pub(super) paths: Paths,
@@ -79,6 +86,10 @@ pub struct Window {
     /// Whether a control, a menu or a dialog had the keyboard focus in the previous frame.
     pub(super) had_focus: bool,
     pub(super) told_messages: (u64, usize),
+    /// The run, and how many of its failures are known.
+    pub(super) known_failures: (u64, usize),
+    /// The panel that has had the focus last.
+    pub(super) panel: Option<Place>,
     pub(super) is_dressed: bool,
     pub(super) frames_to_fit: u8,
 }
@@ -120,6 +131,9 @@ impl Window {
             layers: Layers::default(),
             tone: ToneUi::default(),
             values: PixelValues::default(),
+            surfaces: Surfaces::default(),
+            identity: Identity::default(),
+            speed: Speed::default(),
             viewport: Viewport::default(),
             inspector: Inspector::default(),
             paths: Paths::default(),
@@ -140,6 +154,8 @@ impl Window {
             performed: None,
             had_focus: false,
             told_messages: (0, 0),
+            known_failures: (0, 0),
+            panel: None,
             is_dressed: false,
             frames_to_fit: FRAMES_TO_FIT,
         })
@@ -203,6 +219,11 @@ impl Window {
     /// Whether a second picture of the current comparison is available.
     pub fn has_other_picture(&self) -> bool {
         self.second.has_picture(self.document(), &self.model.view)
+    }
+
+    /// Where the divider of a wipe is, `0..=1` of the picture's width.
+    pub fn divider(&self) -> f32 {
+        self.model.view.divider
     }
 
     /// The current view.
@@ -269,8 +290,10 @@ impl Window {
     pub(super) fn facts(&self) -> Facts {
         Facts {
             status: self.main.status().clone(),
+            speed: self.speed.paths_per_second(),
             can_undo: self.changes.can_undo(self.document()),
             can_redo: self.changes.can_redo(self.document()),
+            has_pixel: self.inspector.hovered().is_some(),
             has_paths: self.paths.len() > 0,
             invalid: self.invalid.clone(),
             model: self.model.clone(),

@@ -8,6 +8,7 @@ use super::values::{
 use crate::output::PpmForm;
 use crate::recipe::Recipe;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
+use crate::scene::VFOV_LIMITS_DEGREES;
 use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 use glam::DVec3;
@@ -163,12 +164,12 @@ pub(super) struct RawPicture {
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub look_at: Option<DVec3>,
-    /// Up direction of the picture; its length does not matter
+    /// Up direction of the picture, not parallel to the view; its length does not matter
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_vector, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub vup: Option<DVec3>,
-    /// Vertical field of view, 0.01 to 179 degrees
-    #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
+    #[arg(help = format!("Vertical field of view, {} to {} degrees", VFOV_LIMITS_DEGREES[0], VFOV_LIMITS_DEGREES[1]),
+          long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub vfov: Option<f64>,
     /// Angle of the cone from the focus point to the lens, from 0 (a pinhole) to below 179 degrees

@@ -104,6 +104,32 @@ fn levels(first_child: impl Fn(u32) -> Option<u32>) -> usize {
 }
 
 impl<R> Hierarchy<R> {
+    /// Calls `each` with the place in the list of every sphere that may touch the box from `low` to `high`, which is
+    /// relative to the hierarchy's origin.
+    pub fn near(&self, low: DVec3, high: DVec3, mut each: impl FnMut(usize))
+    where
+        R: Into<f64> + Copy,
+    {
+        let mut open = vec![0_u32];
+        while let Some(index) = open.pop() {
+            let node = &self.nodes[index as usize];
+            let is_apart = (0..3).any(|axis| {
+                let (from, to): (f64, f64) = (node.low[axis].into(), node.high[axis].into());
+                from > high[axis] || to < low[axis]
+            });
+            if is_apart {
+                continue;
+            }
+            match node.count & COUNT_MASK {
+                0 => open.extend([node.first, node.first + 1]),
+                count => {
+                    let leaf = node.first as usize..(node.first + count) as usize;
+                    self.ranks[leaf].iter().for_each(|rank| each(*rank as usize));
+                }
+            }
+        }
+    }
+
     /// The number of nodes on the longest path from the root to a leaf.
     pub fn depth(&self) -> usize {
         levels(|index| {

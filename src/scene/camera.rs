@@ -12,7 +12,7 @@ pub const VFOV_LIMITS_DEGREES: [f64; 2] = [0.01, 179.0];
 pub const DEFOCUS_LIMIT_DEGREES: f64 = 179.0;
 
 /// Limits on the focus distance, scene units. The upper limit covers the distance between any two valid positions.
-const FOCUS_LIMITS: RangeInclusive<f64> = 1e-18..=1e19;
+pub const FOCUS_LIMITS: RangeInclusive<f64> = 1e-18..=1e19;
 
 /// A thin-lens camera in the user's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,8 +21,7 @@ pub struct Camera {
     pub look_from: DVec3,
     /// The point that the camera looks at, in the middle of the picture; scene units.
     pub look_at: DVec3,
-    /// The up direction, of any length. If it is parallel to the view, the axis least aligned with the view replaces
-    /// it.
+    /// The up direction, of any length greater than 0, not parallel to the view.
     pub vup: DVec3,
     /// Angle from the lower to the upper edge of the picture, degrees, within [`VFOV_LIMITS_DEGREES`].
     pub vfov_degrees: f64,
@@ -73,12 +72,17 @@ impl Camera {
         if self.look_from == self.look_at {
             return Err(SceneError::NoDirection { at: self.look_from });
         }
+        let w = unit(self.look_from - self.look_at);
+        if right(self.vup, w).is_none() {
+            return Err(SceneError::NoUp { vup: self.vup, remedy: least_aligned(w) });
+        }
         finite(|| "vfov_degrees".to_owned(), self.vfov_degrees)?;
-        if !(VFOV_LIMITS_DEGREES[0]..=VFOV_LIMITS_DEGREES[1]).contains(&self.vfov_degrees) {
+        let [narrowest, widest] = VFOV_LIMITS_DEGREES;
+        if !(narrowest..=widest).contains(&self.vfov_degrees) {
             return Err(SceneError::range(
                 "vfov_degrees".into(),
                 self.vfov_degrees,
-                "within 0.01 and 179 degrees",
+                format!("within {narrowest} and {widest} degrees"),
                 "90 is wide, 20 is a portrait lens",
             ));
         }
@@ -129,24 +133,30 @@ impl Camera {
         self.effective_focus_distance() * self.defocus_tangent()
     }
 
-    /// The camera's frame, orthonormal to the precision of `f64` for every valid camera.
+    /// The camera's frame, orthonormal to the precision of `f64` for every valid camera. For an up vector that is not
+    /// valid, the axis least aligned with the view replaces it.
     pub fn basis(&self) -> CameraBasis {
         let w = unit(self.look_from - self.look_at);
-        let right = |up: DVec3| up.cross(w);
-        // Below this sine of the angle between up and view, rounding would determine the roll.
-        const PARALLEL_SINE: f64 = 1e-9;
-        let vup = if self.vup == DVec3::ZERO { DVec3::ZERO } else { unit(self.vup) };
-        let mut u = right(vup);
-        if u.length() < PARALLEL_SINE {
-            let least_aligned = [DVec3::X, DVec3::Y, DVec3::Z]
-                .into_iter()
-                .min_by(|a, b| a.dot(w).abs().total_cmp(&b.dot(w).abs()))
-                .unwrap_or(DVec3::X);
-            u = right(least_aligned);
-        }
-        let u = unit(u);
+        let u = right(self.vup, w).unwrap_or_else(|| unit(least_aligned(w).cross(w)));
         CameraBasis { u, v: w.cross(u), w }
     }
+}
+
+/// The unit vector at right angles to `vup` and to the unit vector `w`; `None` if they are parallel.
+fn right(vup: DVec3, w: DVec3) -> Option<DVec3> {
+    /// Below this sine of the angle between up and view, rounding would determine the roll.
+    const PARALLEL_SINE: f64 = 1e-9;
+    let right = (vup != DVec3::ZERO).then(|| unit(vup).cross(w))?;
+    (right.length() >= PARALLEL_SINE).then(|| unit(right))
+}
+
+/// The axis least aligned with `w`; of several, y before z before x.
+fn least_aligned(w: DVec3) -> DVec3 {
+    let aligned = |axis: &DVec3| axis.dot(w).abs();
+    [DVec3::Y, DVec3::Z, DVec3::X]
+        .into_iter()
+        .min_by(|a, b| aligned(a).total_cmp(&aligned(b)))
+        .unwrap_or(DVec3::Y)
 }
 
 /// Normalises `v`. Dividing by the largest component first keeps the squares from overflowing and underflowing.
@@ -175,13 +185,35 @@ mod tests {
 
     /// Case 31.
     #[test]
-    fn up_along_the_view_still_gives_a_frame() {
+    fn up_along_the_view_is_refused() {
         for view in [DVec3::X, DVec3::NEG_Y, DVec3::Z, DVec3::new(1.0, 2.0, -3.0), DVec3::splat(1e-12)] {
             for vup in [view, -view, view * 1e-200, view * 1e200, DVec3::ZERO] {
                 let camera = Camera { look_at: view, vup, ..Camera::BOOK };
-                camera.validate().expect("valid");
+                let refused = message(camera);
+                assert!(refused.starts_with(&format!("vup is [{}, {}, {}], which", vup.x, vup.y, vup.z)));
+                let Err(SceneError::NoUp { remedy, .. }) = camera.validate() else { panic!("{refused}") };
+                let mended = Camera { vup: remedy, ..camera };
+                mended.validate().expect("the remedy helps");
+                assert_orthonormal(&mended);
                 assert_orthonormal(&camera);
             }
+        }
+        let refused = message(Camera { look_at: DVec3::NEG_Y, ..Camera::BOOK });
+        let expected = "vup is [0, 1, 0], which is parallel to the view, so nothing is up in the picture; use \
+                        another, such as [0, 0, 1]";
+        assert_eq!(refused, expected);
+        let refused = message(Camera { vup: DVec3::ZERO, ..Camera::BOOK });
+        assert_eq!(refused, "vup is [0, 0, 0], which has no direction; use another, such as [0, 1, 0]");
+    }
+
+    /// Case 31.
+    #[test]
+    fn up_almost_along_the_view_gives_its_frame() {
+        for sine in [1e-3, 1e-6, 1e-8] {
+            let camera = Camera { vup: DVec3::new(0.0, sine, -1.0), ..Camera::BOOK };
+            camera.validate().expect("valid");
+            assert_orthonormal(&camera);
+            assert!(camera.basis().v.distance(DVec3::Y) < 1e-7, "{:?}", camera.basis());
         }
     }
 
@@ -245,7 +277,7 @@ mod tests {
             let refused = message(Camera { look_from: DVec3::new(0.0, far, 0.0), ..Camera::BOOK });
             assert!(refused.starts_with("look_from.y is"), "{refused}");
         }
-        let refused = message(Camera { look_at: DVec3::new(0.0, 1e-200, 0.0), ..Camera::BOOK });
+        let refused = message(Camera { look_at: DVec3::new(1e-200, 0.0, 0.0), ..Camera::BOOK });
         assert!(refused.contains("focus_distance"), "{refused}");
     }
 }

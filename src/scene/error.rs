@@ -1,6 +1,7 @@
 //! Errors in scenes, worded so that the reader can fix them.
 
 use glam::DVec3;
+use std::borrow::Cow;
 use thiserror::Error;
 
 /// A scene or camera that cannot be rendered.
@@ -22,7 +23,7 @@ pub enum SceneError {
         /// The invalid value.
         value: f64,
         /// The range, in words.
-        limit: &'static str,
+        limit: Cow<'static, str>,
         /// What the user should change.
         remedy: &'static str,
     },
@@ -58,16 +59,34 @@ pub enum SceneError {
         /// That point, scene units.
         at: DVec3,
     },
+    /// The up vector has no direction, or that of the view.
+    #[error(
+        "vup is [{}, {}, {}], {}; use another, such as [{}, {}, {}]",
+        vup.x, vup.y, vup.z,
+        if *vup == DVec3::ZERO { "which has no direction" } else { "which is parallel to the view, so nothing is up in the picture" },
+        remedy.x, remedy.y, remedy.z
+    )]
+    NoUp {
+        /// The up vector.
+        vup: DVec3,
+        /// An up vector for this view.
+        remedy: DVec3,
+    },
 }
 
 impl SceneError {
-    pub(crate) fn range(what: String, value: f64, limit: &'static str, remedy: &'static str) -> Self {
-        SceneError::OutOfRange { what, value, limit, remedy }
+    pub(crate) fn range(
+        what: String,
+        value: f64,
+        limit: impl Into<Cow<'static, str>>,
+        remedy: &'static str,
+    ) -> Self {
+        SceneError::OutOfRange { what, value, limit: limit.into(), remedy }
     }
 }
 
 /// Largest absolute coordinate or radius. Squares of it, and sums of three squares, must be finite in `f32`.
-pub(super) const LENGTH_LIMIT: f64 = 1e18;
+pub const LENGTH_LIMIT: f64 = 1e18;
 
 // These checks run on millions of values, so the text of a location is built only for an error.
 

@@ -11,8 +11,8 @@ mod material;
 mod pick;
 mod sphere;
 
-pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, VFOV_LIMITS_DEGREES};
-pub use error::SceneError;
+pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, VFOV_LIMITS_DEGREES};
+pub use error::{LENGTH_LIMIT, SceneError};
 pub use material::{Material, NamedMaterial, Parameter};
 pub use pick::Pick;
 pub use sphere::Sphere;

@@ -46,7 +46,14 @@ fn assert_sees_the_sky(camera: Camera, [width, height]: [u32; 2]) {
 #[test]
 fn case_31_up_along_the_view() {
     for view in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(1.0, -2.0, 0.5), DVec3::splat(1e-9)] {
-        for vup in [view, -view, view * 1e100, DVec3::ZERO, view + DVec3::splat(1e-17)] {
+        for vup in
+            [view, -view, view * 1e100, DVec3::ZERO, view + view.length() * DVec3::new(0.0, 1e-17, 0.0)]
+        {
+            let refused = Camera { look_at: view, vup, ..Camera::BOOK }.validate();
+            assert!(matches!(refused, Err(SceneError::NoUp { .. })), "{view} {vup}: {refused:?}");
+        }
+        let aside = view.any_orthogonal_vector().normalize() * view.length();
+        for vup in [view + 1e-6 * aside, -view + 1e-8 * aside, 1e100 * (view - 1e-3 * aside)] {
             let camera = Camera { look_at: view, vup, ..Camera::BOOK };
             camera.validate().unwrap();
             let basis = camera.basis();
@@ -56,7 +63,8 @@ fn case_31_up_along_the_view() {
             assert!((frame.determinant() - 1.0).abs() < 1e-12, "not mirrored: {basis:?}");
             assert!((basis.w + view.normalize()).length() < 1e-12, "{camera:?}: {basis:?}");
         }
-        assert_sees_the_sky(Camera { look_at: view, vup: view, ..Camera::BOOK }, [8, 8]);
+        let vup = view + 1e-6 * aside;
+        assert_sees_the_sky(Camera { look_at: view, vup, ..Camera::BOOK }, [8, 8]);
     }
     let nowhere = Camera { look_from: DVec3::ONE, look_at: DVec3::ONE, ..Camera::BOOK };
     assert!(matches!(nowhere.validate(), Err(SceneError::NoDirection { .. })));

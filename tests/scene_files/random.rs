@@ -86,6 +86,9 @@ fn camera() -> impl Strategy<Value = Camera> {
     let focus = prop::option::of(number(1e-18..1e18));
     (vector(-1e3..1e3), vector(-1e3..1e3), vector(-2.0..2.0), number(0.01..179.0), number(0.0..179.0), focus)
         .prop_filter("a direction", |(look_from, look_at, ..)| look_from.distance(*look_at) > 1e-3)
+        .prop_filter("an up", |(look_from, look_at, vup, ..)| {
+            vup.cross(*look_at - *look_from).length() > 1e-6 * vup.length() * look_from.distance(*look_at)
+        })
         .prop_map(|(look_from, look_at, vup, vfov_degrees, defocus_angle_degrees, focus_distance)| Camera {
             look_from,
             look_at,

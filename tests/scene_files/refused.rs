@@ -108,6 +108,16 @@ fn bad_cameras_are_refused() {
     refusal_with("vfov_degrees = 40", "vfov_degrees = nan", &["vfov_degrees is NaN", "finite"]);
     // Case 31.
     refusal_with("look_at = [0, 0, 0]", "look_at = [0, 0, 3]", &["look_from and look_at are both [0, 0, 3]"]);
+    for (vup, expected) in
+        [("[0, 0, 0]", "vup is [0, 0, 0], which has no direction"), ("[0, 0, -2]", "parallel to the view")]
+    {
+        let message =
+            refusal(&ONE_SPHERE.replace("[materials.ball]", &format!("vup = {vup}\n[materials.ball]")), 5);
+        assert!(
+            message.contains(expected) && message.contains("use another, such as [0, 1, 0]"),
+            "{message}"
+        );
+    }
     // Case 33.
     let with = |line: &str| ONE_SPHERE.replace("[materials.ball]", &format!("{line}\n[materials.ball]"));
     for (line, expected) in [

@@ -86,7 +86,8 @@ fn cameras_are_those_of_the_program() {
         .map(|i| {
             let look_from = draws.point(20.0);
             let look_at = look_from + draws.point([1e-3, 1.0, 30.0][i % 3]);
-            let vup = if i % 50 == 0 { 3.0 * (look_at - look_from) } else { draws.point(2.0) };
+            let almost_ahead = 3.0 * (look_at - look_from) + draws.point(1e-6);
+            let vup = if i % 50 == 0 { almost_ahead } else { draws.point(2.0) };
             let camera = Camera {
                 look_from,
                 look_at,

@@ -116,7 +116,8 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         // The next two belong to the window system; the others belong to the viewport and are tested there.
         Command::Quit | Command::Book | Command::FullScreen => true,
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,
-        Command::NextRay | Command::PreviousRay => true,
+        Command::NextRay | Command::PreviousRay | Command::ListPaths => true,
+        Command::NextPanel | Command::GoOn => true,
         // See tone.rs.
         Command::Brighter | Command::Darker | Command::NoExposure => true,
     }
@@ -198,4 +199,64 @@ fn changes_are_taken_back_and_made_again_one_by_one() {
     );
     send(&mut harness, Command::Undo);
     assert_eq!(angle(&harness), 44.0);
+}
+
+/// However few commands match, the box of the palette stays where it is, and all results come back.
+#[test]
+fn the_palette_keeps_its_place_and_size() {
+    let mut harness = open(SMALL);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+    harness.run_steps(5);
+    let shape = |harness: &Harness<'_, Window>| {
+        let edit = harness.get_by_label("Command").rect();
+        let rows = harness.get_all_by_role(egui::Role::Button).filter(|row| row.rect().top() > edit.bottom());
+        (edit, rows.filter(|row| row.rect().bottom() < edit.bottom() + 360.0).count())
+    };
+    let before = shape(&harness);
+    assert!(before.1 > 8, "{before:?}");
+    for letter in ["x", "y", "z", "z", "y"] {
+        harness.event(egui::Event::Text(letter.to_owned()));
+        harness.run_steps(3);
+        assert_eq!(shape(&harness).0, before.0, "{letter}");
+    }
+    for _ in 0..5 {
+        harness.key_press(Key::Backspace);
+        harness.run_steps(3);
+        assert_eq!(shape(&harness).0, before.0);
+    }
+    assert_eq!(shape(&harness), before);
+}
+
+/// F6 goes from part to part, and the first control of each has the focus.
+#[test]
+fn f6_goes_through_the_panels() {
+    use egui_kittest::kittest::NodeT;
+    let mut harness = open(SMALL);
+    let focused = |harness: &Harness<'_, Window>| {
+        let mut nodes = harness.root().children_recursive().into_iter();
+        let found = nodes.find(|node| node.accesskit_node().is_focused());
+        found.map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
+    };
+    let mut places = Vec::new();
+    for _ in 0..4 {
+        harness.key_press(Key::F6);
+        harness.run_steps(3);
+        places.push(focused(&harness));
+    }
+    let picture = harness.get_by_label("Picture").rect();
+    let [Some(menu), Some(left), Some(right), None] = &places[..] else { panic!("{places:?}") };
+    assert_eq!(menu.0, "File");
+    assert!(left.1.right() <= picture.left() && right.1.left() >= picture.right(), "{places:?}");
+}
+
+/// At a width without room for the right panel, its text is below the controls, and a button leads there.
+#[test]
+fn a_narrow_window_says_where_the_stage_is() {
+    let mut harness = crate::common::open_sized(SMALL, [800.0, 600.0]);
+    harness.run_steps(3);
+    let heading = |harness: &Harness<'_, Window>| harness.get_by_label("What is new").rect();
+    assert!(heading(&harness).top() > 600.0, "{:?}", heading(&harness));
+    harness.get_by_label("Stage and pixel: below").click();
+    harness.run_steps(60);
+    assert!(heading(&harness).top() < 500.0, "{:?}", heading(&harness));
 }

@@ -68,6 +68,6 @@ fn what_changes_with_the_estimate_moves_no_button() {
         Device::ALL.map(|device| harness.get_by_label(&Command::Device(device).name()).rect())
     };
     let before = places(&harness);
-    until_seen(&mut harness, "RMSE 0.0001 in");
+    until_seen(&mut harness, "0.0001 in about");
     assert_eq!(places(&harness), before);
 }

@@ -97,9 +97,35 @@ fn failures_are_told_in_words() {
     harness.get_by_label("File name").type_text(directory.path().join("no/such/place.png").to_str().unwrap());
     harness.run_steps(2);
     harness.key_press(Key::Enter);
-    until(&mut harness, "refused", |window| {
-        window.messages().iter().any(|text| text.starts_with("Not saved"))
-    });
+    harness.run_steps(3);
+    assert!(harness.state().has_dialog(), "the name can be corrected");
+    assert!(harness.query_by_label_contains("such does not exist: create it").is_some());
+    assert_eq!(harness.state_mut().remembered_mut().directory, None, "the next dialog does not start there");
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+}
+
+/// A file that would be lost is a warning, and the button says so.
+#[test]
+fn a_file_is_replaced_only_with_a_warning() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("mine.png");
+    std::fs::write(&path, "mine").unwrap();
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    send(&mut harness, Command::Save(OutputFormat::Png));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Replace").is_none());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("exists and will be replaced").is_some());
+    harness.get_by_label("Replace").click();
+    let saved = format!("Saved {}", path.display());
+    until(&mut harness, &saved, |window| window.messages().contains(&saved));
+    assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
+    assert_eq!(harness.state_mut().remembered_mut().directory.as_deref(), Some(directory.path()));
 }
 
 /// A picture that says nothing about how it was made is checked as a reader's own.
@@ -145,4 +171,46 @@ fn the_command_is_copied() {
         copied.starts_with("weekender --batch --stage=glass-schlick --size=32x18 --samples="),
         "{copied}"
     );
+}
+
+/// A loaded film that the picture's film equals, bit by bit.
+#[test]
+fn an_identical_film_is_said_to_be_identical() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut harness = open("--stage defocus --size 48x27 --samples 40");
+    until(&mut harness, "the end", has_samples(40));
+    let path = directory.path().join("same.exr");
+    save(&mut harness, OutputFormat::Exr, &path);
+    let painted = |harness: &egui_kittest::Harness<'_, weekender::app::Window>, text: &str| {
+        harness.output().shapes.iter().any(|clipped| {
+            matches!(&clipped.shape, egui::Shape::Text(painted) if painted.galley.text().contains(text))
+        })
+    };
+    send(&mut harness, Command::LoadReference);
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    until(&mut harness, "the difference", |window| window.show() == weekender::app::Show::Difference);
+    for _ in 0..200 {
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(painted(&harness, "identical to the bit") && painted(&harness, "|difference|"));
+    harness.event(egui::Event::PointerMoved(harness.get_by_label("Picture").rect().center()));
+    harness.run_steps(10);
+    for text in ["A, this", "B, other", "A − B"] {
+        assert!(harness.query_by_label(text).is_some(), "{text}");
+    }
+    // Another seed is another film.
+    harness.state_mut().document_mut().settings.seed = 5;
+    harness.run_steps(3);
+    until(&mut harness, "the end", has_samples(40));
+    for _ in 0..50 {
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(!painted(&harness, "identical to the bit"));
 }

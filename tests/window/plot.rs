@@ -117,3 +117,24 @@ fn the_points_are_copied_and_saved() {
     assert_eq!(std::fs::read_to_string(&path).unwrap(), copied);
     assert!(has_nothing || copied.lines().count() > 1);
 }
+
+/// A render that has ended offers the next round error, and goes on to it.
+#[test]
+fn a_render_goes_on_to_the_next_round_error() {
+    let mut harness = open("--scene three-spheres --size 64x36 --device cpu --noise-target 0.02");
+    until(&mut harness, "the end", |window| window.status().phase.is_over());
+    harness.run_steps(2);
+    let (run, done) = (harness.state().status().run, harness.state().status().samples_per_pixel);
+    let button = harness.get_by_label_contains("Go on to");
+    let words = egui_kittest::kittest::NodeT::accesskit_node(&button).label().unwrap();
+    let next: f64 = words.trim_start_matches("Go on to ").parse().unwrap();
+    assert!(next < 0.02, "{words}");
+    button.click();
+    harness.run_steps(2);
+    assert_eq!(target(&harness), next);
+    until(&mut harness, "the next end", |window| {
+        window.status().samples_per_pixel > done && window.status().phase.is_over()
+    });
+    assert_eq!(harness.state().status().run, run, "the same film");
+    assert!(harness.state().status().error.unwrap().rmse <= next);
+}

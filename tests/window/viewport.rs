@@ -296,3 +296,52 @@ fn the_menu_of_a_right_click_is_about_what_is_there() {
     choose(&mut harness, "List the paths of this pixel");
     until(&mut harness, "sixteen paths", |window| window.listed_paths() == 16);
 }
+
+#[test]
+fn a_key_lists_the_paths_of_the_pixel_under_the_pointer() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    assert!(harness.state().disabled_reason(Command::ListPaths).is_some());
+    let at = middle(&harness);
+    harness.event(egui::Event::PointerMoved(at));
+    harness.run_steps(2);
+    harness.key_press(Key::T);
+    until(&mut harness, "sixteen paths", |window| window.listed_paths() == 16);
+}
+
+#[test]
+fn escape_leaves_a_comparison_and_a_view() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    for command in [Command::WipeDifference, Command::Wipe, Command::Show(Show::Error)] {
+        send(&mut harness, command);
+        harness.run_steps(5);
+        let is_other = |window: &Window| window.is_comparing() || window.show() != Show::Picture;
+        assert!(is_other(harness.state()), "{command:?}");
+        harness.key_press(Key::Escape);
+        harness.run_steps(3);
+        assert!(!is_other(harness.state()), "{command:?}");
+    }
+}
+
+/// A click counts although a frame took long between press and release.
+#[test]
+fn a_click_in_a_long_frame_is_not_lost() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    let pos = control(&harness, &Command::Device(weekender::app::Device::Reference).name()).rect().center();
+    let button = |pressed| egui::Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    harness.event(egui::Event::PointerMoved(pos));
+    harness.step();
+    harness.event(button(true));
+    harness.step();
+    harness.input_mut().time = Some(harness.ctx.input(|input| input.time) + 3.0);
+    harness.event(button(false));
+    harness.run_steps(2);
+    assert_eq!(harness.state_mut().remembered_mut().device, weekender::app::Device::Reference);
+}

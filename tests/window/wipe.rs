@@ -1,6 +1,6 @@
 //! Two pictures on the two sides of a divider.
 
-use crate::common::{drag_from, has_samples, send, until, window};
+use crate::common::{drag_from, has_samples, open, send, until, window};
 use eframe::egui::{Pos2, Vec2, vec2};
 use egui_kittest::Harness;
 use std::time::{Duration, Instant};
@@ -30,7 +30,7 @@ fn is_near(a: [u8; 3], b: [u8; 3]) -> bool {
 }
 
 #[test]
-fn the_own_picture_is_left_of_the_divider_and_the_other_right_of_it() {
+fn the_earlier_stage_is_left_of_the_divider() {
     let mut harness =
         Harness::builder().with_size([1000.0, 700.0]).with_step_dt(1.0 / 60.0).wgpu().build_ui_state(
             |ui, window: &mut Window| window.ui_in(ui),
@@ -55,24 +55,40 @@ fn the_own_picture_is_left_of_the_divider_and_the_other_right_of_it() {
     until(&mut harness, "a picture", has_samples(16));
     send(&mut harness, Command::Wipe);
     until(&mut harness, "two pictures", |window| window.has_other_picture());
-    // The second picture will soon have its samples.
-    let begin = Instant::now();
-    let mut found = places.map(|at| colour_at(&mut harness, at));
-    while !is_near(found[2], theirs[2]) && begin.elapsed() < Duration::from_secs(20) {
-        std::thread::sleep(Duration::from_millis(20));
-        harness.run_steps(2);
-        found = places.map(|at| colour_at(&mut harness, at));
+    let is_theirs = |found: [[u8; 3]; 3]| {
+        [0, 1, 2].map(|i| {
+            assert!(is_near(found[i], mine[i]) != is_near(found[i], theirs[i]), "{found:?}");
+            is_near(found[i], theirs[i])
+        })
+    };
+    // The other stage is the earlier one: it ends at the divider.
+    for (share, expected) in [(0.25, [true, false, false]), (0.6, [true, true, false])] {
+        let begin = Instant::now();
+        while begin.elapsed() < Duration::from_secs(2) {
+            std::thread::sleep(Duration::from_millis(20));
+            harness.run_steps(2);
+        }
+        let at = harness.state().divider();
+        let knob = rect.lerp_inside(vec2(at, 0.5));
+        drag_from(&mut harness, knob, Vec2::new((share - at) * rect.width(), 0.0));
+        harness.run_steps(5);
+        let found = places.map(|at| colour_at(&mut harness, at));
+        assert_eq!(is_theirs(found), expected, "{found:?}");
     }
-    let is_mine =
-        |found: [[u8; 3]; 3]| [0, 1, 2].map(|i| (is_near(found[i], mine[i]), is_near(found[i], theirs[i])));
-    assert_eq!(is_mine(found), [(true, false), (true, false), (false, true)], "{found:?}");
+}
 
-    // With the divider at a quarter, the other picture starts there.
-    let knob = rect.center();
-    drag_from(&mut harness, knob, Vec2::new(-0.25 * rect.width(), 0.0));
-    harness.run_steps(5);
-    std::thread::sleep(Duration::from_millis(200));
-    harness.run_steps(5);
-    let found = places.map(|at| colour_at(&mut harness, at));
-    assert_eq!(is_mine(found), [(true, false), (false, true), (false, true)], "{found:?}");
+/// Glass with and without Schlick's formula differs at the rim of the left ball, so a wipe begins there.
+#[test]
+fn a_wipe_begins_where_the_stages_differ() {
+    let mut harness = open("--stage glass-schlick --size 160x90 --samples 64");
+    until(&mut harness, "a picture", has_samples(16));
+    send(&mut harness, Command::Wipe);
+    until(&mut harness, "a divider on the left ball", |window| window.divider() < 0.45);
+    let at = harness.state().divider();
+    assert!(at > 0.05, "{at}");
+    // It is placed once: a drag stays.
+    let rect = harness.state().picture_rect();
+    drag_from(&mut harness, rect.lerp_inside(vec2(at, 0.5)), vec2((0.8 - at) * rect.width(), 0.0));
+    harness.run_steps(30);
+    assert!((harness.state().divider() - 0.8).abs() < 0.02);
 }

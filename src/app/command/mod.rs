@@ -99,6 +99,10 @@ pub enum Command {
     ZoomIn,
     /// Zoom out around the middle.
     ZoomOut,
+    /// Give the keyboard focus to the next panel.
+    NextPanel,
+    /// List the paths of the pixel under the pointer.
+    ListPaths,
     /// Show or hide all panels.
     Panels,
     /// Show or hide the left panel.
@@ -119,6 +123,8 @@ pub enum Command {
     Theme(Theme),
     /// Pause or continue.
     Pause,
+    /// Go on after the end, to a lower error or more samples.
+    GoOn,
     /// Render again from the beginning.
     Restart,
     /// Switch between CPU and GPU.
@@ -170,9 +176,20 @@ impl Command {
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
         all.extend(self::Show::ALL.map(Show));
         all.extend([Wipe, WipeDifference, Brighter, Darker, NoExposure, Fit, ActualSize, ZoomIn, ZoomOut]);
-        all.extend([NextRay, PreviousRay, Panels, Controls, Info, Plot, Packet, FullScreen]);
+        all.extend([
+            ListPaths,
+            NextRay,
+            PreviousRay,
+            Panels,
+            Controls,
+            Info,
+            Plot,
+            Packet,
+            NextPanel,
+            FullScreen,
+        ]);
         all.extend(self::Theme::ALL.map(Theme));
-        all.extend([Pause, Restart, SwitchDevice]);
+        all.extend([Pause, GoOn, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
         all.extend([PreviousStage, NextStage, Code, Book, Companion]);
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
@@ -202,7 +219,11 @@ impl Command {
             Command::Undo | Command::Redo | Command::Home | Command::ResetAll | Command::AddBookmark => {
                 Group::Edit
             }
-            Command::Pause | Command::Restart | Command::SwitchDevice | Command::Device(_) => Group::Render,
+            Command::Pause
+            | Command::GoOn
+            | Command::Restart
+            | Command::SwitchDevice
+            | Command::Device(_) => Group::Render,
             Command::PreviousStage
             | Command::NextStage
             | Command::Stage(_)
@@ -260,6 +281,8 @@ impl Command {
             Command::Info => key(Key::I),
             Command::Plot => key(Key::P),
             Command::Packet => key(Key::N),
+            Command::NextPanel => key(Key::F6),
+            Command::ListPaths => key(Key::T),
             Command::FullScreen => key(Key::F11),
             Command::NextRay => key(Key::ArrowRight),
             Command::PreviousRay => key(Key::ArrowLeft),

@@ -13,10 +13,10 @@ const MOUSE: [(&str, &str); 12] = [
     ("Click", "focus on what is there"),
     ("Double click", "look at what is there"),
     ("Right click", "a menu of what is there"),
-    ("Alt and click", "list the paths of a pixel"),
+    ("T; Alt and click", "list the paths of a pixel"),
     ("W A S D, Q E", "fly; with Shift fast"),
     ("Drop a file", "open a picture, film or scene"),
-    ("F6", "go to the controls"),
+    ("Escape", "leave a control, a comparison or a view, full screen"),
 ];
 
 /// Windows narrower than this many points get only one column.

@@ -59,7 +59,9 @@ impl Dialogs {
             let width = if matches!(dialog, Dialog::Help) { 700.0 } else { 560.0 };
             ui.set_max_width((room.x - 40.0).min(width));
             match dialog {
-                Dialog::Palette(palette) => palette.ui(ui, facts, commands),
+                Dialog::Palette(palette) => {
+                    palette.ui(ui, (room.y - 140.0).clamp(100.0, 360.0), facts, commands)
+                }
                 Dialog::Help => help::ui(ui, (room.y - 140.0).max(100.0)),
                 Dialog::Path(path_box) => path_box.ui(ui, &self.browsed),
             }

@@ -37,7 +37,14 @@ impl Palette {
         Palette { text, chosen: 0 }
     }
 
-    pub(super) fn ui(&mut self, ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) -> Outcome {
+    /// Draws the dialog. The list has the same `height`, however many commands match, so that nothing moves.
+    pub(super) fn ui(
+        &mut self,
+        ui: &mut Ui,
+        height: f32,
+        facts: &Facts,
+        commands: &mut Vec<Command>,
+    ) -> Outcome {
         ui.set_width(ui.available_width());
         let (up, down, enter) = ui.input_mut(|input| {
             (
@@ -64,13 +71,15 @@ impl Palette {
         }
         let mut run = enter.then(|| found.get(self.chosen).copied()).flatten();
         ui.add_space(6.0);
-        egui::ScrollArea::vertical().max_height(360.0).auto_shrink([false, true]).show(ui, |ui| {
+        let list =
+            egui::ScrollArea::vertical().min_scrolled_height(height).max_height(height).auto_shrink(false);
+        list.show(ui, |ui| {
             if found.is_empty() {
                 ui.label(RichText::new("No command matches").color(ui.visuals().weak_text_color()));
             }
             for (index, command) in found.iter().enumerate() {
                 let disabled_reason = facts.disabled_reason(*command);
-                let button = line(ui, *command, index == self.chosen);
+                let button = line(ui, *command, command.name(), index == self.chosen);
                 let response =
                     ui.add_enabled(disabled_reason.is_none(), button).on_hover_text(command.help());
                 let response = response.on_disabled_hover_text(disabled_reason.unwrap_or_default());

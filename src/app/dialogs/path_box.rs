@@ -26,6 +26,17 @@ pub enum Chosen {
     NoDialog,
 }
 
+/// What a note about the path means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Tone {
+    /// The file can be used.
+    Plain,
+    /// The file exists and would be replaced.
+    Replaces,
+    /// The path cannot be used.
+    Refused,
+}
+
 /// A dialog that closes sooner than this was never visible.
 const SEEN: Duration = Duration::from_millis(300);
 
@@ -66,19 +77,29 @@ impl PathBox {
             self.select_stem(ui, response.id, output.state);
         }
         let path = self.path();
-        let note = self.note(path.as_deref());
-        let weak = ui.visuals().weak_text_color();
-        ui.label(RichText::new(note.unwrap_or_default()).small().color(weak));
+        let (note, tone) = self.note(path.as_deref());
+        let (refused, replaces) = (tone == Tone::Refused, tone == Tone::Replaces);
+        let visuals = ui.visuals();
+        let words = RichText::new(note);
+        let words = match tone {
+            Tone::Plain => words.small().color(visuals.weak_text_color()),
+            Tone::Replaces => words.color(visuals.warn_fg_color).strong(),
+            Tone::Refused => words.color(visuals.error_fg_color),
+        };
+        ui.add(egui::Label::new(words).wrap());
         ui.add_space(8.0);
         let is_enter = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let mut outcome = Outcome::Stay;
         ui.horizontal(|ui| {
-            let button = egui::Button::new(self.purpose.button()).min_size(egui::vec2(72.0, 0.0));
+            let label = if replaces { "Replace" } else { self.purpose.button() };
+            let button = egui::Button::new(label).min_size(egui::vec2(72.0, 0.0));
             let is_pressed = ui
-                .add_enabled(path.is_some(), button)
-                .on_disabled_hover_text("Type a file's name first")
+                .add_enabled(path.is_some() && !refused, button)
+                .on_disabled_hover_text(if refused { "See above" } else { "Type a file's name first" })
                 .clicked();
-            if let Some(path) = path.filter(|_| is_pressed || is_enter) {
+            if is_enter && refused {
+                response.request_focus();
+            } else if let Some(path) = path.filter(|_| is_pressed || is_enter) {
                 outcome = Outcome::Named(self.purpose, path);
             }
             if ui.button("Cancel").clicked() {
@@ -102,15 +123,24 @@ impl PathBox {
         (!text.is_empty()).then(|| self.purpose.with_ending(text.into()))
     }
 
-    fn note(&self, path: Option<&Path>) -> Option<String> {
-        let path = path?;
+    /// What is said about the path.
+    fn note(&self, path: Option<&Path>) -> (String, Tone) {
+        let Some(path) = path else { return (String::new(), Tone::Plain) };
         let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-        match (self.purpose.is_saving(), path.exists()) {
-            (true, true) => Some(format!("{} exists and will be replaced", whole.display())),
-            (true, false) if whole == path => Some("A new file".to_owned()),
-            (true, false) => Some(whole.display().to_string()),
-            (false, true) => None,
-            (false, false) => Some(format!("{} does not exist", whole.display())),
+        let missing = whole.parent().filter(|directory| !directory.is_dir());
+        match (self.purpose.is_saving(), path.exists(), missing) {
+            (true, _, Some(directory)) => {
+                let words = "does not exist: create it, or choose another folder";
+                (format!("The folder {} {words}", directory.display()), Tone::Refused)
+            }
+            (_, true, _) if path.is_dir() => {
+                (format!("{} is a folder: add a file's name", whole.display()), Tone::Refused)
+            }
+            (true, true, _) => (format!("{} exists and will be replaced", whole.display()), Tone::Replaces),
+            (true, false, _) if whole == path => ("A new file".to_owned(), Tone::Plain),
+            (true, false, _) => (whole.display().to_string(), Tone::Plain),
+            (false, true, _) => (String::new(), Tone::Plain),
+            (false, false, _) => (format!("{} does not exist", whole.display()), Tone::Refused),
         }
     }
 
@@ -181,6 +211,24 @@ mod tests {
         assert_eq!(typed(png, "v1.2"), Some("v1.2.png".into()));
         assert_eq!(typed(png, "  "), None);
         assert_eq!(typed(Purpose::Open, "a"), Some("a".into()));
+    }
+
+    #[test]
+    fn what_would_happen_is_told_first() {
+        let directory = tempfile::tempdir().unwrap();
+        let png = Purpose::Save(OutputFormat::Png);
+        let tone = |purpose, name: &str| {
+            let path = directory.path().join(name);
+            PathBox::of(purpose, &path).note(Some(&path)).1
+        };
+        assert_eq!(tone(png, "a.png"), Tone::Plain);
+        std::fs::write(directory.path().join("a.png"), "").unwrap();
+        std::fs::create_dir(directory.path().join("b.png")).unwrap();
+        assert_eq!(tone(png, "a.png"), Tone::Replaces);
+        assert_eq!(tone(png, "b.png"), Tone::Refused);
+        assert_eq!(tone(png, "no/a.png"), Tone::Refused);
+        assert_eq!(tone(Purpose::Open, "a.png"), Tone::Plain);
+        assert_eq!(tone(Purpose::Open, "c.png"), Tone::Refused);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 pub mod command_line;
 pub mod device;
 pub mod document;
+pub mod further;
 pub mod origin;
 pub mod remembered;
 pub mod show;

@@ -104,7 +104,8 @@ impl Show {
         match self {
             Show::Luminance => Some(tone.scale()),
             Show::Bounces => Some(HeatScale::RAYS),
-            Show::Error | Show::Difference => Some(HeatScale::ERROR),
+            Show::Error => Some(HeatScale::ERROR),
+            Show::Difference => Some(HeatScale::DIFFERENCE),
             Show::Occupancy => Some(HeatScale::OCCUPANCY),
             Show::Picture | Show::Normals | Show::Albedo => None,
         }

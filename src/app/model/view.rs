@@ -60,6 +60,8 @@ pub struct ViewState {
     pub divider: f32,
     /// How bright the picture is shown.
     pub tone: Tone,
+    /// The divider waits to be put where the pictures differ most.
+    pub is_divider_unplaced: bool,
     /// A loaded film to compare with.
     pub reference: Option<Arc<ReferenceMeans>>,
 }
@@ -73,6 +75,7 @@ impl Default for ViewState {
             is_with_next: false,
             divider: 0.5,
             tone: Tone::default(),
+            is_divider_unplaced: false,
             reference: None,
         }
     }
@@ -110,6 +113,7 @@ impl ViewState {
         let is_on = self.mode == Some(mode) && self.is_by_book == is_by_book;
         self.show = Show::Picture;
         self.mode = if is_on { None } else { Some(mode) };
+        (self.divider, self.is_divider_unplaced) = (0.5, self.mode == Some(Mode::Wipe));
         self.is_by_book = is_by_book;
     }
 
@@ -145,6 +149,26 @@ impl ViewState {
     /// Whether `document` and the other picture differ in their cameras, so that each keeps its own.
     pub fn has_other_camera(&self, document: &Document) -> bool {
         !self.is_by_book && document.stage().is_some_and(|stage| self.is_of_cameras(stage))
+    }
+
+    /// Whether the other picture is an earlier stage of the book, which a wipe shows at the left.
+    pub fn is_other_earlier(&self, document: &Document) -> bool {
+        match (document.stage(), self.compared(document)) {
+            (Some(mine), Some(Other::Stage(other))) => other.index() < mine.index(),
+            _ => false,
+        }
+    }
+
+    /// The film that the shown difference is taken from, if a difference is shown; `other` is the second picture's.
+    pub fn subtracted<'a>(
+        &'a self,
+        other: Option<&'a Arc<ReferenceMeans>>,
+    ) -> Option<&'a Arc<ReferenceMeans>> {
+        match (self.mode, self.show) {
+            (Some(Mode::Difference), _) => other,
+            (None, Show::Difference) => self.reference.as_ref(),
+            _ => None,
+        }
     }
 
     /// The stage that `stage` is compared with.
@@ -199,7 +223,7 @@ mod tests {
 
     #[test]
     fn one_thing_at_a_time_is_looked_at() {
-        let film = Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.0; 3]] });
+        let film = Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.0; 3]], identity: None });
         let mut view = ViewState { reference: Some(Arc::clone(&film)), ..ViewState::default() };
         view.choose(Show::Error);
         assert_eq!((view.show(), view.of_film(None)), (Show::Error, View::StandardError));

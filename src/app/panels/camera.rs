@@ -6,10 +6,14 @@ use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::model::remembered::Bookmark;
 use crate::app::widgets::{About, slider, vector};
-use crate::scene::Camera;
-use eframe::egui::{self, Ui};
+use crate::scene::{Camera, LENGTH_LIMIT, VFOV_LIMITS_DEGREES};
+use eframe::egui::Ui;
+use std::ops::RangeInclusive;
 
 pub(super) const RESET: Reset = Reset { is_changed, reset };
+
+/// What a coordinate can be, scene units.
+const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
 
 fn placed(camera: &Camera) -> (glam::DVec3, glam::DVec3, glam::DVec3, f64) {
     (camera.look_from, camera.look_at, camera.vup, camera.vfov_degrees)
@@ -39,23 +43,28 @@ pub(super) fn ui(
         ui,
         about("Look from", "Position of the eye, scene units (look_from)"),
         &mut camera.look_from,
+        POSITIONS,
         speed,
     );
     vector(
         ui,
         about("Look at", "A point in the middle of the picture, scene units (look_at)"),
         &mut camera.look_at,
+        POSITIONS,
         speed,
     );
     vector(
         ui,
         about("Up", "The direction that is up in the picture; its length does not matter (vup)"),
         &mut camera.vup,
+        POSITIONS,
         0.01,
     );
     let vfov = about("Field of view", "From the lower to the upper edge, degrees (vfov)");
-    slider(ui, vfov, &mut camera.vfov_degrees, 1.0..=170.0, |slider| {
-        slider.suffix("°").max_decimals(1).clamping(egui::SliderClamping::Edits)
+    let [narrowest, widest] = VFOV_LIMITS_DEGREES;
+    let limits = narrowest..=widest;
+    slider(ui, vfov, &mut camera.vfov_degrees, (limits.clone(), limits), "°", |slider| {
+        slider.max_decimals(1)
     });
     bookmarks_ui(ui, camera, bookmarks, commands);
 }

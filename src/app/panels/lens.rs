@@ -4,10 +4,13 @@ use super::reset::Reset;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::widgets::{About, check, slider};
-use crate::scene::Camera;
-use eframe::egui::{self, Ui};
+use crate::scene::{Camera, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS};
+use eframe::egui::Ui;
 
 pub(super) const RESET: Reset = Reset { is_changed, reset };
+
+/// The limit itself is excluded.
+const WIDEST_DEFOCUS_DEGREES: f64 = DEFOCUS_LIMIT_DEGREES - 0.1;
 
 fn lens(camera: &Camera) -> (f64, Option<f64>) {
     (camera.defocus_angle_degrees, camera.focus_distance)
@@ -30,10 +33,9 @@ pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
         "Defocus angle",
         "Angle of the cone from the focus point to the lens, degrees; 0 is a pinhole (defocus_angle)",
     );
-    slider(ui, defocus.disabled_if(no_rays), &mut camera.defocus_angle_degrees, 0.0..=30.0, |slider| {
-        slider.suffix("°").max_decimals(2).clamping(egui::SliderClamping::Edits)
-    });
-    camera.defocus_angle_degrees = camera.defocus_angle_degrees.min(178.9);
+    let defocus = defocus.disabled_if(no_rays);
+    let ranges = (0.0..=30.0, 0.0..=WIDEST_DEFOCUS_DEGREES);
+    slider(ui, defocus, &mut camera.defocus_angle_degrees, ranges, "°", |slider| slider.max_decimals(2));
     let pinhole = (camera.defocus_angle_degrees == 0.0)
         .then_some("A pinhole is sharp everywhere: set a defocus angle above 0");
     let disabled_reason = no_rays.or(pinhole);
@@ -47,10 +49,9 @@ pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
         "Distance to the plane in focus, scene units (focus_distance). A click on the picture sets it too",
     );
     let mut distance = camera.effective_focus_distance();
-    let slider = slider(ui, about.disabled_if(disabled_reason), &mut distance, 0.01..=1000.0, |slider| {
-        slider.logarithmic(true).max_decimals(3).clamping(egui::SliderClamping::Never)
-    });
-    if slider.changed() && distance > 0.0 {
+    let (about, ranges) = (about.disabled_if(disabled_reason), (0.01..=1000.0, FOCUS_LIMITS));
+    let slider = slider(ui, about, &mut distance, ranges, "", |slider| slider.logarithmic(true));
+    if slider.changed() {
         camera.focus_distance = Some(distance);
     }
 }

@@ -5,10 +5,10 @@ use crate::app::facts::Facts;
 use crate::app::model::device::{Device, core_count, lane_counts};
 use crate::app::model::document::Document;
 use crate::app::model::remembered::Remembered;
-use crate::app::widgets::{About, check, control, under_name, whole};
+use crate::app::widgets::{About, check, control, explained, under_name, whole, whole_number};
 use crate::render::{DEPTH_LIMIT, RenderSettings, SIZE_LIMIT, SamplerKind};
 use crate::stages::Shading;
-use eframe::egui::{self, ComboBox, DragValue, Ui};
+use eframe::egui::{self, ComboBox, Ui, vec2};
 
 pub(super) const RESET: Reset = Reset { is_changed, reset };
 
@@ -128,13 +128,14 @@ fn size(ui: &mut Ui, settings: &mut RenderSettings) {
     under_name(ui, about, |ui| {
         ui.horizontal(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
-            let size = [(ui.available_width() - 4.0) / 2.0, ui.spacing().interact_size.y];
+            let size = vec2((ui.available_width() - 4.0) / 2.0, ui.spacing().interact_size.y);
             let mut all: Option<egui::Response> = None;
             for (name, pixels) in [("Width", &mut settings.width), ("Height", &mut settings.height)] {
-                let drag =
-                    DragValue::new(pixels).range(1..=SIZE_LIMIT).speed(2.0).update_while_editing(false);
-                let response = ui.add_sized(size, drag).accessible_name(name);
-                let response = response.on_hover_text(format!("{name}, pixels"));
+                let (mut count, range) = (u64::from(*pixels), 1..=u64::from(SIZE_LIMIT));
+                let response = whole_number(ui, (name, size), &mut count, range, |drag| drag.speed(2.0));
+                *pixels = u32::try_from(count).unwrap_or(SIZE_LIMIT);
+                let help = format!("{name}, pixels");
+                let response = explained(ui, response, About::new(name, &help));
                 all = Some(match all {
                     Some(earlier) => earlier.union(response),
                     None => response,

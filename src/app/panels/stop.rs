@@ -3,10 +3,10 @@
 use super::reset::Reset;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
-use crate::app::widgets::{About, check, limit};
+use crate::app::widgets::{About, check, explained, number, whole_number};
 use crate::progressive::Stop;
 use crate::render::SAMPLE_LIMIT;
-use eframe::egui::{DragValue, Ui};
+use eframe::egui::{Response, Ui, Vec2, vec2};
 
 pub(super) const RESET: Reset = Reset { is_changed, reset };
 
@@ -32,30 +32,24 @@ pub(super) fn ui(ui: &mut Ui, stop: &mut Stop, facts: &Facts) {
         "Samples per pixel; without a limit the render does not end by itself",
         None,
         &mut has_samples,
-        |ui| {
-            ui.add(
-                DragValue::new(&mut samples)
-                    .range(1..=SAMPLE_LIMIT)
-                    .speed(1.0)
-                    .suffix(" spp")
-                    .update_while_editing(false),
-            )
+        |ui, place| {
+            whole_number(ui, place, &mut samples, 1..=SAMPLE_LIMIT, |drag| drag.speed(1.0).suffix(" spp"))
         },
     );
     stop.samples = has_samples.then_some(samples);
 
     let mut has_seconds = stop.seconds.is_some();
     let mut seconds = stop.seconds.unwrap_or(10.0);
-    row(ui, "Time", "Seconds of tracing", None, &mut has_seconds, |ui| {
-        limit(ui, &mut seconds, |drag| drag.range(0.1..=1e6).speed(0.5).max_decimals(1).suffix(" s"))
+    row(ui, "Time", "Seconds of tracing", None, &mut has_seconds, |ui, place| {
+        number(ui, place, &mut seconds, 0.1..=1e6, |drag| drag.speed(0.5).max_decimals(1).suffix(" s"))
     });
     stop.seconds = has_seconds.then_some(seconds);
 
     let mut has_noise = stop.noise.is_some();
     let mut noise = stop.noise.unwrap_or(Stop::NOISE);
     let help = "Estimated error: root of the mean square over pixels and channels, linear radiance";
-    row(ui, "Error", help, one_half, &mut has_noise, |ui| {
-        limit(ui, &mut noise, |drag| drag.range(1e-6..=1.0).speed(1e-4).max_decimals(6))
+    row(ui, "Error", help, one_half, &mut has_noise, |ui, place| {
+        number(ui, place, &mut noise, 1e-6..=1.0, |drag| drag.speed(1e-4).max_decimals(6))
     });
     stop.noise = has_noise.then_some(noise);
 }
@@ -67,17 +61,17 @@ fn row(
     help: &str,
     disabled_reason: Option<&str>,
     is_on: &mut bool,
-    number: impl FnOnce(&mut Ui) -> eframe::egui::Response,
+    number: impl FnOnce(&mut Ui, (&str, Vec2)) -> Response,
 ) {
     ui.columns(2, |columns| {
         let about = About::new(name, help).disabled_if(disabled_reason);
         check(&mut columns[0], about, is_on);
         let is_useful = *is_on && disabled_reason.is_none();
         columns[1].add_enabled_ui(is_useful, |ui| {
-            number(ui)
-                .accessible_name(format!("{name} limit"))
-                .on_hover_text(help)
-                .on_disabled_hover_text(disabled_reason.unwrap_or("Tick the box beside it first"));
+            let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+            let response = number(ui, (&format!("{name} limit"), size));
+            let about = about.disabled_if(disabled_reason.or(Some("Tick the box beside it first")));
+            explained(ui, response, about);
         });
     });
 }

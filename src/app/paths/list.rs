@@ -16,7 +16,7 @@ impl Paths {
             let text = if self.is_waiting {
                 "Recording paths…"
             } else {
-                "Alt-click or right-click lists the paths of a pixel."
+                "T lists the paths of the pixel under the pointer; so do Alt-click and right-click."
             };
             ui.label(RichText::new(text).color(weak).small());
             return;
@@ -49,7 +49,7 @@ impl Paths {
             is_cleared = clear.accessible_name("Clear paths").clicked();
         });
         if listed.document.camera != document.camera {
-            let text = "Listed with an earlier camera; Alt-click lists them again.";
+            let text = "Listed with an earlier camera; T lists those of the pixel under the pointer.";
             ui.add(egui::Label::new(RichText::new(text).small().color(weak)).wrap());
         }
         for (index, path) in listed.paths.iter().enumerate() {

@@ -5,7 +5,9 @@ use crate::app::model::document::Document;
 use crate::app::theme;
 use crate::explain::{Event, Lobe, Step};
 use crate::scene::Camera;
-use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, TextStyle, Ui, vec2};
+use eframe::egui::{
+    Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, TextStyle, Ui, vec2,
+};
 use glam::DVec3;
 
 /// The length at which a ray to the sky is drawn, in scene units.
@@ -156,7 +158,8 @@ impl View<'_> {
             let (number, corner) = ((index + 1).to_string(), at + vec2(7.0, -6.0));
             let place = painter.layout_no_wrap(number.clone(), font.clone(), Color32::WHITE).size();
             let behind = Rect::from_min_size(corner - vec2(0.0, place.y), place).expand2(vec2(3.0, 1.0));
-            painter.rect_filled(behind, 3.0, Color32::from_black_alpha(190));
+            painter.rect_filled(behind, 3.0, Color32::from_black_alpha(235));
+            painter.rect_stroke(behind, 3.0, Stroke::new(1.0, Color32::WHITE), StrokeKind::Outside);
             painter.text(corner, Align2::LEFT_BOTTOM, number, font.clone(), Color32::WHITE);
         }
     }

@@ -259,7 +259,7 @@ impl Spot {
         match self {
             Spot::Focus => ["Focus on this", "Click"],
             Spot::Centre => ["Look at this", "Double click"],
-            Spot::Paths => ["List the paths of this pixel", "Alt and click"],
+            Spot::Paths => ["List the paths of this pixel", "T"],
         }
     }
 }

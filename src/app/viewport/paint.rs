@@ -37,6 +37,8 @@ pub struct Pictures<'a> {
     pub paths: &'a Paths,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
+    /// What the user should know about the picture.
+    pub notices: Vec<String>,
 }
 
 /// Draws the picture at `rect`, within `room`.
@@ -57,7 +59,7 @@ pub(super) fn paint(
         if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     };
     let context = ui.ctx();
-    let Pictures { main, has_film, second, paths, values } = pictures;
+    let Pictures { main, has_film, second, paths, values, notices } = pictures;
     let second = second.map(|(texture, divisor, title)| (texture.id(context, options(divisor)), title));
     let main = main.map(|(texture, divisor)| (texture.id(context, options(divisor)), divisor));
     // The hole is one point smaller, so that no gap stays between picture and background.
@@ -73,10 +75,11 @@ pub(super) fn paint(
     {
         let whose = if view.has_other_camera(document) { ", with its own camera" } else { "" };
         let titles = [document.title(), format!("{title}{whose}")];
-        paint_wipe(ui, &painter, rect, divider, texture, &titles);
+        let is_left = view.is_other_earlier(document);
+        paint_wipe(ui, &painter, rect, divider, (texture, is_left), &titles);
     }
     let is_difference = view.mode() == Some(Mode::Difference);
-    let scale = if is_difference { Some(HeatScale::ERROR) } else { view.show().scale(&view.tone) };
+    let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
     if let Some(scale) = scale {
         paint_scale(ui, &painter, rect.intersect(room), &scale);
     }
@@ -84,6 +87,12 @@ pub(super) fn paint(
     if let Some((_, divisor @ 2..)) = main {
         let text = format!("preview 1/{divisor}");
         badge(ui, &painter, corners.left_top() + vec2(8.0, 8.0), Align2::LEFT_TOP, &text, &font);
+    }
+    for (row, notice) in notices.iter().enumerate() {
+        // Below the titles of a wipe.
+        let row = row + usize::from(view.mode() == Some(Mode::Wipe));
+        let at = corners.center_top() + vec2(0.0, 8.0 + 28.0 * row as f32);
+        badge(ui, &painter, at, Align2::CENTER_TOP, notice, &font);
     }
     if !has_film {
         let text = match (&facts.invalid, &facts.status.phase) {
@@ -122,19 +131,21 @@ fn fill_around(painter: &egui::Painter, room: Rect, hole: Rect, colour: Color32)
     }
 }
 
-/// Draws the second picture to the right of the divider, and labels both sides.
+/// Draws the second picture to the left or right of the divider, and labels both sides.
 fn paint_wipe(
     ui: &Ui,
     painter: &egui::Painter,
     rect: Rect,
     share: f32,
-    texture: egui::TextureId,
+    (texture, is_left): (egui::TextureId, bool),
     [mine, theirs]: &[String; 2],
 ) {
     let x = rect.left() + rect.width() * share;
-    let right = Rect::from_min_max(pos2(x, rect.top()), rect.max);
-    let uv = Rect::from_min_max(pos2(share, 0.0), pos2(1.0, 1.0));
-    painter.image(texture, right, uv, Color32::WHITE);
+    let shares = if is_left { [0.0, share] } else { [share, 1.0] };
+    let uv = Rect::from_x_y_ranges(shares[0]..=shares[1], 0.0..=1.0);
+    let [from, to] = shares.map(|share| rect.left() + rect.width() * share);
+    painter.image(texture, Rect::from_x_y_ranges(from..=to, rect.y_range()), uv, Color32::WHITE);
+    let [left, right] = if is_left { [theirs, mine] } else { [mine, theirs] };
     painter.vline(x, rect.y_range(), Stroke::new(3.0, Color32::from_black_alpha(120)));
     painter.vline(x, rect.y_range(), Stroke::new(1.5, Color32::WHITE));
     let knob = pos2(x, rect.center().y);
@@ -149,8 +160,8 @@ fn paint_wipe(
     // Labels are clipped at the picture's edges.
     let painter = &painter.with_clip_rect(rect.intersect(painter.clip_rect()));
     let font = TextStyle::Body.resolve(ui.style());
-    badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, mine, &font);
-    badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, theirs, &font);
+    badge(ui, painter, pos2(x - 14.0, y), Align2::RIGHT_TOP, left, &font);
+    badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, right, &font);
 }
 
 /// Draws the legend of a heat map.
@@ -259,17 +270,19 @@ mod tests {
     fn each_side_of_a_wipe_has_its_own_title() {
         let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 400.0));
         let titles = ["mine", "theirs"].map(str::to_owned);
-        let harness = Harness::builder().with_size(rect.size()).build_ui(|ui| {
-            let painter = ui.painter().with_clip_rect(rect);
-            paint_wipe(ui, &painter, rect, 0.25, egui::TextureId::default(), &titles);
-        });
-        let left_of = |title: &str| {
-            let place = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
-                egui::Shape::Text(text) if text.galley.text() == title => Some(text.pos.x),
-                _ => None,
+        for is_left in [false, true] {
+            let harness = Harness::builder().with_size(rect.size()).build_ui(|ui| {
+                let painter = ui.painter().with_clip_rect(rect);
+                paint_wipe(ui, &painter, rect, 0.25, (egui::TextureId::default(), is_left), &titles);
             });
-            place.unwrap() < 200.0
-        };
-        assert_eq!([left_of("mine"), left_of("theirs")], [true, false]);
+            let left_of = |title: &str| {
+                let place = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+                    egui::Shape::Text(text) if text.galley.text() == title => Some(text.pos.x),
+                    _ => None,
+                });
+                place.unwrap() < 200.0
+            };
+            assert_eq!([left_of("mine"), left_of("theirs")], [!is_left, is_left]);
+        }
     }
 }

@@ -58,6 +58,7 @@ impl Render {
                 self.sizer.restart();
             }
             Err(reason) => {
+                self.status.given_up.push(pending.choice.name());
                 self.status.say(vec![format!("{reason}; the {} continues", self.choice.name())]);
             }
         }
@@ -84,6 +85,7 @@ impl Render {
         // What was not in the film is lost, and is rendered again.
         self.requested = self.film.samples().clone();
         self.failed.push(self.choice.clone());
+        self.status.given_up.push(self.choice.name());
         match BackendChoice::fallback(&self.failed) {
             Some(fallback) => {
                 let name = fallback.words();

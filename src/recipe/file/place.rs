@@ -97,6 +97,7 @@ pub(super) fn path_of(error: &JobError) -> Vec<Step> {
         JobError::Size { what, .. } => keys(&["render", what]),
         JobError::Depth { .. } => keys(&["render", "max_depth"]),
         JobError::Scene(SceneError::NoDirection { .. }) => keys(&["camera", "look_at"]),
+        JobError::Scene(SceneError::NoUp { .. }) => keys(&["camera", "vup"]),
         JobError::Scene(SceneError::DuplicateMaterial { name }) => keys(&["materials", name]),
         JobError::Scene(SceneError::MissingMaterial { sphere, .. }) => {
             vec![Step::Key("spheres".to_owned()), Step::Index(*sphere), Step::Key("material".to_owned())]

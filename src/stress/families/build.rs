@@ -50,7 +50,9 @@ pub fn scene(balls: impl IntoIterator<Item = Ball>, sky: Sky) -> Scene {
 
 /// A camera with a vertical field of view in degrees.
 pub fn eye(look_from: DVec3, look_at: DVec3, vfov_degrees: f64) -> Camera {
-    Camera { look_from, look_at, vfov_degrees, ..Camera::BOOK }
+    let view = look_at - look_from;
+    let vup = if view.x == 0.0 && view.z == 0.0 { DVec3::X } else { DVec3::Y };
+    Camera { look_from, look_at, vup, vfov_degrees, ..Camera::BOOK }
 }
 
 /// A small picture of these balls under a white sky, with paths of up to 50 rays.

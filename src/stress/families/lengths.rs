@@ -114,9 +114,9 @@ pub fn lenses() -> Vec<Case> {
             }),
         ),
         (
-            "up-along-the-view",
-            "the up vector points along the view",
-            with(|camera| camera.vup = camera.look_at - camera.look_from),
+            "up-almost-along-the-view",
+            "the up vector is a millionth off the view",
+            with(|camera| camera.vup = camera.look_at - camera.look_from + 1e-6 * DVec3::Y),
         ),
     ];
     let mut cases: Vec<Case> = cases

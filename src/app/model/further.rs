@@ -1,0 +1,99 @@
+//! How a render that has ended can go on.
+
+use super::document::Document;
+use crate::progressive::{EndReason, Phase, Status, Stop};
+use crate::render::SAMPLE_LIMIT;
+use crate::stages::Shading;
+
+/// A later end of a render.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Further {
+    /// The stop conditions.
+    pub stop: Stop,
+    /// The new end, to follow "Go on to".
+    pub words: String,
+}
+
+impl Document {
+    /// The next end after the one that a render has reached; `None` while it is rendered, or if more samples would
+    /// change nothing.
+    pub fn further(&self, status: &Status) -> Option<Further> {
+        let Phase::Done(reason) = status.phase else { return None };
+        let is_random = self.rules().antialiasing || self.rules().shading == Shading::Path;
+        if !is_random || status.samples_per_pixel >= SAMPLE_LIMIT {
+            return None;
+        }
+        let stop = self.stop;
+        match reason {
+            EndReason::NoiseTarget => {
+                let reached = status.error.map_or(f64::INFINITY, |error| error.rmse).min(stop.noise?);
+                let target = next_round(reached);
+                (target > 0.0).then(|| Further {
+                    stop: Stop { noise: Some(target), ..stop },
+                    words: format!("{target}"),
+                })
+            }
+            EndReason::Samples => {
+                let samples = stop.samples?.max(status.samples_per_pixel).saturating_mul(2).min(SAMPLE_LIMIT);
+                Some(Further {
+                    stop: Stop { samples: Some(samples), ..stop },
+                    words: format!("{samples} spp"),
+                })
+            }
+            EndReason::TimeLimit => {
+                let seconds = 2.0 * stop.seconds?.max(status.elapsed.as_secs_f64().floor());
+                Some(Further { stop: Stop { seconds: Some(seconds), ..stop }, words: format!("{seconds} s") })
+            }
+            EndReason::Stopped => None,
+        }
+    }
+}
+
+/// The next number below `error` of the form 1, 2 or 5 times a power of ten, at most about half of it; 0 below 1e-6.
+fn next_round(error: f64) -> f64 {
+    let rounds = (-6..=0).rev().flat_map(|power| ["5", "2", "1"].map(|digit| format!("{digit}e{power}")));
+    // Read from text, so that .002 is the same number as when it is typed.
+    let rounds = rounds.filter_map(|text| text.parse::<f64>().ok());
+    rounds.into_iter().find(|round| *round < 0.55 * error).unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::film::ErrorEstimate;
+    use crate::stages::Stage;
+
+    fn done(reason: EndReason, rmse: f64) -> Status {
+        Status {
+            phase: Phase::Done(reason),
+            samples_per_pixel: 100,
+            error: Some(ErrorEstimate { rmse, rmse_deviation: 0.0, rel_mse: 0.0 }),
+            ..Status::default()
+        }
+    }
+
+    #[test]
+    fn the_next_error_is_round() {
+        for (error, next) in [(0.002, 0.001), (0.00199, 0.001), (0.001, 5e-4), (0.005, 0.002), (0.0003, 1e-4)]
+        {
+            assert_eq!(next_round(error), next, "{error}");
+        }
+        assert_eq!(next_round(1e-6), 0.0);
+    }
+
+    #[test]
+    fn a_render_goes_on_to_the_next_end_of_its_kind() {
+        let mut document = Document::new(Origin::of_stage(Stage::find("book").unwrap()));
+        let further = document.further(&done(EndReason::NoiseTarget, 0.00195)).unwrap();
+        assert_eq!((further.words.as_str(), further.stop.noise), ("0.001", Some(0.001)));
+        document.stop = Stop::at_samples(100);
+        let further = document.further(&done(EndReason::Samples, 0.01)).unwrap();
+        assert_eq!((further.words.as_str(), further.stop.samples), ("200 spp", Some(200)));
+        document.stop = Stop { seconds: Some(10.0), ..Stop::default() };
+        assert_eq!(document.further(&done(EndReason::TimeLimit, 0.01)).unwrap().stop.seconds, Some(20.0));
+        assert_eq!(document.further(&Status { phase: Phase::Tracing, ..Status::default() }), None);
+        let tiny = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
+        assert_eq!(tiny.further(&done(EndReason::Samples, 0.0)), None, "nothing in it is random");
+    }
+}

@@ -1,0 +1,366 @@
+//! The surfaces around the camera: a camera that moves stops at them and slides along, and a camera inside a sphere is
+//! told so.
+
+use super::answers::Answers;
+use super::model::document::Document;
+use super::model::origin::Origin;
+use crate::prepared::hierarchy::Hierarchy;
+use crate::scene::{Camera, Scene, Sphere};
+use crate::stages::Shading;
+use eframe::egui::Context;
+use glam::DVec3;
+use std::sync::Arc;
+
+/// With more spheres than this, a hierarchy finds the near ones.
+const SCAN_LIMIT: usize = 2_000;
+
+/// How far from a surface the camera stops, as shares of the distance to `look_at`. Between these limits it is the
+/// radius of the lens, so that no ray starts inside the sphere.
+const GAP_SHARES: [f64; 2] = [1e-3, 0.05];
+
+/// The most surfaces that one move slides along.
+const SLIDES: usize = 8;
+
+/// A hierarchy over the spheres of a scene, with coordinates relative to `origin`.
+struct Tree {
+    hierarchy: Hierarchy<f32>,
+    origin: DVec3,
+}
+
+/// The surfaces of the document's scene.
+#[derive(Default)]
+pub struct Surfaces {
+    /// The origin of the document whose hierarchy was asked for.
+    of: Option<Arc<Origin>>,
+    tree: Option<Tree>,
+    is_asked: bool,
+    answers: Answers<(Arc<Origin>, Tree)>,
+    /// Where the camera was last, and the innermost sphere around it.
+    around: Option<(DVec3, Option<usize>)>,
+}
+
+impl Surfaces {
+    /// Takes the hierarchy of the document's scene once it has been built. `has_picture` says that the tracer has
+    /// prepared the scene: before, both would compete for the processor.
+    pub fn follow(&mut self, document: &Document, has_picture: bool, context: &Context) {
+        let is_other =
+            |of: &Option<Arc<Origin>>| of.as_ref().is_none_or(|of| !Arc::ptr_eq(of, &document.origin));
+        if is_other(&self.of) {
+            *self = Surfaces { answers: std::mem::take(&mut self.answers), ..Surfaces::default() };
+            self.of = Some(Arc::clone(&document.origin));
+        }
+        if has_picture && !self.is_asked {
+            self.is_asked = true;
+            if document.scene().spheres.len() > SCAN_LIMIT {
+                let origin = Arc::clone(&document.origin);
+                let build = move || {
+                    let center = origin.recipe.camera.look_from;
+                    let hierarchy = Hierarchy::build(&origin.recipe.scene.spheres, center);
+                    (origin, Tree { hierarchy, origin: center })
+                };
+                // Without a thread, every sphere is looked at.
+                let _ = self.answers.ask("surfaces", context, build);
+            }
+        }
+        while let Some((origin, tree)) = self.answers.take() {
+            if self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, &origin)) {
+                self.tree = Some(tree);
+            }
+        }
+        let at = document.camera.look_from;
+        if self.around.is_none_or(|(before, _)| before != at) {
+            self.around = Some((at, self.near(document).innermost(at)));
+        }
+    }
+
+    /// The sphere that the camera is inside of, in words, if the document's rays can see it.
+    pub fn inside(&self, document: &Document) -> Option<String> {
+        let (_, sphere) = self.around?;
+        let sphere = sphere.filter(|_| document.rules().shading != Shading::ImageGradient)?;
+        let scene = document.scene();
+        let material = &scene.materials[scene.spheres[sphere].material].name;
+        Some(format!("the camera is inside sphere {sphere} ({material})"))
+    }
+
+    /// The camera that a move from `before` to `after` leads to: it stays outside of the spheres that `before` is
+    /// outside of.
+    pub fn stop(&self, document: &Document, before: &Camera, after: &Camera) -> Camera {
+        if before.look_from == after.look_from {
+            return *after;
+        }
+        let distance = before.look_from.distance(before.look_at);
+        let [low, high] = GAP_SHARES.map(|share| share * distance);
+        let gap = after.lens_radius().clamp(low, high);
+        let near = self.near(document);
+        let mut look_from = near.slide(before.look_from, after.look_from, gap);
+        if look_from != after.look_from && is_orbit(before, after) {
+            // Sliding led off the circle.
+            let away = (look_from - after.look_at).normalize_or_zero();
+            look_from = near.slide(look_from, after.look_at + distance * away, gap);
+        }
+        // A flying camera looks in the same direction as before; one that orbits looks at the same point.
+        let is_flying = before.look_at != after.look_at;
+        let off = if is_flying { look_from - after.look_from } else { DVec3::ZERO };
+        let stopped = Camera { look_from, look_at: after.look_at + off, ..*after };
+        if stopped.validate().is_ok() { stopped } else { *before }
+    }
+
+    fn near<'a>(&'a self, document: &'a Document) -> Near<'a> {
+        Near { scene: document.scene(), tree: self.tree.as_ref() }
+    }
+}
+
+/// Whether a move keeps the distance to the point that the camera looks at.
+fn is_orbit(before: &Camera, after: &Camera) -> bool {
+    let [old, new] = [before, after].map(|camera| camera.look_from.distance(camera.look_at));
+    before.look_at == after.look_at && (old - new).abs() <= 1e-6 * old
+}
+
+/// The spheres of a scene by place.
+struct Near<'a> {
+    scene: &'a Scene,
+    tree: Option<&'a Tree>,
+}
+
+impl Near<'_> {
+    /// Calls `each` for every sphere that may touch a cube.
+    fn each(&self, middle: DVec3, reach: f64, mut each: impl FnMut(usize, &Sphere)) {
+        let spheres = &self.scene.spheres;
+        match self.tree {
+            Some(Tree { hierarchy, origin }) => {
+                let middle = middle - *origin;
+                hierarchy.near(middle - reach, middle + reach, |index| each(index, &spheres[index]));
+            }
+            None => {
+                for (index, sphere) in spheres.iter().enumerate() {
+                    let far = (sphere.center - middle).abs().max_element();
+                    if far <= sphere.radius + reach {
+                        each(index, sphere);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The smallest sphere that `point` is inside of.
+    fn innermost(&self, point: DVec3) -> Option<usize> {
+        let mut found: Option<(usize, f64)> = None;
+        self.each(point, 0.0, |index, sphere| {
+            let is_smaller = found.is_none_or(|(_, radius)| sphere.radius < radius);
+            if is_smaller && is_inside(sphere, point) {
+                found = Some((index, sphere.radius));
+            }
+        });
+        found.map(|(index, _)| index)
+    }
+
+    /// Where a straight move ends that stops `gap` in front of each sphere and slides along it. Where `from` is nearer
+    /// to a sphere than that, it may come no nearer. Spheres that `from` is inside of are no obstacle.
+    fn slide(&self, from: DVec3, to: DVec3, gap: f64) -> DVec3 {
+        let mut obstacles = Vec::new();
+        self.each(from, from.distance(to) + gap, |_, sphere| {
+            if !is_inside(sphere, from) {
+                let clearance = from.distance(sphere.center) - sphere.radius;
+                obstacles.push((sphere.center, sphere.radius + clearance.clamp(0.0, gap)));
+            }
+        });
+        let (mut at, mut left) = (from, to - from);
+        for _ in 0..SLIDES {
+            let hit = obstacles
+                .iter()
+                .filter_map(|(center, radius)| {
+                    Some((share_to(at - *center, *radius, left)?, *center, *radius))
+                })
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((share, center, radius)) = hit else { return at + left };
+            at += share * left;
+            let Some(normal) = (at - center).try_normalize() else { return at };
+            at += normal * (radius - at.distance(center)).max(0.0);
+            left *= 1.0 - share;
+            left -= normal * left.dot(normal);
+        }
+        at
+    }
+}
+
+/// Whether a point is inside a sphere by more than the rounding of its distance.
+fn is_inside(sphere: &Sphere, point: DVec3) -> bool {
+    let size = sphere.center.abs().max_element() + sphere.radius + point.abs().max_element();
+    point.distance(sphere.center) - sphere.radius < -4.0 * f64::EPSILON * size
+}
+
+/// The share of the move `by` up to a sphere; `from` is relative to its centre. `None` if the move does not lead there.
+fn share_to(from: DVec3, radius: f64, by: DVec3) -> Option<f64> {
+    /// Moves at a smaller sine to the surface than this go along it.
+    const ALONG: f64 = 1e-12;
+    let (distance, length) = (from.length(), by.length());
+    let towards = -from.dot(by);
+    if towards <= ALONG * distance * length {
+        return None;
+    }
+    let outside = (distance - radius) * (distance + radius);
+    if outside <= 0.0 {
+        return Some(0.0);
+    }
+    let squared = towards * towards - length * length * outside;
+    let share = outside / (towards + squared.max(0.0).sqrt());
+    (squared >= 0.0 && share <= 1.0).then_some(share)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Source;
+    use crate::app::navigation;
+    use crate::recipe::Recipe;
+    use crate::scene::Material;
+    use std::time::{Duration, Instant};
+
+    fn opened(name: &str) -> (Document, Surfaces) {
+        let document = Document::new(Origin::new(Recipe::builtin(name).unwrap(), Source::Builtin));
+        let (mut surfaces, context) = (Surfaces::default(), Context::default());
+        surfaces.follow(&document, true, &context);
+        let begin = Instant::now();
+        while surfaces.tree.is_none() && document.scene().spheres.len() > SCAN_LIMIT {
+            assert!(begin.elapsed() < Duration::from_secs(60), "never built");
+            std::thread::sleep(Duration::from_millis(5));
+            surfaces.follow(&document, true, &context);
+        }
+        println!("{name}: {:.2} s to build", begin.elapsed().as_secs_f64());
+        (document, surfaces)
+    }
+
+    /// The smallest distance from a point to a surface; negative inside.
+    fn clearance(document: &Document, at: DVec3) -> f64 {
+        let far = |sphere: &Sphere| at.distance(sphere.center) - sphere.radius;
+        document.scene().spheres.iter().map(far).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Moves the camera many times and checks it each time.
+    fn moved(name: &str, step: impl Fn(&Camera) -> Camera) -> (Document, Camera) {
+        let (document, surfaces) = opened(name);
+        let (first, mut camera) = (document.camera, document.camera);
+        for _ in 0..400 {
+            camera = surfaces.stop(&document, &camera, &step(&camera));
+            let clearance = clearance(&document, camera.look_from);
+            assert!(clearance > 0.0, "{name}: {clearance} at {}", camera.look_from);
+        }
+        assert_ne!(camera, first);
+        (document, camera)
+    }
+
+    #[test]
+    fn an_orbit_downwards_stays_above_the_ground() {
+        for name in ["book", "field:10000"] {
+            let (document, camera) = moved(name, |camera| navigation::orbit(camera, 0.003, -0.02));
+            let (before, after) =
+                [document.camera, camera].map(|camera| camera.look_from.distance(camera.look_at)).into();
+            assert!(after > 0.5 * before && after < 2.0 * before, "{name}: from {before} to {after}");
+        }
+    }
+
+    #[test]
+    fn an_orbit_along_the_ground_keeps_its_distance() {
+        let mut recipe = Recipe::builtin("field:10").unwrap();
+        Arc::make_mut(&mut recipe.scene).spheres.truncate(1);
+        let document = Document::new(Origin::new(recipe, Source::Builtin));
+        let (surfaces, before) = (Surfaces::default(), document.camera);
+        for down in [0.02, 0.6] {
+            let mut camera = before;
+            for _ in 0..100 {
+                camera = surfaces.stop(&document, &camera, &navigation::orbit(&camera, 0.003, -down));
+            }
+            let [old, new] = [before, camera].map(|camera| camera.look_from.distance(camera.look_at));
+            assert!((new / old - 1.0).abs() < 0.01, "{down}: from {old} to {new}");
+            assert!(clearance(&document, camera.look_from) < 0.01 * old, "{down}: {}", camera.look_from);
+        }
+    }
+
+    #[test]
+    fn a_dolly_stops_in_front_and_a_flight_keeps_its_direction() {
+        let (document, camera) = moved("three-spheres", |camera| navigation::dolly(camera, 0.9));
+        assert!(clearance(&document, camera.look_from) < 0.01, "close to the ball: {}", camera.look_from);
+        let ahead = |camera: &Camera| (camera.look_at - camera.look_from).normalize();
+        for by in [DVec3::Z, DVec3::NEG_Y, DVec3::X, DVec3::new(0.3, -1.0, 1.0)] {
+            let (document, camera) = moved("book", |camera| navigation::fly(camera, 0.2 * by));
+            assert!(ahead(&camera).distance(ahead(&document.camera)) < 1e-9, "{by}");
+        }
+    }
+
+    #[test]
+    fn a_fast_move_does_not_jump_over_a_sphere() {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        scene.add_sphere(DVec3::new(0.0, 0.0, -5.0), 0.1, grey);
+        let near = Near { scene: &scene, tree: None };
+        let stopped = near.slide(DVec3::ZERO, DVec3::new(0.0, 0.0, -100.0), 0.01);
+        assert!((stopped.z + 4.89).abs() < 1e-12, "{stopped}");
+        // Inside, there is no obstacle, and outside of the gap neither.
+        let inside = DVec3::new(0.0, 0.0, -5.0);
+        assert_eq!(near.slide(inside, DVec3::X, 0.01), DVec3::X);
+        assert_eq!(near.slide(DVec3::ZERO, DVec3::Z, 0.01), DVec3::Z);
+        // Nearer than the gap, the camera can move away and along.
+        let close = DVec3::new(0.0, 0.0, -4.899);
+        assert_eq!(near.slide(close, DVec3::ZERO, 0.01), DVec3::ZERO);
+        let along = near.slide(close, close + DVec3::X, 0.01);
+        assert!(along.distance(close + DVec3::X) < 1e-9, "{along}");
+    }
+
+    #[test]
+    fn the_innermost_sphere_is_named() {
+        let (mut document, mut surfaces) = opened("three-spheres");
+        let context = Context::default();
+        assert_eq!(surfaces.inside(&document), None);
+        let (index, sphere) = document
+            .scene()
+            .spheres
+            .iter()
+            .enumerate()
+            .min_by(|a, b| a.1.radius.total_cmp(&b.1.radius))
+            .map(|(index, sphere)| (index, *sphere))
+            .unwrap();
+        document.camera.look_from = sphere.center;
+        surfaces.follow(&document, true, &context);
+        let words = surfaces.inside(&document).unwrap();
+        assert!(words.starts_with(&format!("the camera is inside sphere {index} (")), "{words}");
+    }
+
+    #[test]
+    fn the_hierarchy_finds_what_a_scan_finds() {
+        let (document, surfaces) = opened("field:10000");
+        let scan = Near { scene: document.scene(), tree: None };
+        let tree = surfaces.near(&document);
+        let mut found = 0;
+        for (index, sphere) in document.scene().spheres.iter().enumerate().skip(1).step_by(97) {
+            assert_eq!(tree.innermost(sphere.center), scan.innermost(sphere.center));
+            let [from, to] = [2.0, -2.0].map(|up| sphere.center + DVec3::new(0.1, up, 0.2));
+            assert_eq!(tree.slide(from, to, 0.01), scan.slide(from, to, 0.01), "sphere {index}");
+            found += 1;
+        }
+        assert!(found > 50);
+    }
+
+    #[test]
+    fn a_move_among_a_million_spheres_costs_no_frame() {
+        let (document, surfaces) = opened("field:1000000");
+        let mut camera = document.camera;
+        let mut slowest = Duration::ZERO;
+        for step in 0..300 {
+            let wanted = match step % 3 {
+                0 => navigation::orbit(&camera, 0.01, -0.02),
+                1 => navigation::dolly(&camera, 0.97),
+                _ => navigation::fly(&camera, DVec3::new(0.0, -0.5, 2.0)),
+            };
+            let begin = Instant::now();
+            camera = surfaces.stop(&document, &camera, &wanted);
+            slowest = slowest.max(begin.elapsed());
+        }
+        println!("the slowest of 300 moves: {:.3} ms", slowest.as_secs_f64() * 1e3);
+        let scan = Near { scene: document.scene(), tree: None };
+        let to = camera.look_from.lerp(camera.look_at, 0.03);
+        let begin = Instant::now();
+        scan.slide(camera.look_from, to, 0.01);
+        println!("with a scan: {:.3} ms", begin.elapsed().as_secs_f64() * 1e3);
+        assert!(slowest < Duration::from_millis(8), "{slowest:?}");
+    }
+}

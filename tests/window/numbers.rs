@@ -1,0 +1,99 @@
+//! Numbers that are typed.
+
+use crate::common::{SMALL, control, has_samples, open, send, until};
+use eframe::egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use weekender::app::{Command, Window};
+
+/// The box beside the slider, or the only box, with this name.
+fn number<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> egui_kittest::Node<'h> {
+    harness.get_all_by_label(name).last().unwrap_or_else(|| panic!("no number {name}"))
+}
+
+/// Types a text in place of a number, without Enter.
+fn edit(harness: &mut Harness<'_, Window>, name: &str, text: &str) {
+    number(harness, name).focus();
+    harness.run_steps(3);
+    for letter in text.chars() {
+        harness.event(eframe::egui::Event::Text(letter.to_string()));
+        harness.run_steps(3);
+    }
+}
+
+#[test]
+fn a_typed_number_is_one_change_when_it_is_complete() {
+    let mut harness = open("--stage view-distant --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    harness.run_steps(90);
+    let angle = |harness: &Harness<'_, Window>| harness.state().document().camera.vfov_degrees;
+    let before = angle(&harness);
+    edit(&mut harness, "Field of view", "45");
+    assert_eq!(angle(&harness), before, "the number is not complete");
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(angle(&harness), 45.0);
+    send(&mut harness, Command::Undo);
+    assert_eq!(angle(&harness), before, "one step back");
+    assert!(harness.state().disabled_reason(Command::Undo).is_some());
+
+    // Leaving the field is enough, and Escape forgets what was typed.
+    edit(&mut harness, "Seed", "77");
+    number(&harness, "Depth").focus();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().settings.seed, 77);
+    edit(&mut harness, "Seed", "88");
+    assert_eq!(harness.state().document().settings.seed, 77);
+    harness.key_press(Key::Escape);
+    for step in 0..3 {
+        harness.step();
+        assert_eq!(harness.state().document().settings.seed, 77, "{step}");
+    }
+}
+
+#[test]
+fn a_number_that_is_not_edited_keeps_its_digits() {
+    let mut harness = open(SMALL);
+    let third = 100.0 / 3.0;
+    harness.state_mut().document_mut().camera.vfov_degrees = third;
+    harness.run_steps(3);
+    number(&harness, "Field of view").focus();
+    harness.run_steps(3);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().camera.vfov_degrees, third);
+}
+
+#[test]
+fn a_number_beyond_its_limit_is_told_and_panels_keep_their_width() {
+    let mut harness = open("--stage defocus --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    let left = harness.get_by_label("Picture").rect().left();
+    edit(&mut harness, "Look from x", "100000000000000000000000000000000000000000");
+    assert_eq!(harness.get_by_label("Picture").rect().left(), left, "while it is typed");
+    harness.key_press(Key::Enter);
+    harness.run_steps(5);
+    assert_eq!(harness.state().document().camera.look_from.x, 1e18);
+    let told = harness.state().messages();
+    assert!(told.iter().any(|text| text.starts_with("Look from x is 1.00e18, its limit")), "{told:?}");
+    assert_eq!(harness.get_by_label("Picture").rect().left(), left, "with a huge focus distance");
+    edit(&mut harness, "Field of view", "500");
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().camera.vfov_degrees, 179.0);
+    let told = harness.state().messages();
+    assert!(told.iter().any(|text| text.starts_with("Field of view is 179, its limit: 500")), "{told:?}");
+}
+
+/// Equal positions and an up vector along the view are refused in the same way.
+#[test]
+fn an_up_vector_without_a_direction_is_refused() {
+    let mut harness = open("--stage normals --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    control(&harness, "Up y").set_value_accesskit(0.0);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("vup is [0, 0, 0], which has no direction").is_some());
+    control(&harness, "Up y").set_value_accesskit(1.0);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("which has no direction").is_none());
+}
