@@ -14,7 +14,7 @@ pub use merging::merge;
 use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
 use crate::console;
-use crate::failure::{Failure, INTERRUPTED};
+use crate::failure::Failure;
 use crate::files::{check_replaceable, check_writable, write_text};
 use crate::film::Film;
 use crate::interrupt::Interrupt;
@@ -81,7 +81,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
             if let Err(error) = figures {
                 console::note(&format!("error: {error:#}"));
             }
-            Ok(ExitCode::from(INTERRUPTED))
+            Ok(interrupt.exit_code())
         }
         (None, figures) => figures.map(|()| ExitCode::SUCCESS).map_err(Failure::Run),
     }
