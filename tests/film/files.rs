@@ -87,14 +87,25 @@ fn another_version_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 2, &[0..10]), &description()).unwrap();
-    spoil(&path, b"version = 3", 10, b'2');
+    let whole = std::fs::read(&path).unwrap();
+    let writer = concat!("Weekender ", env!("CARGO_PKG_VERSION")).to_owned();
+    spoil(&path, b"\nsample_version = 3", 18, b'2');
     let error = load_error(&path);
-    let told = error.to_string();
-    assert!(
-        told.contains("version 2, but this program reads version 3; continue with the program"),
-        "{told}"
+    for part in ["samples of version 2", &writer, "samples of version 3", "render it again"] {
+        assert!(error.to_string().contains(part), "{error}");
+    }
+    assert_eq!(
+        error,
+        CheckpointError::SampleVersion { path: path.clone(), version: 2, writer: writer.clone() }
     );
-    assert_eq!(error, CheckpointError::Version { path, version: 2 });
+    for (version, digit) in [(9, b'9'), (2, b'2')] {
+        std::fs::write(&path, &whole).unwrap();
+        spoil(&path, b"version = 4", 10, digit);
+        let error = load_error(&path);
+        let told = error.to_string();
+        assert!(told.contains(&format!("version {version}")) && told.contains("versions 3 to 4"), "{told}");
+        assert_eq!(error, CheckpointError::Version { path: path.clone(), version, writer: writer.clone() });
+    }
 }
 
 /// The bytes of an attribute in a file: name, type, length and value.
@@ -163,7 +174,7 @@ fn a_missing_channel_is_named() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 1, &[0..10]), &description()).unwrap();
-    spoil(&path, b"sum.a.R.lo", 9, b'p');
+    spoil(&path, b"rest.R.lo", 8, b'p');
     let message = load_error(&path).to_string();
-    assert!(message.contains("sum.a.R.lo is missing"), "{message}");
+    assert!(message.contains("rest.R.lo is missing"), "{message}");
 }
