@@ -112,7 +112,7 @@ impl FilmSum {
     }
 
     /// Adds the film in a file. `same_job` gets the recipes of the sum and of the file, and returns what differs if
-    /// their jobs differ. A sum to which `may_leave` applies can give the film back: see [`FilmSum::take_back`].
+    /// their jobs differ. A film whose samples `may_leave` can be taken away again: see [`FilmSum::take_back`].
     ///
     /// # Errors
     /// [`MergeError`]; unless it is [`MergeError::Lost`], the sum is as before.
@@ -120,7 +120,7 @@ impl FilmSum {
         &mut self,
         path: &Path,
         same_job: impl Fn(&str, &str) -> Result<(), String>,
-        may_leave: bool,
+        may_leave: impl Fn(&SampleRanges) -> bool,
     ) -> Result<&Share, MergeError> {
         let (file, about) = open(path)?;
         let (first, other) = (self.first.clone(), path.to_owned());
@@ -143,13 +143,14 @@ impl FilmSum {
         let rejected = self.film.with_rejected(about.rejected).map_err(failed)?;
         apply(&mut self.film.halves, &file, path, Sign::Plus).map_err(apply_error)?;
         (self.film.samples, self.film.rejected) = (samples, rejected);
+        let is_guest = may_leave(&about.samples);
         self.shares.push(Share {
             path: path.to_owned(),
             samples: about.samples,
             rejected: about.rejected,
             seconds: about.description.get(key::SECONDS).and_then(|seconds| seconds.parse().ok()),
             backend: about.description.get(key::BACKEND).map(str::to_owned),
-            file: may_leave.then_some(file),
+            file: is_guest.then_some(file),
         });
         // It was pushed just now.
         Ok(&self.shares[self.shares.len() - 1])
@@ -214,10 +215,8 @@ fn apply_error(error: ApplyError) -> MergeError {
 fn open(path: &Path) -> Result<(File, FilmHead), CheckpointError> {
     let (mut file, length) = files::open(path)?;
     let about = checkpoint::head_of(BufReader::new(&file), length, path)?;
-    file.rewind().map_err(|reason| InputError::Unreadable {
-        path: path.to_owned(),
-        reason: reason.to_string(),
-    })?;
+    file.rewind()
+        .map_err(|reason| InputError::Unreadable { path: path.to_owned(), reason: reason.to_string() })?;
     Ok((file, about))
 }
 
@@ -237,7 +236,7 @@ pub fn merge_files<P: AsRef<Path>>(
     let FilmHead { width, height, halves, description, .. } = checkpoint::read_head(first.as_ref())?;
     let mut sum = FilmSum::new(width, height, halves, description, first.as_ref())?;
     for path in paths {
-        sum.add(path.as_ref(), &same_job, false)?;
+        sum.add(path.as_ref(), &same_job, |_| false)?;
     }
     let description = sum.description();
     Ok(FilmFile { film: sum.film, description })

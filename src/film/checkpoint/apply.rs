@@ -4,7 +4,7 @@
 use super::head::band_count;
 use super::open::Opened;
 use super::read::{for_each_band, read};
-use super::{CheckpointError, Film, FilmFile, PixelSum};
+use super::{CheckpointError, Film, FilmFile, FilmHead, PixelSum};
 use crate::files::{self, InputError};
 use crate::film::checkpoint::head::band_rows;
 use std::fs::File;
@@ -39,13 +39,10 @@ pub(in crate::film) enum ApplyError {
 /// [`CheckpointError`]; each message says what to do.
 pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
     let (file, length) = files::open(path)?;
-    let opened = Opened::new(BufReader::new(&file), length, path)?;
+    let opened = Opened::new(BufReader::new(At { file: &file, place: 0 }), length, path)?;
     let (named, about) = (opened.file, opened.about);
     if !opened.head.has_bands() {
-        let mut file = &file;
-        let rewound = file.rewind();
-        rewound.map_err(|reason| unreadable(path, &reason))?;
-        return read(BufReader::new(file), length, path);
+        return read(BufReader::new(At { file: &file, place: 0 }), length, path);
     }
     let film = Film::try_new(about.width, about.height, about.halves);
     let mut halves = film.map_err(|error| named.no_film(error))?.halves;
@@ -56,6 +53,22 @@ pub fn load(path: &Path) -> Result<FilmFile, CheckpointError> {
     Ok(FilmFile { film: film.map_err(|error| named.no_film(error))?, description: about.description })
 }
 
+/// Reads a whole film file and checks it, with memory for a few rows. (A film of version 3 is held as a whole.)
+///
+/// # Errors
+/// [`CheckpointError`]; each message says what to do.
+pub fn check(path: &Path) -> Result<FilmHead, CheckpointError> {
+    let (file, length) = files::open(path)?;
+    let opened = Opened::new(BufReader::new(At { file: &file, place: 0 }), length, path)?;
+    if opened.head.has_bands() {
+        let outcomes = run_all(&mut [], &file, length, path, Sign::Plus, None);
+        outcomes.into_iter().try_for_each(|(_, outcome)| outcome)?;
+    } else {
+        read(BufReader::new(At { file: &file, place: 0 }), length, path)?;
+    }
+    Ok(opened.about)
+}
+
 /// Adds the sums in `file` to `halves` of the same shape, or subtracts them.
 pub(in crate::film) fn apply(
     halves: &mut [Vec<PixelSum>],
@@ -64,7 +77,8 @@ pub(in crate::film) fn apply(
     sign: Sign,
 ) -> Result<(), ApplyError> {
     let length = file.metadata().map_err(|reason| ApplyError::File(unreadable(path, &reason)))?.len();
-    let opened = Opened::new(BufReader::new(At { file, place: 0 }), length, path).map_err(ApplyError::File)?;
+    let opened =
+        Opened::new(BufReader::new(At { file, place: 0 }), length, path).map_err(ApplyError::File)?;
     if !opened.head.has_bands() {
         // Only its end tells whether such a film is whole.
         let whole = read(BufReader::new(At { file, place: 0 }), length, path).map_err(ApplyError::File)?;

@@ -121,7 +121,9 @@ impl Head {
         }
         let (checksums, bands) = (head.bands.len(), band_count(head.height) as usize);
         if head.has_bands() && checksums != bands {
-            return Err(HeadError::Damaged(format!("it has {checksums} checksums for {bands} bands of rows")));
+            return Err(HeadError::Damaged(format!(
+                "it has {checksums} checksums for {bands} bands of rows"
+            )));
         }
         Ok(head)
     }

@@ -21,8 +21,8 @@ mod planes;
 mod read;
 mod write;
 
-pub use apply::load;
 pub(super) use apply::{ApplyError, Sign, apply};
+pub use apply::{check, load};
 pub(crate) use length::check_length;
 pub(super) use open::head_of;
 pub(crate) use open::read_description;
