@@ -81,14 +81,14 @@ fn about(plan: &Plan, Division { block, parts }: &Division) -> String {
     let lengths = || parts.iter().map(|part| part.end - part.start);
     let (shortest, longest) = (lengths().min().unwrap_or(0), lengths().max().unwrap_or(0));
     let each = if shortest == longest {
-        format!("{} each", counted(longest, "sample"))
+        format!("{} per pixel each", counted(longest, "sample"))
     } else {
-        format!("{shortest} to {}, in blocks of {block}", counted(longest, "sample"))
+        format!("{shortest} to {longest} samples per pixel, in blocks of {block}")
     };
     let settings = plan.job.settings();
     let film = Film::bytes(settings.width, settings.height, if settings.estimate_error { 2 } else { 1 });
     format!(
-        "{}: {} of {}x{}, {} of {each} per pixel; a part takes {} of memory",
+        "{}: {} of {}x{}, {} of {each}; a part's film takes {} of memory",
         plan.path.display(),
         plan.recipe.name,
         settings.width,

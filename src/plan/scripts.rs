@@ -92,7 +92,7 @@ while kill -0 "$child" 2>/dev/null; do
 done
 # 143: SIGTERM came and the checkpoint is written. A task that was cancelled stays cancelled.
 task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
-if [ "$code" -eq 143 ] && scontrol show job "$SLURM_JOB_ID" | grep -q 'JobState=RUNNING'; then
+if [ "$code" -eq 143 ] && scontrol show job "$task" | grep -q 'JobState=RUNNING'; then
   scontrol requeue "$task"
 fi
 exit "$code"

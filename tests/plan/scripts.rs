@@ -101,7 +101,7 @@ fn a_slurm_task_renders_its_part_and_queues_itself_again_after_sigterm() {
     let fake = "#!/bin/sh\necho \"$@\" >> \"$ASKED\"\necho JobState=\"$STATE\"\n";
     fs::write(tools.join("scontrol"), fake).unwrap();
     assert!(Command::new("chmod").arg("+x").arg(tools.join("scontrol")).status().unwrap().success());
-    for (state, asked) in [("RUNNING", "show job 77\nrequeue 70_5\n"), ("COMPLETING", "show job 77\n")] {
+    for (state, asked) in [("RUNNING", "show job 70_5\nrequeue 70_5\n"), ("COMPLETING", "show job 70_5\n")] {
         let asked_path = at.join(format!("asked-{state}"));
         let path = std::env::join_paths(
             [tools.clone()].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
@@ -137,10 +137,10 @@ fn a_plan_of_the_usual_example_is_divided_evenly() {
     let flags =
         ["plan", "--scene", "book", "--size", "1200x675", "--samples", "4096", "--parts", "32", "--out", "d"];
     let (out, told) = ends(at, 0, &flags);
-    assert!(told.contains("32 parts of 128 samples each per pixel"), "{told}");
+    assert!(told.contains("32 parts of 128 samples per pixel each"), "{told}");
     assert!(out.lines().nth(31).unwrap().ends_with("render-part d/plan.json --part 31"), "{out}");
     let uneven = [&["plan"], &PICTURE[..], &["--samples", "1000", "--parts", "3", "--out", "e"]].concat();
     let (_, told) = ends(at, 0, &uneven);
-    assert!(told.contains("3 parts of 328 to 336 samples, in blocks of 16 per pixel"), "{told}");
+    assert!(told.contains("3 parts of 328 to 336 samples per pixel, in blocks of 16"), "{told}");
     succeeds(at, &["info", "d"]);
 }

@@ -15,6 +15,11 @@ use std::thread;
 /// More threads gain little: they wait for memory and disk.
 const MOST_THREADS: usize = 8;
 
+/// Threads that read or write a film.
+pub(super) fn threads() -> usize {
+    thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS)
+}
+
 /// Bytes that a thread reads at once.
 const BUFFER: usize = 1 << 18;
 
@@ -115,10 +120,7 @@ fn run_all(
         Err(error) => return vec![(0, Err(error))],
     };
     let bands = band_count(height);
-    let threads = counts.map_or_else(
-        || thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS).min(bands as usize),
-        <[u32]>::len,
-    );
+    let threads = counts.map_or_else(|| threads().min(bands as usize), <[u32]>::len);
     let mut rest: Vec<&mut [PixelSum]> = halves.iter_mut().map(Vec::as_mut_slice).collect();
     let run = |first: u32, count: u32, mut sums: Vec<&mut [PixelSum]>| {
         let mut done = 0;

@@ -1,10 +1,12 @@
 //! The head of a film file, which describes its sums, and the checksums.
 
+use super::apply::threads;
 use super::{
     Checksum, Description, Film, FilmError, OLDEST_VERSION, PixelSum, SAMPLE_VERSION, SampleRanges, VERSION,
 };
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+use std::thread;
 
 /// Rows of a band. Each band has a checksum of its own, so that damage can be located, and what is whole can be added
 /// before the rest is read.
@@ -65,15 +67,28 @@ pub(super) fn band_checksum<'a>(band: u32, halves: impl Iterator<Item = &'a [Pix
     sum.finish()
 }
 
+/// The checksums of all bands, made by several threads.
+fn band_checksums(film: &Film) -> Vec<String> {
+    let width = film.width() as usize;
+    let checksum = |band: u32| {
+        let rows = band_rows(band, film.height());
+        let pixels = rows.start as usize * width..rows.end as usize * width;
+        band_checksum(band, film.halves().iter().map(|half| &half[pixels.clone()]))
+    };
+    let bands: Vec<u32> = (0..band_count(film.height())).collect();
+    let sum = |share: &[u32]| share.iter().map(|band| checksum(*band)).collect::<Vec<_>>();
+    thread::scope(|scope| {
+        let shares = bands.chunks(bands.len().div_ceil(threads()).max(1));
+        let sum = &sum;
+        let workers: Vec<_> = shares.map(|share| scope.spawn(move || sum(share))).collect();
+        // A thread that has failed leaves a head that no reader accepts.
+        workers.into_iter().flat_map(|worker| worker.join().unwrap_or_default()).collect()
+    })
+}
+
 impl Head {
     /// Makes the head of a film with these texts.
     pub fn of(film: &Film, texts: Texts) -> Self {
-        let width = film.width() as usize;
-        let band = |band| {
-            let rows = band_rows(band, film.height());
-            let pixels = rows.start as usize * width..rows.end as usize * width;
-            band_checksum(band, film.halves().iter().map(|half| &half[pixels.clone()]))
-        };
         let mut head = Head {
             version: VERSION,
             sample_version: SAMPLE_VERSION,
@@ -84,7 +99,7 @@ impl Head {
             rejected: film.rejected(),
             head_checksum: String::new(),
             checksum: None,
-            bands: (0..band_count(film.height())).map(band).collect(),
+            bands: band_checksums(film),
         };
         head.seal(texts);
         head

@@ -13,7 +13,7 @@ pub(super) enum Plane {
     Mean { colour: usize },
     /// Words of the sums of a half.
     Sum { half: usize, colour: usize, shift: u32 },
-    /// Words of the [`rest`].
+    /// Words of the rest: see [`mean_and_rest`].
     Rest { colour: usize, shift: u32 },
 }
 
@@ -89,14 +89,15 @@ pub(super) fn mean(sum: u64, unit: f64) -> f32 {
     (sum as f64 / unit) as f32
 }
 
-/// What the picture has lost of a sum by its rounding: small, so that most of its bytes are zero and cost nothing in
-/// the file. The lowest bit is the sign.
-pub(super) fn rest(sum: u64, unit: f64) -> u64 {
-    let lost = (sum as i64).wrapping_sub(from_mean(mean(sum, unit), unit));
-    ((lost << 1) ^ (lost >> 63)) as u64
+/// The mean of a sum, and what the mean has lost of it by its rounding: the rest, which is small, so that most of its
+/// bytes are zero and cost nothing in the file. The lowest bit of the rest is its sign.
+pub(super) fn mean_and_rest(sum: u64, unit: f64) -> (f32, u64) {
+    let mean = mean(sum, unit);
+    let lost = (sum as i64).wrapping_sub(from_mean(mean, unit));
+    (mean, ((lost << 1) ^ (lost >> 63)) as u64)
 }
 
-/// The sum of a mean and its [`rest`].
+/// The sum of a mean and its rest: see [`mean_and_rest`].
 pub(super) fn sum_of(mean: f32, rest: u64, unit: f64) -> u64 {
     let lost = (rest >> 1) as i64 ^ -((rest & 1) as i64);
     from_mean(mean, unit).wrapping_add(lost) as u64
@@ -161,21 +162,26 @@ impl Row {
     }
 }
 
-/// Appends the words of a row of `film` in the channel of `plane`.
-pub(super) fn append_words(film: &Film, plane: Plane, row: usize, data: &mut Vec<u8>) {
+/// Appends a row of `film`: the words of each channel in turn.
+pub(super) fn append_row(film: &Film, planes: &[(String, Plane)], row: usize, data: &mut Vec<u8>) {
     let (width, unit) = (film.width() as usize, film.fixed_point_of_1());
     let pixels = row * width..(row + 1) * width;
-    match plane {
-        Plane::Mean { colour } => {
-            data.extend(pixels.flat_map(|i| mean(film.pixel_sum(i).0[colour], unit).to_ne_bytes()));
-        }
-        Plane::Sum { half, colour, shift } => {
-            let sums = film.halves()[half][pixels].iter();
-            data.extend(sums.flat_map(|sum| ((sum.0[colour] >> shift) as u32).to_ne_bytes()));
-        }
-        Plane::Rest { colour, shift } => {
-            let rest = |i| (rest(film.pixel_sum(i).0[colour], unit) >> shift) as u32;
-            data.extend(pixels.flat_map(|i| rest(i).to_ne_bytes()));
+    let totals: Vec<[(f32, u64); 3]> =
+        pixels.clone().map(|pixel| film.pixel_sum(pixel).0.map(|sum| mean_and_rest(sum, unit))).collect();
+    for (_, plane) in planes {
+        match *plane {
+            Plane::Mean { colour } => {
+                data.extend(totals.iter().flat_map(|total| total[colour].0.to_ne_bytes()));
+            }
+            Plane::Rest { colour, shift } => {
+                data.extend(
+                    totals.iter().flat_map(|total| ((total[colour].1 >> shift) as u32).to_ne_bytes()),
+                );
+            }
+            Plane::Sum { half, colour, shift } => {
+                let sums = film.halves()[half][pixels.clone()].iter();
+                data.extend(sums.flat_map(|sum| ((sum.0[colour] >> shift) as u32).to_ne_bytes()));
+            }
         }
     }
 }
@@ -189,7 +195,8 @@ mod tests {
         #[test]
         fn mean_and_rest_give_back_the_sum(sum in 0..u64::MAX / 2, bits in 0_u32..63, samples in 1_u64..1 << 32) {
             let (sum, unit) = (sum >> bits, Film::fixed_point(samples));
-            prop_assert_eq!(sum_of(mean(sum, unit), rest(sum, unit), unit), sum);
+            let (mean, rest) = mean_and_rest(sum, unit);
+            prop_assert_eq!(sum_of(mean, rest, unit), sum);
         }
     }
 
@@ -197,6 +204,6 @@ mod tests {
     fn the_rest_of_usual_sums_is_short() {
         let (samples, radiance) = (65_536_u64, 0.7371);
         let sum = (radiance * samples as f64 * 16_777_216.0) as u64 + 1;
-        assert!(rest(sum, Film::fixed_point(samples)) < 1 << 17);
+        assert!(mean_and_rest(sum, Film::fixed_point(samples)).1 < 1 << 17);
     }
 }

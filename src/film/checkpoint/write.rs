@@ -1,9 +1,11 @@
 //! Writing a film file.
 
+use super::apply::threads;
 use super::head::{Head, Texts, comments};
 use super::planes::{self, Plane};
 use super::{Description, FILM_ATTRIBUTE, Film, RECIPE_ATTRIBUTE};
 use crate::files::{WriteError, replace_file};
+use exr::block::chunk::Chunk;
 use exr::block::writer::ChunksWriter;
 use exr::block::{BlockIndex, UncompressedBlock};
 use exr::meta::BlockDescription;
@@ -11,8 +13,12 @@ use exr::meta::header::Header;
 use exr::prelude::{AttributeValue, ChannelDescription, Compression, LineOrder, MetaData, SmallVec, Text};
 use std::io::{self, Seek, Write};
 use std::path::Path;
+use std::thread;
 
-/// Writes a film file in place of `path`. Besides the film, this needs memory for one row.
+/// Rows that a thread compresses before they are written.
+const ROWS_AT_ONCE: usize = 32;
+
+/// Writes a film file in place of `path`. Besides the film, this needs memory for some rows.
 ///
 /// # Errors
 /// [`WriteError`]; the previous file is then unchanged.
@@ -68,13 +74,43 @@ pub(super) fn write_with(
     let mut headers = SmallVec::new();
     headers.push(header);
     exr::block::write(writer, headers, true, |meta, chunks| {
-        let mut compressor = chunks.sequential_blocks_compressor(&meta);
-        for (index, block) in meta.collect_ordered_blocks(|index| row_block(film, &planes, &meta, index)) {
-            compressor.compress_block(index, block)?;
+        let blocks: Vec<(usize, BlockIndex)> = meta.enumerate_ordered_header_block_indices().collect();
+        let threads = threads();
+        for batch in blocks.chunks(threads * ROWS_AT_ONCE) {
+            for chunk in compressed(film, &planes, &meta, batch, threads) {
+                let (index, chunk) = chunk?;
+                chunks.write_chunk(index, chunk)?;
+            }
         }
         Ok(())
     })
     .map_err(io_error)
+}
+
+/// A block, compressed, and its number in the file.
+type Compressed = Result<(usize, Chunk), exr::error::Error>;
+
+/// Compresses blocks with several threads. They keep their order, so the file does not depend on the threads.
+fn compressed(
+    film: &Film,
+    planes: &[(String, Plane)],
+    meta: &MetaData,
+    blocks: &[(usize, BlockIndex)],
+    threads: usize,
+) -> Vec<Compressed> {
+    let compress = |blocks: &[(usize, BlockIndex)]| -> Vec<Compressed> {
+        let chunk = |(number, index): &(usize, BlockIndex)| {
+            let block = row_block(film, planes, meta, *index);
+            Ok((*number, block.compress_to_chunk(&meta.headers)?))
+        };
+        blocks.iter().map(chunk).collect()
+    };
+    thread::scope(|scope| {
+        let shares = blocks.chunks(blocks.len().div_ceil(threads).max(1));
+        let workers: Vec<_> = shares.map(|share| scope.spawn(move || compress(share))).collect();
+        let fallen = |_| vec![Err(exr::error::Error::Invalid("a thread has failed".into()))];
+        workers.into_iter().flat_map(|worker| worker.join().unwrap_or_else(fallen)).collect()
+    })
 }
 
 fn row_block(
@@ -86,9 +122,7 @@ fn row_block(
     let mut data = Vec::with_capacity(index.pixel_size.area() * meta.headers[0].channels.bytes_per_pixel);
     let first_row = index.pixel_position.y();
     for row in first_row..first_row + index.pixel_size.y() {
-        for (_, plane) in planes {
-            planes::append_words(film, *plane, row, &mut data);
-        }
+        planes::append_row(film, planes, row, &mut data);
     }
     UncompressedBlock { index, data }
 }
