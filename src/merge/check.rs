@@ -118,14 +118,13 @@ fn with(mut all: SampleRanges, more: &SampleRanges) -> SampleRanges {
     all
 }
 
-/// Prints the lines unchanged, because some are commands.
+/// Prints the lines in full, however long they are: some are commands.
 fn tell(lines: &[String], is_good: bool) -> Result<ExitCode, Failure> {
-    let text: String =
-        lines.iter().flat_map(|line| line.split('\n')).map(|line| shown(line) + "\n").collect();
+    let text: String = lines
+        .iter()
+        .flat_map(|line| line.split('\n'))
+        .map(|line| console::printable(line).into_owned() + "\n")
+        .collect();
     console::write_out(&text).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
     Ok(if is_good { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
-}
-
-fn shown(line: &str) -> String {
-    console::printable(line).into_owned()
 }

@@ -141,3 +141,22 @@ fn one_command_starts_a_render_and_goes_on_with_it() {
     let (_, told) = ends(at, 2, &["--batch", "--continue", "--out", "f.png"]);
     assert!(told.contains("--checkpoint"), "{told}");
 }
+
+/// As when a scheduler starts a task again on another machine while the first one still runs.
+#[test]
+fn two_runs_of_one_part_make_one_film() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "12288", "--parts", "2"]);
+    let part = ["render-part", "p", "--part", "0", "--device", "cpu", "--threads", "1", "--every", "0.1s"];
+    let start = || command(at, &part).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let mut runs = [start(), start()];
+    for run in &mut runs {
+        assert_eq!(run.wait().unwrap().code(), Some(0));
+    }
+    let mut names: Vec<_> =
+        std::fs::read_dir(at.join("p")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["part-0.exr", "plan.json", "scene.toml"]);
+    assert!(film(&part_path(at, "p", 0)) == whole(at, "0..6144", &[]));
+}

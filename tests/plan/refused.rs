@@ -9,7 +9,7 @@ fn a_directory_keeps_its_plan() {
     let at = TempDir::new().unwrap();
     let at = at.path();
     let common = [&["plan"], &PICTURE[..], &["--out", "p"]].concat();
-    let again = |flags: &[&str]| [&common[..], flags].concat();
+    let again = |flags: &[&'static str]| [&common[..], flags].concat();
     succeeds(at, &again(&["--samples", "8", "--parts", "2"]));
     render_part(at, "p", 0);
     let manifest = fs::read_to_string(at.join("p/plan.json")).unwrap();

@@ -1,24 +1,16 @@
 //! Adds the sums of a film file to sums in memory, or takes them away again, with several threads and memory for a few
 //! rows.
 
-use super::head::band_count;
+use super::head::{band_count, band_rows};
 use super::open::Opened;
 use super::read::{for_each_band, read};
+use super::threads::threads;
 use super::{CheckpointError, Film, FilmFile, FilmHead, PixelSum};
 use crate::files::{self, InputError};
-use crate::film::checkpoint::head::band_rows;
 use std::fs::File;
 use std::io::{self, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::thread;
-
-/// More threads gain little: they wait for memory and disk.
-const MOST_THREADS: usize = 8;
-
-/// Threads that read or write a film.
-pub(super) fn threads() -> usize {
-    thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS)
-}
 
 /// Bytes that a thread reads at once.
 const BUFFER: usize = 1 << 18;

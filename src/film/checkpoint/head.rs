@@ -1,6 +1,6 @@
 //! The head of a film file, which describes its sums, and the checksums.
 
-use super::apply::threads;
+use super::threads::threads;
 use super::{
     Checksum, Description, Film, FilmError, OLDEST_VERSION, PixelSum, SAMPLE_VERSION, SampleRanges, VERSION,
 };

@@ -19,6 +19,7 @@ mod length;
 mod open;
 mod planes;
 mod read;
+mod threads;
 mod write;
 
 pub(super) use apply::{ApplyError, Sign, apply};

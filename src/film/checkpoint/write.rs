@@ -1,8 +1,8 @@
 //! Writing a film file.
 
-use super::apply::threads;
 use super::head::{Head, Texts, comments};
 use super::planes::{self, Plane};
+use super::threads::threads;
 use super::{Description, FILM_ATTRIBUTE, Film, RECIPE_ATTRIBUTE};
 use crate::files::{WriteError, replace_file};
 use exr::block::chunk::Chunk;
