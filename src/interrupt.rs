@@ -1,9 +1,10 @@
-//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first one requests an orderly end. A later one ends the
-//! program immediately, but never while files are being written.
+//! Signals such as Ctrl-C (SIGINT, SIGTERM, SIGHUP). The first one requests an orderly end. Another Ctrl-C ends
+//! the program immediately, but never while files are being written. The exit code tells which signal it was.
 
 use crate::console;
-use crate::failure::INTERRUPTED;
+use crate::failure::{HUNG_UP, INTERRUPTED, TERMINATED};
 use anyhow::{Context, Result};
+use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -17,7 +18,49 @@ pub struct Interrupt(Arc<Shared>);
 #[derive(Default)]
 struct Shared {
     is_set: AtomicBool,
+    arrived: Arrived,
     state: Mutex<State>,
+}
+
+/// The signals that have arrived. None of them is set on systems without signals.
+#[derive(Default)]
+struct Arrived {
+    interrupt: Arc<AtomicBool>,
+    terminate: Arc<AtomicBool>,
+    hang_up: Arc<AtomicBool>,
+}
+
+impl Arrived {
+    /// Has each signal noted, besides what is already done about it.
+    fn watch(&self) -> std::io::Result<()> {
+        #[cfg(unix)]
+        {
+            use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+            for (signal, flag) in
+                [(SIGINT, &self.interrupt), (SIGTERM, &self.terminate), (SIGHUP, &self.hang_up)]
+            {
+                signal_hook::flag::register(signal, Arc::clone(flag))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether somebody waits at a keyboard. Schedulers repeat SIGTERM, and end a program that takes too long with
+    /// SIGKILL.
+    fn hurries(&self) -> bool {
+        cfg!(not(unix)) || self.interrupt.load(Ordering::Relaxed)
+    }
+
+    /// 128 and the number of the signal. Whoever presses Ctrl-C wants the end, whatever else asks for it.
+    fn exit_code(&self) -> u8 {
+        let has = |flag: &AtomicBool| flag.load(Ordering::Relaxed);
+        match () {
+            () if has(&self.interrupt) => INTERRUPTED,
+            () if has(&self.terminate) => TERMINATED,
+            () if has(&self.hang_up) => HUNG_UP,
+            () => INTERRUPTED,
+        }
+    }
 }
 
 #[derive(Default)]
@@ -50,7 +93,7 @@ impl Shared {
         let was_set = self.is_set.swap(true, Ordering::Relaxed);
         match &state.writing {
             Some(what) => Answer::Say(format!("still writing {what}; the program ends when that is done")),
-            None if was_set && now.duration_since(first) >= ECHO => Answer::Exit,
+            None if was_set && self.arrived.hurries() && now.duration_since(first) >= ECHO => Answer::Exit,
             None => Answer::Nothing,
         }
     }
@@ -69,10 +112,12 @@ impl Interrupt {
             Answer::Say(words) => console::note(&words),
             Answer::Exit => {
                 console::note("ended at once; unsaved results are lost");
-                std::process::exit(i32::from(INTERRUPTED));
+                std::process::exit(i32::from(seen.arrived.exit_code()));
             }
         })
         .context("cannot handle Ctrl-C")?;
+        // After the handler: each signal then also reaches the handler that was there before.
+        shared.arrived.watch().context("cannot handle SIGTERM")?;
         Ok(Interrupt(shared))
     }
 
@@ -90,6 +135,11 @@ impl Interrupt {
     /// Whether an end has been requested.
     pub fn is_set(&self) -> bool {
         self.0.is_set.load(Ordering::Relaxed)
+    }
+
+    /// The exit code of a program that a signal has ended in good order.
+    pub fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.0.arrived.exit_code())
     }
 
     /// Until the result is dropped, a signal does not end the program but prints a message that names `what`.
@@ -126,14 +176,28 @@ mod tests {
     fn the_first_asks_and_a_later_one_ends() {
         let (shared, now) = (Shared::default(), Instant::now());
         assert_eq!(shared.signalled(now), Answer::Nothing);
+        #[cfg(unix)]
+        assert_eq!(shared.signalled(now + 2 * ECHO), Answer::Nothing, "no scheduler is in a hurry");
+        shared.arrived.interrupt.store(true, Ordering::Relaxed);
         assert!(shared.is_set.load(Ordering::Relaxed));
         assert_eq!(shared.signalled(now + ECHO / 2), Answer::Nothing, "an echo");
         assert_eq!(shared.signalled(now + ECHO), Answer::Exit);
     }
 
     #[test]
+    fn the_exit_code_is_that_of_the_signal_and_ctrl_c_comes_first() {
+        let arrived = Arrived::default();
+        assert_eq!(arrived.exit_code(), 130, "where there are no signals, it was Ctrl-C");
+        for (flag, code) in [(&arrived.hang_up, 129), (&arrived.terminate, 143), (&arrived.interrupt, 130)] {
+            flag.store(true, Ordering::Relaxed);
+            assert_eq!(arrived.exit_code(), code);
+        }
+    }
+
+    #[test]
     fn nothing_ends_the_program_while_it_writes() {
         let interrupt = Interrupt::unheard();
+        interrupt.0.arrived.interrupt.store(true, Ordering::Relaxed);
         let now = Instant::now();
         let writing = interrupt.while_writing("film.exr");
         for late in 0..3 {

@@ -5,7 +5,9 @@
 use std::process::ExitCode;
 use weekender::cli::{self, Request};
 use weekender::failure::{self, Failure};
-use weekender::{app, batch, bench, check, companion, compare, diff, gallery, interrupt, report, stress};
+use weekender::{
+    app, batch, bench, check, companion, compare, diff, gallery, info, interrupt, merge, report, stress,
+};
 
 fn main() -> ExitCode {
     failure::install_panic_hook();
@@ -19,7 +21,10 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Bench(options) => bench::run(&options),
         Request::List => batch::list(),
         Request::SaveScene(options) => batch::save_scene(&options),
-        Request::Merge(options) => batch::merge(&options),
+        Request::Plan(options) => batch::plan(&options),
+        Request::Part(options) => batch::render_part(*options),
+        Request::Merge(options) => merge::run(&options),
+        Request::Info(options) => info::run(&options),
         Request::Diff(options) => diff::run(&options),
         Request::Compare(options) => compare::run(&options),
         Request::Report(options) => report::run(&options),

@@ -4,7 +4,7 @@ use super::rescue;
 use crate::cli::RenderOptions;
 use crate::describe::describe;
 use crate::files::FileIdentity;
-use crate::film::{Film, SaveOutcome, SharedFile};
+use crate::film::{Description, Film, SaveOutcome, SharedFile, key};
 use crate::output::{OutputFormat, write_image_as};
 use crate::progressive::Status;
 use crate::saved::same_job;
@@ -16,8 +16,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 pub(super) struct Places {
     /// The film of `--checkpoint`.
     pub checkpoint: Option<SharedPlace>,
-    /// The film of `--out`, if it is one.
-    out: Option<SharedPlace>,
+    out: Out,
+}
+
+/// What `--out` is.
+enum Out {
+    /// A film of its own.
+    Film(SharedPlace),
+    /// The film of `--checkpoint`.
+    Checkpoint,
+    Picture,
 }
 
 /// A film file that the threads of the render share.
@@ -38,17 +46,28 @@ impl SharedPlace {
 impl Places {
     /// The places in their present state. The film to be resumed must be read after this.
     pub fn of(render: &RenderOptions) -> Places {
-        let out = is_film(&render.out).then(|| SharedPlace::new(&render.out));
+        let out = match &render.checkpoint {
+            Some(checkpoint) if *checkpoint == render.out => Out::Checkpoint,
+            _ if is_film(&render.out) => Out::Film(SharedPlace::new(&render.out)),
+            _ => Out::Picture,
+        };
         Places { checkpoint: render.checkpoint.as_deref().map(SharedPlace::new), out }
+    }
+
+    /// Both films, each with its path.
+    fn films<'a>(&'a self, render: &'a RenderOptions) -> impl Iterator<Item = (&'a Path, &'a SharedPlace)> {
+        let out = match &self.out {
+            Out::Film(place) => Some((render.out.as_path(), place)),
+            Out::Checkpoint | Out::Picture => None,
+        };
+        render.checkpoint.as_deref().zip(self.checkpoint.as_ref()).into_iter().chain(out)
     }
 
     /// Records that the render resumes `film`, if the film was read from one of the places.
     pub fn go_on(&self, render: &RenderOptions, film: &Film) {
         let resumed = render.resume.as_deref().and_then(FileIdentity::of);
-        for (path, place) in [(render.checkpoint.as_ref(), &self.checkpoint), (Some(&render.out), &self.out)]
-        {
-            let identity = path.and_then(|path| FileIdentity::of(path));
-            if let (Some(place), Some(resumed), Some(identity)) = (place, &resumed, identity)
+        for (path, place) in self.films(render) {
+            if let (Some(resumed), Some(identity)) = (&resumed, FileIdentity::of(path))
                 && identity.is_same_as(resumed)
             {
                 place.lock().holds(film.samples());
@@ -77,13 +96,11 @@ pub(super) fn write(
     seconds_before: Option<f64>,
     mut say: impl FnMut(&Path),
 ) -> Written {
-    let description = describe(&render.recipe, render.stage, film, status, seconds_before);
+    let description = described(render, film, status, seconds_before);
     let mut written = Written::default();
     let mut failures = Vec::new();
     let mut is_film_kept = false;
-    let film_places = [(render.checkpoint.as_ref(), &places.checkpoint), (Some(&render.out), &places.out)];
-    for (path, place) in film_places {
-        let (Some(path), Some(place)) = (path, place) else { continue };
+    for (path, place) in places.films(render) {
         say(path);
         match place.lock().save(film, &description, &same_job) {
             Ok(SaveOutcome { path, note, is_elsewhere }) => {
@@ -97,7 +114,7 @@ pub(super) fn write(
             Err(error) => failures.push(error.to_string()),
         }
     }
-    if places.out.is_none() {
+    if matches!(places.out, Out::Picture) {
         say(&render.out);
         let transfer = render.job.rules().transfer;
         match write_image_as(&render.out, film, transfer, &description, render.ppm) {
@@ -119,6 +136,18 @@ pub(super) fn write(
     }
     written.failure = (!failures.is_empty()).then(|| anyhow!("{}", failures.join("; ")));
     written
+}
+
+/// The description of a render's film.
+pub(super) fn described(
+    render: &RenderOptions,
+    film: &Film,
+    status: &Status,
+    seconds_before: Option<f64>,
+) -> Description {
+    let mut description = describe(&render.recipe, render.stage, film, status, seconds_before);
+    description.set(key::COMMAND, &render.command);
+    description
 }
 
 /// Whether the name is that of a film.

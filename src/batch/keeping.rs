@@ -1,8 +1,7 @@
 //! Checkpoints: the film is written at intervals during a render, so a crash loses only the samples since the last one.
 
-use super::files::SharedPlace;
+use super::files::{SharedPlace, described};
 use crate::cli::RenderOptions;
-use crate::describe::describe;
 use crate::film::Film;
 use crate::progressive::{Progressive, Status};
 use crate::saved::same_job;
@@ -51,8 +50,7 @@ struct Writer {
 impl Writer {
     fn write(&self, film: &Film, status: &Status) {
         let status = status_of(film, status, self.held_before);
-        let RenderOptions { recipe, stage, .. } = &self.render;
-        let description = describe(recipe, *stage, film, &status, self.seconds_before);
+        let description = described(&self.render, film, &status, self.seconds_before);
         let outcome = match self.place.lock().save(film, &description, &same_job) {
             Ok(saved) => Outcome { samples: Some(film.sample_count()), words: saved.note },
             Err(error) => {

@@ -3,18 +3,20 @@
 mod files;
 mod keeping;
 mod listing;
-mod merging;
+mod part;
+mod planning;
 mod progress;
 mod rescue;
 mod summary;
 
 pub use listing::list;
-pub use merging::merge;
+pub use part::render_part;
+pub use planning::plan;
 
 use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
 use crate::console;
-use crate::failure::{Failure, INTERRUPTED};
+use crate::failure::Failure;
 use crate::files::{check_replaceable, check_writable, write_text};
 use crate::film::Film;
 use crate::interrupt::Interrupt;
@@ -41,13 +43,22 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
     let places: Vec<Places> = options.renders.iter().map(Places::of).collect();
     // Checked now, because the film of a resumed render is read before kernels are built.
-    let mut resumed = match options.renders.as_slice() {
+    let resumed = match options.renders.as_slice() {
         [RenderOptions { resume: Some(path), job, .. }] => {
             Some(saved::resume(path, job).map_err(Failure::input)?)
         }
         _ => None,
     };
-    if let ([render], [places], Some(resumed)) = (options.renders.as_slice(), places.as_slice(), &resumed) {
+    render_all(options, &places, resumed)
+}
+
+/// Renders what the options ask for into these places. One picture may go on with a film.
+fn render_all(
+    options: BatchOptions,
+    places: &[Places],
+    mut resumed: Option<SavedFilm>,
+) -> Result<ExitCode, Failure> {
+    if let ([render], [places], Some(resumed)) = (options.renders.as_slice(), places, &resumed) {
         places.go_on(render, &resumed.film);
     }
     let mut renderer = Some(backends::create(&options.backend).map_err(Failure::input)?);
@@ -60,7 +71,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
 
     let mut summaries = Vec::with_capacity(options.renders.len());
     let (mut failure, mut printed) = (None, Ok(()));
-    for (render, places) in options.renders.iter().zip(&places) {
+    for (render, places) in options.renders.iter().zip(places) {
         let begun = Begun { options: &options, interrupt: &interrupt, places };
         let (summary, outcome) = begun.render(render, &mut progressive, renderer.take(), resumed.take());
         // The pictures are rendered even if the figures cannot be printed.
@@ -81,7 +92,7 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
             if let Err(error) = figures {
                 console::note(&format!("error: {error:#}"));
             }
-            Ok(ExitCode::from(INTERRUPTED))
+            Ok(interrupt.exit_code())
         }
         (None, figures) => figures.map(|()| ExitCode::SUCCESS).map_err(Failure::Run),
     }
@@ -158,11 +169,12 @@ impl Begun<'_> {
             film,
         };
         let mut status = self.watch(progressive, request, &mut progress, keeper.as_mut());
-        let names: Vec<String> = [render.checkpoint.as_ref(), Some(&render.out)]
+        let mut names: Vec<String> = [render.checkpoint.as_ref(), Some(&render.out)]
             .into_iter()
             .flatten()
             .map(|path| path.display().to_string())
             .collect();
+        names.dedup();
         let writing = self.interrupt.while_writing(names.join(" and "));
         let film = progressive.take_film();
         let begin = Instant::now();

@@ -12,7 +12,7 @@ mod table;
 use crate::baseline::{Baseline, BaselineError};
 use crate::chart;
 use crate::cli::{BenchOptions, BenchScene, JsonTarget};
-use crate::failure::{Failure, INTERRUPTED};
+use crate::failure::Failure;
 use crate::files::check_writable;
 use crate::interrupt::Interrupt;
 use crate::terminal;
@@ -57,7 +57,7 @@ pub fn run(options: &BenchOptions) -> Result<ExitCode, Failure> {
     figures.warnings = warnings(&figures);
     let written = write(options, &figures);
     measured.and(written).map_err(Failure::Run)?;
-    Ok(if figures.interrupted { ExitCode::from(INTERRUPTED) } else { ExitCode::SUCCESS })
+    Ok(if figures.interrupted { interrupt.exit_code() } else { ExitCode::SUCCESS })
 }
 
 fn scenes(options: &BenchOptions, figures: &mut BenchFigures, cancel: &AtomicBool) -> anyhow::Result<()> {

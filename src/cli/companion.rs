@@ -1,9 +1,9 @@
 //! The flags of `weekender companion` and their validation.
 
+use super::backend::choose;
 use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{ProgressChoice, RawDevice};
-use super::render::choose;
 use crate::backends::BackendChoice;
 use crate::render_cpu::CpuOptions;
 use crate::render_gpu::GpuOptions;

@@ -112,6 +112,30 @@ pub enum CliError {
         /// The required extension, with the dot.
         ending: &'static str,
     },
+    /// There are more parts than samples.
+    #[error(
+        "--parts is {parts}, but there are {samples} samples per pixel to divide; each part needs one at least"
+    )]
+    TooManyParts {
+        /// The number of parts.
+        parts: u64,
+        /// The number of samples per pixel.
+        samples: u64,
+    },
+    /// The directory's name cannot be part of a command.
+    #[error("--out is {}, which cannot stand in a command: its name must be UTF-8 without control characters", path.display())]
+    PlanDirectory {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// The variable that names the part has another value.
+    #[error("{name} is {value:?}, but must be the number of a part; set it, or give --part NUMBER")]
+    PartVariable {
+        /// The variable of the environment.
+        name: &'static str,
+        /// Its value.
+        value: String,
+    },
     /// Two scenes have the same name, so the report could not tell them apart.
     #[error("--scenes has two scenes called {name}; leave one out or rename its file")]
     SameScene {

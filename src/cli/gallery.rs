@@ -1,8 +1,8 @@
 //! The flags of `weekender gallery` and their validation.
 
+use super::backend::choose;
 use super::error::CliError;
 use super::raw::{ProgressChoice, RawDevice};
-use super::render::choose;
 use crate::backends::BackendChoice;
 use crate::render_cpu::CpuOptions;
 use crate::render_gpu::GpuOptions;

@@ -1,5 +1,6 @@
 //! The command line, parsed and validated.
 
+mod backend;
 mod bench;
 mod check;
 mod companion;
@@ -7,7 +8,9 @@ mod compare;
 mod diff;
 mod error;
 mod gallery;
+mod merge;
 mod paths;
+mod plan;
 mod raw;
 mod render;
 mod report;
@@ -23,6 +26,8 @@ pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice, SideChoice};
 pub use error::CliError;
 pub use gallery::GalleryOptions;
+pub use merge::{InfoOptions, MergeOptions, MergeSource};
+pub use plan::{PartOptions, PlanFormat, PlanOptions};
 pub use raw::{DrawWith, ProgressChoice};
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
@@ -30,10 +35,10 @@ pub use stress::StressOptions;
 pub use values::JsonTarget;
 
 use crate::failure::Failure;
+use crate::shell;
 use clap::Parser;
-use paths::Paths;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::Path;
 use subcommands::{Raw, RawCommand};
 
 /// What the program is to do.
@@ -47,8 +52,14 @@ pub enum Request {
     List,
     /// Write a scene file and render nothing.
     SaveScene(Box<SaveSceneOptions>),
+    /// Divide a picture into parts.
+    Plan(Box<PlanOptions>),
+    /// Render a part.
+    Part(Box<PartOptions>),
     /// Merge films.
-    Merge(MergeOptions),
+    Merge(Box<MergeOptions>),
+    /// Say what a file says about itself.
+    Info(InfoOptions),
     /// Compare a path on two backends.
     Diff(Box<DiffOptions>),
     /// Compare two pictures.
@@ -67,15 +78,6 @@ pub enum Request {
     Batch(Box<BatchOptions>),
 }
 
-/// Options of `weekender merge`.
-#[derive(Clone, Debug)]
-pub struct MergeOptions {
-    /// The films.
-    pub films: Vec<PathBuf>,
-    /// Where the result is written.
-    pub out: PathBuf,
-}
-
 /// Parses the command line; the first argument is the program's name.
 ///
 /// # Errors
@@ -84,17 +86,24 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let typed = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());
     let command = ["weekender".into()].into_iter().chain(typed).collect::<Vec<_>>().join(" ");
+    let words = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());
+    let typed = shell::line(["weekender".into()].into_iter().chain(words));
+    let program = called(arguments.first());
     let raw = Raw::try_parse_from(&arguments).map_err(Failure::CommandLine)?;
     match raw.command {
         Some(RawCommand::Bench(raw)) => {
             bench::bench(*raw).map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)
         }
-        Some(RawCommand::Merge { films, out }) => {
-            let read = |paths: Paths, film: &PathBuf| paths.read("the film", Some(film));
-            let paths = films.iter().fold(Paths::default(), read).write("--out", Some(&out));
-            paths.check(&[]).map_err(Failure::input)?;
-            Ok(Request::Merge(MergeOptions { films, out }))
+        Some(RawCommand::Plan(raw)) => plan::plan(*raw, &program, typed)
+            .map(|options| Request::Plan(Box::new(options)))
+            .map_err(Failure::input),
+        Some(RawCommand::RenderPart(raw)) => {
+            plan::part(*raw, typed).map(|options| Request::Part(Box::new(options))).map_err(Failure::input)
         }
+        Some(RawCommand::Merge(raw)) => merge::merge(*raw, &program)
+            .map(|options| Request::Merge(Box::new(options)))
+            .map_err(Failure::input),
+        Some(RawCommand::Info(raw)) => Ok(Request::Info(merge::info(raw))),
         Some(RawCommand::Diff(raw)) => {
             diff::diff(*raw).map(|options| Request::Diff(Box::new(options))).map_err(Failure::input)
         }
@@ -117,6 +126,14 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
             check::check(*raw).map(|options| Request::Check(Box::new(options))).map_err(Failure::input)
         }
         None if raw.render.list => Ok(Request::List),
-        None => render::request(raw.render).map_err(Failure::input),
+        None => render::request(raw.render, typed).map_err(Failure::input),
     }
+}
+
+/// How commands call this program: by its name if the shell has found it, otherwise with its directory.
+fn called(first: Option<&OsString>) -> String {
+    const NAME: &str = "weekender";
+    let is_path = first.is_some_and(|first| Path::new(first).components().count() > 1);
+    let path = if is_path { std::env::current_exe().ok() } else { None };
+    path.and_then(|path| path.to_str().map(str::to_owned)).unwrap_or_else(|| NAME.to_owned())
 }

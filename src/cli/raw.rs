@@ -49,6 +49,54 @@ pub(super) struct RawRender {
     #[arg(long, value_enum, help_heading = "When to stop (the first one met)")]
     pub estimate_error: Option<RawSwitch>,
 
+    #[command(flatten)]
+    pub backend: RawBackend,
+
+    /// The picture: .png, .ppm or .exr (linear film); with --stage all, the directory
+    /// [default: SCENE.png]
+    #[arg(long, value_name = "FILE", help_heading = "Files")]
+    pub out: Option<PathBuf>,
+    /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
+    #[arg(long, value_enum, help_heading = "Files")]
+    pub ppm: Option<RawPpm>,
+    /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C
+    #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
+    pub checkpoint: Option<PathBuf>,
+    /// Resume the film of --checkpoint if it is there, so that one command starts a render and goes on with it
+    #[arg(long = "continue", requires = "checkpoint", conflicts_with = "resume", help_heading = "Files")]
+    pub go_on: bool,
+    /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
+    /// 1h
+    /// [default: 60s]
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true,
+          help_heading = "Files")]
+    pub every: Option<Duration>,
+    /// Continue a film; without --scene and --stage, with its own scene
+    #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
+    pub resume: Option<PathBuf>,
+    /// Write the scene, with the changes of the other flags, as a scene file
+    #[arg(long, value_name = "FILE.toml", help_heading = "Files")]
+    pub save_scene: Option<PathBuf>,
+    /// Write the final figures as JSON; - for standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Files")]
+    pub json: Option<PathBuf>,
+
+    /// What draws the window; auto: wgpu, or gl if there is no hardware adapter
+    #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
+    pub draw_with: DrawWith,
+
+    /// Write the times of the window's frames to a file
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub frame_log: Option<PathBuf>,
+
+    /// Show progress on standard error; auto: if it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
+}
+
+/// What renders; all commands that render a picture share these flags.
+#[derive(Debug, Args)]
+pub(super) struct RawBackend {
     /// What renders; auto: the fastest available; cpu,gpu: both at once, into one film
     #[arg(long, value_enum, default_value = "auto", help_heading = "Device")]
     pub device: RawDevice,
@@ -91,44 +139,6 @@ pub(super) struct RawRender {
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1024),
           allow_hyphen_values = true, help_heading = "Device")]
     pub threads: Option<u64>,
-
-    /// The picture: .png, .ppm or .exr (linear film); with --stage all, the directory
-    /// [default: SCENE.png]
-    #[arg(long, value_name = "FILE", help_heading = "Files")]
-    pub out: Option<PathBuf>,
-    /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
-    #[arg(long, value_enum, help_heading = "Files")]
-    pub ppm: Option<RawPpm>,
-    /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C
-    #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
-    pub checkpoint: Option<PathBuf>,
-    /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
-    /// 1h
-    /// [default: 60s]
-    #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true,
-          help_heading = "Files")]
-    pub every: Option<Duration>,
-    /// Continue a film; without --scene and --stage, with its own scene
-    #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
-    pub resume: Option<PathBuf>,
-    /// Write the scene, with the changes of the other flags, as a scene file
-    #[arg(long, value_name = "FILE.toml", help_heading = "Files")]
-    pub save_scene: Option<PathBuf>,
-    /// Write the final figures as JSON; - for standard output
-    #[arg(long, value_name = "FILE|-", help_heading = "Files")]
-    pub json: Option<PathBuf>,
-
-    /// What draws the window; auto: wgpu, or gl if there is no hardware adapter
-    #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
-    pub draw_with: DrawWith,
-
-    /// Write the times of the window's frames to a file
-    #[arg(long, value_name = "FILE", hide = true)]
-    pub frame_log: Option<PathBuf>,
-
-    /// Show progress on standard error; auto: if it is a terminal
-    #[arg(long, value_enum, default_value = "auto")]
-    pub progress: ProgressChoice,
 }
 
 /// What is rendered; rendering and comparing share these flags.

@@ -1,25 +1,24 @@
 //! Validates the flags for rendering, in the window or to files.
 
 use super::Request;
+use super::backend;
 use super::error::CliError;
 use super::paths::Paths;
-use super::raw::{self, DrawWith, ProgressChoice, RawDevice, RawPpm, RawRender};
+use super::raw::{self, DrawWith, ProgressChoice, RawPpm, RawRender};
 use super::sources::{self, ChosenRecipe};
-use super::values::{JsonTarget, Level, Simd};
+use super::values::JsonTarget;
 use crate::backends::BackendChoice;
 use crate::output::{OutputFormat, PpmForm};
 use crate::progressive::{Plan, Stop};
 use crate::recipe::{Recipe, plain_name};
 use crate::render::RenderJob;
-use crate::render_cpu::CpuOptions;
-use crate::render_gpu::{Fault, FaultInjection, GpuOptions, InjectionPoint};
 use crate::saved;
 use crate::stages::Stage;
 use std::path::PathBuf;
 use std::time::Duration;
 
 /// Interval at which a checkpoint is written by default.
-const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
+pub(super) const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
 
 /// Options of `--batch`.
 #[derive(Debug)]
@@ -84,6 +83,8 @@ pub struct RenderOptions {
     pub resume: Option<PathBuf>,
     /// How a PPM holds its numbers.
     pub ppm: PpmForm,
+    /// The command that renders it.
+    pub command: String,
 }
 
 /// A scene file to write.
@@ -96,9 +97,12 @@ pub struct SaveSceneOptions {
 }
 
 /// Validates the flags, except `--list` and the subcommands.
-pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
-    let backend = backend(&raw)?;
+pub(super) fn request(mut raw: RawRender, command: String) -> Result<Request, CliError> {
+    let backend = backend::choice(&raw.backend)?;
     check_film_names(&raw)?;
+    if raw.go_on && raw.checkpoint.as_ref().is_some_and(|film| film.exists()) {
+        raw.resume.clone_from(&raw.checkpoint);
+    }
     if !raw.batch && raw.save_scene.is_none() {
         return Ok(Request::Window(Box::new(window(&raw, backend)?)));
     }
@@ -108,14 +112,14 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
             .iter()
             .map(|stage| {
                 let chosen = ChosenRecipe { recipe: stage.recipe(), stage: Some(stage) };
-                render(chosen, &raw, directory.join(format!("{}.png", stage.id)))
+                render(chosen, &raw, directory.join(format!("{}.png", stage.id)), &command)
             })
             .collect::<Result<_, _>>()?;
         (renders, Some(directory))
     } else {
         let chosen = sources::find(&raw.picture, raw.resume.as_deref())?;
         let out = raw.out.clone().unwrap_or_else(|| default_name(&chosen));
-        (vec![render(chosen, &raw, out)?], None)
+        (vec![render(chosen, &raw, out, &command)?], None)
     };
     let save_scene = match (&raw.save_scene, renders.as_slice()) {
         (Some(path), [only]) => Some(SaveSceneOptions { recipe: only.recipe.clone(), path: path.clone() }),
@@ -179,17 +183,19 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         stage: chosen.stage,
         file: file.map(PathBuf::from),
         backend,
-        is_device_given: raw.device != RawDevice::Auto
-            || raw.threads.is_some()
-            || raw.adapter.is_some()
-            || (raw.simd, raw.isa) != (Simd(None), Level(None)),
+        is_device_given: backend::is_given(&raw.backend),
         resume: raw.resume.clone(),
         draw_with: raw.draw_with,
         frame_log: raw.frame_log.clone(),
     })
 }
 
-fn render(mut chosen: ChosenRecipe, raw: &RawRender, out: PathBuf) -> Result<RenderOptions, CliError> {
+fn render(
+    mut chosen: ChosenRecipe,
+    raw: &RawRender,
+    out: PathBuf,
+    command: &str,
+) -> Result<RenderOptions, CliError> {
     raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
     chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
@@ -219,6 +225,7 @@ fn render(mut chosen: ChosenRecipe, raw: &RawRender, out: PathBuf) -> Result<Ren
         every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
         resume: raw.resume.clone(),
         ppm: raw.ppm.map_or(PpmForm::Binary, RawPpm::form),
+        command: command.to_owned(),
     })
 }
 
@@ -257,63 +264,6 @@ fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
     Plan { first_sample, stop: Stop { samples, seconds, noise }, pass_target: Plan::BATCH_PASS }
-}
-
-fn backend(raw: &RawRender) -> Result<BackendChoice, CliError> {
-    let (Simd(lanes), Level(isa)) = (raw.simd, raw.isa);
-    let threads = raw.threads.and_then(|threads| usize::try_from(threads).ok());
-    let cpu = CpuOptions { isa, lanes, threads, panics_after: raw.simulate_panic, ..CpuOptions::default() };
-    let injections = [
-        (raw.simulate_device_lost, Fault::Lost, "--simulate-device-lost"),
-        (raw.simulate_out_of_memory, Fault::OutOfMemory, "--simulate-out-of-memory"),
-        (raw.simulate_invalid_call, Fault::Invalid, "--simulate-invalid-call"),
-        (raw.simulate_hang, Fault::Hang, "--simulate-hang"),
-    ];
-    let point = InjectionPoint::Dispatch;
-    let injection = injections
-        .into_iter()
-        .find_map(|(after, fault, flag)| after.map(|after| (FaultInjection { fault, point, after }, flag)));
-    let gpu = GpuOptions {
-        injection: injection.map(|(injection, _)| injection),
-        ..GpuOptions::of_adapter(raw.adapter.as_deref())
-    };
-    let gpu_flag = if raw.adapter.is_some() { Some("--adapter") } else { injection.map(|(_, flag)| flag) };
-    let cpu_flag = match (lanes, isa) {
-        (Some(_), _) => Some("--simd"),
-        (None, Some(_)) => Some("--isa"),
-        (None, None) => None,
-    };
-    choose(raw.device, cpu, gpu, [cpu_flag, gpu_flag])
-}
-
-/// The backend of `device`. The flags are those that only the CPU's packets or only the GPU understand, if any is given.
-pub(super) fn choose(
-    device: RawDevice,
-    cpu: CpuOptions,
-    gpu: GpuOptions,
-    [cpu_flag, gpu_flag]: [Option<&'static str>; 2],
-) -> Result<BackendChoice, CliError> {
-    if let (Some(flag), RawDevice::Cpu | RawDevice::Reference) = (gpu_flag, device) {
-        let other = if device == RawDevice::Cpu { "--device cpu" } else { "--device reference" };
-        return Err(CliError::Together {
-            flag,
-            other,
-            reason: "it applies only to the GPU; leave one of them out",
-        });
-    }
-    match (device, cpu_flag) {
-        (RawDevice::Auto, _) if gpu.adapter.is_some() => Ok(BackendChoice::Gpu(gpu)),
-        (RawDevice::Auto, _) => Ok(BackendChoice::auto(cpu, gpu)),
-        (RawDevice::Cpu, _) => Ok(BackendChoice::Cpu(cpu)),
-        (RawDevice::Gpu, _) => Ok(BackendChoice::Gpu(gpu)),
-        (RawDevice::Both, _) => Ok(BackendChoice::Both(cpu, gpu)),
-        (RawDevice::Reference, Some(flag)) => Err(CliError::Together {
-            flag,
-            other: "--device reference",
-            reason: "the reference is scalar; leave one of them out",
-        }),
-        (RawDevice::Reference, None) => Ok(BackendChoice::Reference { threads: cpu.threads }),
-    }
 }
 
 /// The directory of `--stage all`, which excludes many other flags.

@@ -6,12 +6,13 @@ use super::companion::RawCompanion;
 use super::compare::RawCompare;
 use super::diff::RawDiff;
 use super::gallery::RawGallery;
+use super::merge::{RawInfo, RawMerge};
+use super::plan::{RawPart, RawPlan};
 use super::raw::RawRender;
 use super::report::RawReport;
 use super::stress::RawStress;
 use crate::failure::EXIT_CODES;
 use clap::{Parser, Subcommand};
-use std::path::PathBuf;
 
 /// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
 #[derive(Debug, Parser)]
@@ -30,15 +31,23 @@ pub(super) enum RawCommand {
     /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
     /// preparing and writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
     Bench(Box<RawBench>),
-    /// Merge film files of the same picture that hold different samples
-    Merge {
-        /// Film files (.exr), as --checkpoint, --out and merge write them
-        #[arg(required = true, num_args = 1.., value_name = "FILM")]
-        films: Vec<PathBuf>,
-        /// Where the result is written: .exr for the film, .png or .ppm for the picture
-        #[arg(long, value_name = "FILE")]
-        out: PathBuf,
-    },
+    /// Divide the samples of a picture into parts that many machines render, and make the commands for them
+    ///
+    /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it goes on
+    /// from the part's last checkpoint, and ends at once if the part is whole.
+    Plan(Box<RawPlan>),
+    /// Render a part of a plan, or go on with it
+    ///
+    /// The part's film is its own checkpoint. The exit code is 0 if the part is whole, 143 after SIGTERM (the checkpoint
+    /// is written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
+    RenderPart(Box<RawPart>),
+    /// Merge films of the same picture that hold different samples, or the parts of a plan
+    ///
+    /// Of a plan, what is there is merged, also checkpoints of unfinished parts. The exit code is 0 if nothing is
+    /// missing, 1 if a part is missing, unfinished or damaged, and 2 if nothing could be merged.
+    Merge(Box<RawMerge>),
+    /// Say what a film, picture, scene file or plan says about itself
+    Info(RawInfo),
     /// Show a path as two backends trace it, side by side, and where the paths part
     ///
     /// The exit code is 0 if the two agree, 1 if they differ and 2 if they could not be compared.

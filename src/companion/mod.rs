@@ -26,7 +26,7 @@ pub use section::excerpts_between;
 
 use crate::cli::CompanionOptions;
 use crate::console;
-use crate::failure::{Failure, INTERRUPTED};
+use crate::failure::Failure;
 use crate::files::{self, check_writable, write_text};
 use crate::gallery::{self, Order, Outcome, Quality, StillProgress};
 use crate::interrupt::Interrupt;
@@ -79,7 +79,7 @@ pub fn run(options: &CompanionOptions) -> Result<ExitCode, Failure> {
         console::note(&format!(
             "interrupted: {missing} figures missing; run the same command again to go on"
         ));
-        return Ok(ExitCode::from(INTERRUPTED));
+        return Ok(interrupt.exit_code());
     }
     let length = page.html.len() / 1024;
     let words = format!("{rendered} figures rendered, {kept} unchanged, {length} KiB of text");

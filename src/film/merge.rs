@@ -1,6 +1,10 @@
 //! Merges films from several files.
 
-use super::{CheckpointError, FilmError, FilmFile, SampleRanges, checkpoint, key};
+use super::checkpoint::{ApplyError, FilmHead, Sign, apply};
+use super::{CheckpointError, Description, Film, FilmError, FilmFile, SampleRanges, checkpoint, key};
+use crate::files::{self, InputError};
+use std::fs::File;
+use std::io::{BufReader, Seek};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -39,6 +43,12 @@ pub enum MergeError {
         /// The first samples that both hold.
         range: Range<u64>,
     },
+    /// A film could be neither added nor taken away again.
+    #[error("{reason}; what was added of it could not be taken away again, so merge all films again")]
+    Lost {
+        /// What is wrong with the file.
+        reason: CheckpointError,
+    },
     /// The films differ in shape.
     #[error("{} and {} cannot be merged: {reason}", first.display(), other.display())]
     Film {
@@ -51,7 +61,166 @@ pub enum MergeError {
     },
 }
 
-/// Merges the films of several files. At most two of them are in memory at a time.
+/// The sum of the films of several files. Besides the sum itself it needs memory for a few rows only: a file is added
+/// while it is read, and taken away again if it turns out to be damaged.
+#[derive(Debug)]
+pub struct FilmSum {
+    film: Film,
+    description: Description,
+    /// The file or plan that decides what the others must be films of.
+    first: PathBuf,
+    shares: Vec<Share>,
+}
+
+/// A film in a sum.
+#[derive(Debug)]
+pub struct Share {
+    path: PathBuf,
+    samples: SampleRanges,
+    rejected: u64,
+    seconds: Option<f64>,
+    backend: Option<String>,
+    /// Held open, so that it can be taken away even if the file was replaced.
+    file: Option<File>,
+}
+
+impl Share {
+    /// The samples that it has brought.
+    pub fn samples(&self) -> &SampleRanges {
+        &self.samples
+    }
+}
+
+impl FilmSum {
+    /// An empty sum of films with this many pixels and halves. `recipe` and messages come from `first`.
+    ///
+    /// # Errors
+    /// [`MergeError::Film`] if there is not enough memory.
+    pub fn new(
+        width: u32,
+        height: u32,
+        halves: usize,
+        description: Description,
+        first: &Path,
+    ) -> Result<Self, MergeError> {
+        let film = Film::try_new(width, height, halves).map_err(|reason| MergeError::Film {
+            first: first.to_owned(),
+            other: first.to_owned(),
+            reason,
+        })?;
+        Ok(FilmSum { film, description, first: first.to_owned(), shares: Vec::new() })
+    }
+
+    /// Adds the film in a file. `same_job` gets the recipes of the sum and of the file, and returns what differs if
+    /// their jobs differ. A film whose samples `may_leave` can be taken away again: see [`FilmSum::take_back`].
+    ///
+    /// # Errors
+    /// [`MergeError`]; unless it is [`MergeError::Lost`], the sum is as before.
+    pub fn add(
+        &mut self,
+        path: &Path,
+        same_job: impl Fn(&str, &str) -> Result<(), String>,
+        may_leave: impl Fn(&SampleRanges) -> bool,
+    ) -> Result<&Share, MergeError> {
+        let (file, about) = open(path)?;
+        let (first, other) = (self.first.clone(), path.to_owned());
+        if let Err(difference) = same_job(self.description.recipe(), about.description.recipe()) {
+            return Err(MergeError::OtherJob { first, other, difference });
+        }
+        let mine = (self.film.width, self.film.height, self.film.halves.len());
+        let theirs = (about.width, about.height, about.halves);
+        if mine != theirs {
+            return Err(MergeError::Film { first, other, reason: FilmError::Size { mine, theirs } });
+        }
+        let overlap = self.shares.iter().find_map(|share| {
+            share.samples.first_common(&about.samples).map(|range| (share.path.clone(), range))
+        });
+        if let Some((first, range)) = overlap {
+            return Err(MergeError::Overlap { first, other, range });
+        }
+        let failed = |reason| MergeError::Film { first: first.clone(), other: other.clone(), reason };
+        let samples = self.film.samples.union(&about.samples).map_err(failed)?;
+        let rejected = self.film.with_rejected(about.rejected).map_err(failed)?;
+        apply(&mut self.film.halves, &file, path, Sign::Plus).map_err(apply_error)?;
+        (self.film.samples, self.film.rejected) = (samples, rejected);
+        let is_guest = may_leave(&about.samples);
+        self.shares.push(Share {
+            path: path.to_owned(),
+            samples: about.samples,
+            rejected: about.rejected,
+            seconds: about.description.get(key::SECONDS).and_then(|seconds| seconds.parse().ok()),
+            backend: about.description.get(key::BACKEND).map(str::to_owned),
+            file: is_guest.then_some(file),
+        });
+        // It was pushed just now.
+        Ok(&self.shares[self.shares.len() - 1])
+    }
+
+    /// Takes away every film that was added with `may_leave`.
+    ///
+    /// # Errors
+    /// [`MergeError::Lost`] if one of them cannot be read any more: the sum is then worthless.
+    pub fn take_back(&mut self) -> Result<(), MergeError> {
+        let leaves = |share: &mut Share| share.file.is_some();
+        for share in self.shares.extract_if(.., leaves) {
+            let Some(file) = &share.file else { continue };
+            apply(&mut self.film.halves, file, &share.path, Sign::Minus).map_err(|error| match error {
+                ApplyError::File(reason) | ApplyError::Lost(reason) => MergeError::Lost { reason },
+            })?;
+            self.film.rejected -= share.rejected;
+        }
+        let ranges = self.shares.iter().flat_map(|share| share.samples.iter());
+        self.film.samples = SampleRanges::from_ranges(ranges).map_err(|reason| MergeError::Film {
+            first: self.first.clone(),
+            other: self.first.clone(),
+            reason,
+        })?;
+        Ok(())
+    }
+
+    /// The sum.
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// The description of the sum: that of its beginning, with the samples of all films and, if all films have them,
+    /// the sum of their seconds.
+    pub fn description(&self) -> Description {
+        let mut description = self.description.clone();
+        description.set(key::SAMPLES, self.film.sample_count());
+        let mut backends: Vec<&str> = Vec::new();
+        for backend in self.shares.iter().filter_map(|share| share.backend.as_deref()) {
+            if !backends.contains(&backend) {
+                backends.push(backend);
+            }
+        }
+        if !backends.is_empty() {
+            description.set(key::BACKEND, backends.join("; "));
+        }
+        if let Some(seconds) = self.shares.iter().map(|share| share.seconds).sum::<Option<f64>>() {
+            description.set(key::SECONDS, seconds);
+        }
+        description
+    }
+}
+
+fn apply_error(error: ApplyError) -> MergeError {
+    match error {
+        ApplyError::File(reason) => MergeError::File(reason),
+        ApplyError::Lost(reason) => MergeError::Lost { reason },
+    }
+}
+
+/// A film file, held open, and what it says about its film.
+fn open(path: &Path) -> Result<(File, FilmHead), CheckpointError> {
+    let (mut file, length) = files::open(path)?;
+    let about = checkpoint::head_of(BufReader::new(&file), length, path)?;
+    file.rewind()
+        .map_err(|reason| InputError::Unreadable { path: path.to_owned(), reason: reason.to_string() })?;
+    Ok((file, about))
+}
+
+/// Merges the films of several files. Besides the sum, this needs memory for a few rows.
 ///
 /// `same_job` gets the recipes of the first file and of another one, and returns what differs if their jobs differ.
 /// The description is that of the first file, with the samples of all files and, if all files have them, the sum of
@@ -63,49 +232,14 @@ pub fn merge_files<P: AsRef<Path>>(
     paths: &[P],
     same_job: impl Fn(&str, &str) -> Result<(), String>,
 ) -> Result<FilmFile, MergeError> {
-    let [first, others @ ..] = paths else { return Err(MergeError::NoFiles) };
-    let first = first.as_ref();
-    let mut merged = checkpoint::load(first)?;
-    let mut seconds = seconds_of(&merged);
-    let mut backends = Vec::from_iter(backend_of(&merged));
-    let mut added: Vec<(&Path, SampleRanges)> = vec![(first, merged.film.samples().clone())];
-    for other in others {
-        let other = other.as_ref();
-        let part = checkpoint::load(other)?;
-        same_job(merged.description.recipe(), part.description.recipe()).map_err(|difference| {
-            MergeError::OtherJob { first: first.to_owned(), other: other.to_owned(), difference }
-        })?;
-        let overlap = added.iter().find_map(|(earlier, samples)| {
-            samples.first_common(part.film.samples()).map(|range| (earlier.to_path_buf(), range))
-        });
-        if let Some((first, range)) = overlap {
-            return Err(MergeError::Overlap { first, other: other.to_owned(), range });
-        }
-        merged.film.merge(&part.film).map_err(|reason| MergeError::Film {
-            first: first.to_owned(),
-            other: other.to_owned(),
-            reason,
-        })?;
-        backends.extend(backend_of(&part).filter(|backend| !backends.contains(backend)));
-        seconds = seconds.zip(seconds_of(&part)).map(|(sum, more)| sum + more);
-        added.push((other, part.film.samples().clone()));
+    let [first, ..] = paths else { return Err(MergeError::NoFiles) };
+    let FilmHead { width, height, halves, description, .. } = checkpoint::read_head(first.as_ref())?;
+    let mut sum = FilmSum::new(width, height, halves, description, first.as_ref())?;
+    for path in paths {
+        sum.add(path.as_ref(), &same_job, |_| false)?;
     }
-    merged.description.set(key::SAMPLES, merged.film.sample_count());
-    if !backends.is_empty() {
-        merged.description.set(key::BACKEND, backends.join("; "));
-    }
-    if let Some(seconds) = seconds {
-        merged.description.set(key::SECONDS, seconds);
-    }
-    Ok(merged)
-}
-
-fn backend_of(file: &FilmFile) -> Option<String> {
-    file.description.get(key::BACKEND).map(str::to_owned)
-}
-
-fn seconds_of(file: &FilmFile) -> Option<f64> {
-    file.description.get(key::SECONDS)?.parse().ok()
+    let description = sum.description();
+    Ok(FilmFile { film: sum.film, description })
 }
 
 /// Checks whether two recipes have the same text, apart from lines that set `samples_per_pixel`.

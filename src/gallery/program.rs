@@ -7,7 +7,7 @@ use super::{Figure, Quality, Still};
 use crate::cli::GalleryOptions;
 use crate::console;
 use crate::describe::{counted, seconds};
-use crate::failure::{Failure, INTERRUPTED};
+use crate::failure::Failure;
 use crate::files::{check_writable, write_text};
 use crate::interrupt::Interrupt;
 use crate::stages::Stage;
@@ -57,7 +57,7 @@ pub fn run(options: &GalleryOptions) -> Result<ExitCode, Failure> {
             "interrupted: {} missing; run the same command again to go on",
             counted(missing as u64, "picture")
         ));
-        return Ok(ExitCode::from(INTERRUPTED));
+        return Ok(interrupt.exit_code());
     }
     let took = seconds(begin.elapsed().as_secs_f64());
     let words = format!("{} rendered in {took}, {kept} unchanged", counted(rendered as u64, "picture"));

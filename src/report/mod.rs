@@ -14,7 +14,7 @@ use crate::backends;
 use crate::chart;
 use crate::cli::{JsonTarget, ReferenceChoice, ReportOptions};
 use crate::console;
-use crate::failure::{Failure, INTERRUPTED};
+use crate::failure::Failure;
 use crate::files;
 use crate::files::{check_writable, write_text};
 use crate::film::Film;
@@ -58,7 +58,7 @@ pub fn run(options: &ReportOptions) -> Result<ExitCode, Failure> {
     outcome.and(written).map_err(Failure::Run)?;
     if report.interrupt.is_set() {
         console::note("interrupted; run the same command again to continue");
-        return Ok(ExitCode::from(INTERRUPTED));
+        return Ok(report.interrupt.exit_code());
     }
     Ok(ExitCode::SUCCESS)
 }

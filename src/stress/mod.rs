@@ -27,7 +27,7 @@ pub use verdict::Verdict;
 
 use crate::backends::BackendChoice;
 use crate::cli::{JsonTarget, StressOptions};
-use crate::failure::{Failure, INTERRUPTED};
+use crate::failure::Failure;
 use crate::files::check_writable;
 use crate::interrupt::Interrupt;
 use crate::render_cpu::CpuOptions;
@@ -65,7 +65,7 @@ pub fn run(options: &StressOptions) -> Result<ExitCode, Failure> {
         is_right &= search::run(options, time, interrupt.flag()).map_err(Failure::Run)?;
     }
     Ok(match (interrupt.is_set(), is_right) {
-        (true, _) => ExitCode::from(INTERRUPTED),
+        (true, _) => interrupt.exit_code(),
         (false, true) => ExitCode::SUCCESS,
         (false, false) => ExitCode::FAILURE,
     })

@@ -10,4 +10,5 @@
 mod common;
 mod limits;
 mod outputs;
+mod parts;
 mod signals;

@@ -6,7 +6,7 @@ use std::io::Cursor;
 use std::ops::Range;
 use std::path::Path;
 use weekender::files::InputError;
-use weekender::film::{CheckpointError, Film, checkpoint};
+use weekender::film::{CheckpointError, Film, checkpoint, merge_files, same_recipe_text};
 use weekender::output::decode_description;
 
 proptest! {
@@ -87,14 +87,72 @@ fn another_version_is_refused() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 2, &[0..10]), &description()).unwrap();
-    spoil(&path, b"version = 3", 10, b'2');
+    let whole = std::fs::read(&path).unwrap();
+    let writer = concat!("Weekender ", env!("CARGO_PKG_VERSION")).to_owned();
+    spoil(&path, b"\nsample_version = 3", 18, b'2');
     let error = load_error(&path);
-    let told = error.to_string();
-    assert!(
-        told.contains("version 2, but this program reads version 3; continue with the program"),
-        "{told}"
+    for part in ["samples of version 2", &writer, "samples of version 3", "render it again"] {
+        assert!(error.to_string().contains(part), "{error}");
+    }
+    assert_eq!(
+        error,
+        CheckpointError::SampleVersion { path: path.clone(), version: 2, writer: writer.clone() }
     );
-    assert_eq!(error, CheckpointError::Version { path, version: 2 });
+    for (version, digit) in [(9, b'9'), (2, b'2')] {
+        std::fs::write(&path, &whole).unwrap();
+        spoil(&path, b"version = 4", 10, digit);
+        let error = load_error(&path);
+        let told = error.to_string();
+        assert!(told.contains(&format!("version {version}")) && told.contains("versions 3 to 4"), "{told}");
+        assert_eq!(error, CheckpointError::Version { path: path.clone(), version, writer: writer.clone() });
+    }
+}
+
+/// The words of a channel, read without this program.
+fn channel(path: &Path, name: &str) -> Vec<u32> {
+    use exr::prelude::{FlatSamples, ReadChannels, ReadLayers, read};
+    let read = read().no_deep_data().largest_resolution_level().all_channels().first_valid_layer();
+    let image = read.all_attributes().from_file(path).unwrap();
+    let channels = image.layer_data.channel_data.list;
+    let found = channels.into_iter().find(|channel| channel.name.to_string() == name).unwrap();
+    let FlatSamples::U32(words) = found.sample_data else { panic!("{name} has no words") };
+    words
+}
+
+#[test]
+fn a_film_of_the_last_version_is_read_and_goes_on_as_one_of_this() {
+    let old = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/film/data/version-3.exr"));
+    let head = checkpoint::check(old).unwrap();
+    assert_eq!(
+        (head.version, head.width, head.height, head.samples.to_string()),
+        (3, 16, 9, "0..6".to_owned())
+    );
+    let read = checkpoint::load(old).unwrap();
+    for (half, half_name) in ["a", "b"].into_iter().enumerate() {
+        for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
+            let [low, high] =
+                ["lo", "hi"].map(|word| channel(old, &format!("sum.{half_name}.{name}.{word}")));
+            for (pixel, (low, high)) in low.iter().zip(&high).enumerate() {
+                let sum = u64::from(*low) | u64::from(*high) << 32;
+                assert_eq!(read.film.halves()[half][pixel].0[colour], sum);
+            }
+        }
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let [new, spoilt] = ["new.exr", "spoilt.exr"].map(|name| directory.path().join(name));
+    checkpoint::save(&new, &read.film, &read.description).unwrap();
+    assert_eq!(checkpoint::read_head(&new).unwrap().version, 4);
+    assert!(checkpoint::load(&new).unwrap() == read);
+    // It can be merged, and damage is still noticed.
+    let merged = merge_files(&[old], same_recipe_text).unwrap();
+    assert!(merged.film == read.film);
+    let mut bytes = std::fs::read(old).unwrap();
+    let middle = bytes.len() * 2 / 3;
+    bytes[middle] ^= 4;
+    std::fs::write(&spoilt, bytes).unwrap();
+    for error in [checkpoint::load(&spoilt).map(drop), checkpoint::check(&spoilt).map(drop)] {
+        assert!(matches!(error, Err(CheckpointError::Damaged { .. })), "{error:?}");
+    }
 }
 
 /// The bytes of an attribute in a file: name, type, length and value.
@@ -159,11 +217,36 @@ fn no_flipped_bit_changes_a_film_unnoticed() {
 }
 
 #[test]
+fn damage_is_located() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("x.exr");
+    let film = noisy_film(40, 70, 2, &[0..4]);
+    checkpoint::save(&path, &film, &description()).unwrap();
+    let whole = std::fs::read(&path).unwrap();
+    // Each row is a chunk: its number, the length of its bytes, and these.
+    for row in [0_u32, 17, 47, 69] {
+        let chunks = (8..whole.len() - 8).filter(|place| whole[*place..place + 4] == row.to_le_bytes());
+        let chunk = chunks.max().unwrap();
+        let length = u32::from_le_bytes(whole[chunk + 4..chunk + 8].try_into().unwrap());
+        assert!(length > 500, "no chunk was found");
+        let mut bytes = whole.clone();
+        bytes[chunk + 8 + length as usize / 2] ^= 1;
+        std::fs::write(&path, bytes).unwrap();
+        let first = row / 16 * 16;
+        let rows = format!("the rows {first} to {}", (first + 15).min(69));
+        for told in [checkpoint::load(&path).map(drop), checkpoint::check(&path).map(drop)] {
+            let told = told.unwrap_err().to_string();
+            assert!(told.contains("is damaged") && told.contains(&rows), "{row}: {told}");
+        }
+    }
+}
+
+#[test]
 fn a_missing_channel_is_named() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("x.exr");
     checkpoint::save(&path, &noisy_film(9, 4, 1, &[0..10]), &description()).unwrap();
-    spoil(&path, b"sum.a.R.lo", 9, b'p');
+    spoil(&path, b"rest.R.lo", 8, b'p');
     let message = load_error(&path).to_string();
-    assert!(message.contains("sum.a.R.lo is missing"), "{message}");
+    assert!(message.contains("rest.R.lo is missing"), "{message}");
 }

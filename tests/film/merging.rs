@@ -4,7 +4,7 @@ use super::common::{RECIPE, description, noisy_film};
 use std::ops::Range;
 use std::path::Path;
 use weekender::film::{
-    Description, Film, FilmError, MergeError, checkpoint, key, merge_files, same_recipe_text,
+    Description, Film, FilmError, FilmSum, MergeError, checkpoint, key, merge_files, same_recipe_text,
 };
 
 #[test]
@@ -88,6 +88,35 @@ fn merged_files_are_the_film_of_one_run() {
     let error = merge_files(&[&paths[0], &stranger], same_recipe_text).unwrap_err();
     assert!(matches!(error, MergeError::Film { reason: FilmError::Size { .. }, .. }));
     assert_eq!(merge_files::<&Path>(&[], same_recipe_text), Err(MergeError::NoFiles));
+}
+
+#[test]
+fn guests_of_a_sum_leave_it_to_the_bit_even_if_their_files_are_gone() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = |name: &str| directory.path().join(name);
+    let save = |name: &str, ranges: &[Range<u64>]| {
+        checkpoint::save(&path(name), &noisy_film(5, 40, 2, ranges), &description()).unwrap();
+    };
+    save("a.exr", &[0..4]);
+    save("b.exr", &[4..7]);
+    save("c.exr", &[9..12]);
+    let mut sum = FilmSum::new(5, 40, 2, description(), Path::new("plan")).unwrap();
+    sum.add(&path("a.exr"), same_recipe_text, |_| false).unwrap();
+    for guest in ["b.exr", "c.exr"] {
+        sum.add(&path(guest), same_recipe_text, |_| true).unwrap();
+    }
+    assert_eq!(sum.film(), &noisy_film(5, 40, 2, &[0..7, 9..12]));
+    assert_eq!(sum.description().get(key::SECONDS), Some("4.5"));
+    // A newer checkpoint has taken the place of one of them.
+    save("b.exr", &[4..9]);
+    sum.take_back().unwrap();
+    assert_eq!(sum.film(), &noisy_film(5, 40, 2, &[0..4]));
+    assert_eq!(sum.description().get(key::SECONDS), Some("1.5"));
+    sum.add(&path("b.exr"), same_recipe_text, |_| true).unwrap();
+    sum.add(&path("c.exr"), same_recipe_text, |_| true).unwrap();
+    assert_eq!(sum.film(), &noisy_film(5, 40, 2, &[0..12]));
+    let overlap = sum.add(&path("c.exr"), same_recipe_text, |_| false).unwrap_err();
+    assert!(matches!(overlap, MergeError::Overlap { range: Range { start: 9, end: 12 }, .. }), "{overlap}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::origin::Source;
 use crate::render::RenderSettings;
-use std::borrow::Cow;
+use crate::shell::quoted;
 use std::fmt::Write;
 
 impl Document {
@@ -64,16 +64,6 @@ impl Document {
         add("--out", &format!("{}.png", origin.name));
         line
     }
-}
-
-/// A word as a shell takes it. Vectors and the like have no quotes, though shlex would put them around a comma.
-fn quoted(word: &str) -> Cow<'_, str> {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return Cow::Borrowed(word);
-    }
-    // It fails for a NUL alone, which no argument can have.
-    shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
 }
 
 #[cfg(test)]

@@ -2,33 +2,50 @@
 //! picture, as checkpoint, and as a part to be merged.
 //!
 //! The file has one part, scan lines and lossless compression. Channels `R`, `G`, `B` (float) are the mean. Channels
-//! `sum.a.R.lo`, `sum.a.R.hi` and so on (32-bit unsigned) are the low and high words of each half's sums. Three text
-//! attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
+//! `rest.R.lo`, `rest.R.hi` and so on (32-bit unsigned) are the low and high words of what the rounding of the mean
+//! loses: mean times samples times 2^24, rounded, plus the rest is the exact sum. The rest is small, so it takes little
+//! space. If there are two halves, `sum.a.R.lo` and so on are the sums of the first; the second's is the difference.
+//! Three text attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
 //! `weekenderFilm` the [`Head`].
 //!
-//! No data that is read can change unnoticed: one checksum covers the texts and all numbers of the head, another covers
-//! these and the sums, and the mean is compared with the sums. A flipped bit can go unnoticed only where it does not
+//! No data that is read can change unnoticed: one checksum covers the texts and all numbers of the head, each band of 16
+//! rows has one of its sums, and the mean is compared with the sums. A flipped bit can go unnoticed only where it does not
 //! affect the film: in standard attributes for other programs (the program's name, the window's position, the pixel
 //! aspect ratio), and in white space.
 
+mod apply;
 mod head;
+mod length;
+mod open;
+mod planes;
 mod read;
+mod threads;
 mod write;
 
-pub(crate) use read::{check_length, read_description};
-pub use read::{load, read};
+pub(super) use apply::{ApplyError, Sign, apply};
+pub use apply::{check, load};
+pub(crate) use length::check_length;
+pub(super) use open::head_of;
+pub(crate) use open::read_description;
+pub use open::{FilmHead, read_head};
+pub use read::read;
 pub use write::save;
 pub(crate) use write::write;
 
 use super::{Checksum, Description, Film, FilmError, PixelSum, SampleRanges};
 use crate::files::InputError;
 use crate::memory::MemoryError;
-use exr::prelude::SampleType;
 use std::path::PathBuf;
 
-/// The version of the film data beyond the picture, and of the random numbers behind its samples. Films of other
-/// versions are neither resumed nor merged.
-pub const VERSION: u32 = 3;
+/// The version of the layout of film files.
+pub const VERSION: u32 = 4;
+
+/// The oldest layout that is read. It has the sums of each half, and one checksum for all of them.
+pub const OLDEST_VERSION: u32 = 3;
+
+/// The version of the samples: of the random numbers and of what is made of them. Samples of different versions do not
+/// belong to one film, so films of other versions are neither resumed nor merged.
+pub const SAMPLE_VERSION: u32 = 3;
 
 /// The first bytes of an OpenEXR file.
 pub(crate) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -66,16 +83,31 @@ pub enum CheckpointError {
         /// The file.
         path: PathBuf,
     },
-    /// The film was written by another version.
+    /// The samples of the film are of another version.
     #[error(
-        "{} holds a film of version {version}, but this program reads version {VERSION}; continue with the program that wrote it, or render it again",
-        path.display()
+        "{} holds samples of version {version}, traced by {writer}, but this program ({}) traces samples of version {SAMPLE_VERSION}, which cannot be added to them; continue with {writer}, or render it again",
+        path.display(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
+    )]
+    SampleVersion {
+        /// The file.
+        path: PathBuf,
+        /// The version found in the file.
+        version: i64,
+        /// The program that wrote it.
+        writer: String,
+    },
+    /// The file has a layout that this program does not know.
+    #[error(
+        "{} is a film file of version {version}, written by {writer}, but this program ({}) reads versions {OLDEST_VERSION} to {VERSION}; continue with {writer}, or render it again",
+        path.display(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
     )]
     Version {
         /// The file.
         path: PathBuf,
         /// The version found in the file.
         version: i64,
+        /// The program that wrote it.
+        writer: String,
     },
     /// Something in the file is missing or was changed.
     #[error("{} is damaged: {what}; use an earlier copy or render it again", path.display())]
@@ -93,42 +125,6 @@ pub enum CheckpointError {
         /// How much memory it needs and how much is available.
         reason: MemoryError,
     },
-}
-
-/// What a channel contains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Plane {
-    Mean { colour: usize },
-    Sum { half: usize, colour: usize, shift: u32 },
-}
-
-impl Plane {
-    /// All planes of a film with `half_count` halves, with their channel names.
-    fn all(half_count: usize) -> Vec<(String, Plane)> {
-        let mut planes = Vec::new();
-        for (colour, name) in ["R", "G", "B"].into_iter().enumerate() {
-            planes.push((name.to_owned(), Plane::Mean { colour }));
-            for (half, half_name) in ["a", "b"].into_iter().enumerate().take(half_count) {
-                for (shift, word) in [(0, "lo"), (32, "hi")] {
-                    planes
-                        .push((format!("sum.{half_name}.{name}.{word}"), Plane::Sum { half, colour, shift }));
-                }
-            }
-        }
-        planes
-    }
-
-    fn sample_type(self) -> SampleType {
-        match self {
-            Plane::Mean { .. } => SampleType::F32,
-            Plane::Sum { .. } => SampleType::U32,
-        }
-    }
-}
-
-/// The mean of `sum` as stored in the picture. `unit` is [`Film::fixed_point_of_1`].
-fn mean(sum: u64, unit: f64) -> f32 {
-    (sum as f64 / unit) as f32
 }
 
 #[cfg(test)]
@@ -156,7 +152,7 @@ mod tests {
         let film = film();
         let mut head = Head::of(&film, TEXTS);
         change(&mut head);
-        head.seal(TEXTS, film.halves());
+        head.seal(TEXTS);
         let mut file = Cursor::new(Vec::new());
         write_with(&film, TEXTS, &head, &mut file).unwrap();
         file.into_inner()
@@ -178,7 +174,8 @@ mod tests {
         refused(|head| head.samples = vec![[7, 7]], "7..7");
         refused(|head| head.samples = vec![[9, 3]], "9..3");
         refused(|head| head.samples = vec![[0, 6], [4, 10]], "samples 4..6 are already");
-        refused(|head| head.samples = vec![[0, 20]], "the picture does not match the sums");
+        refused(|head| head.samples = vec![[0, 20]], "the rows 0 to 2: the sums do not match");
+        refused(|head| head.bands = Vec::new(), "0 checksums for 1 bands");
         refused(|head| head.rejected = 1 << 62, "4611686018427387904 samples rejected");
         refused(|head| head.rejected = 121, "121 samples rejected");
         refused(|head| head.halves = 3, "3 halves");
@@ -202,7 +199,10 @@ mod tests {
     #[test]
     fn a_file_that_is_too_short_for_its_size_is_refused_before_memory_is_allocated() {
         let claim = |side: u32| {
-            let bytes = file(|head| (head.width, head.height) = (side, side));
+            let bytes = file(|head| {
+                (head.width, head.height) = (side, side);
+                head.bands = vec![String::new(); side.div_ceil(16) as usize];
+            });
             let bytes = with_attribute(bytes, b"chunkCount\0int\0", 0, side as i32);
             let last = side as i32 - 1;
             let bytes = with_attribute(bytes, b"dataWindow\0box2i\0", 8, last);

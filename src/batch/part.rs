@@ -1,0 +1,110 @@
+//! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it goes on from the part's
+//! last checkpoint, and ends at once if the part is whole.
+
+use super::files::Places;
+use super::{check_before, render_all};
+use crate::cli::{BatchOptions, PartOptions, RenderOptions};
+use crate::console;
+use crate::failure::Failure;
+use crate::film::CheckpointError;
+use crate::output::PpmForm;
+use crate::plan::{Part, Plan};
+use crate::progressive::{self, Stop};
+use crate::saved::{self, OpenError, SavedFilm};
+use crate::terminal::print_beside;
+use anyhow::{Context, anyhow};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Renders what a part lacks.
+///
+/// # Errors
+/// [`Failure::Input`] if there is no such part, or its file is another film; otherwise those of a render.
+pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
+    let plan = Plan::load(&options.plan).map_err(Failure::input)?;
+    let part = plan.part(options.part).map_err(Failure::input)?;
+    let path = plan.part_path(part);
+    let render = RenderOptions {
+        recipe: plan.recipe.clone(),
+        job: plan.job.clone(),
+        stage: plan.stage(),
+        plan: progressive::Plan {
+            first_sample: part.samples[0],
+            stop: Stop::at_samples(part.samples[1]),
+            pass_target: progressive::Plan::BATCH_PASS,
+        },
+        out: path.clone(),
+        checkpoint: Some(path.clone()),
+        every: options.every,
+        resume: Some(path.clone()),
+        ppm: PpmForm::Binary,
+        command: options.command.clone(),
+    };
+    let batch = BatchOptions {
+        renders: vec![render],
+        directory: None,
+        save_scene: None,
+        backend: options.backend,
+        progress: options.progress,
+        json: options.json,
+    };
+    check_before(&batch)?;
+    // The places are noted before the film is read: another run may be writing it.
+    let places: Vec<Places> = batch.renders.iter().map(Places::of).collect();
+    let found = find(&path, &plan, part)?;
+    if let Some(found) = &found
+        && part.missing(found.film.samples()) == 0
+    {
+        let [start, end] = part.samples;
+        let words = format!("part {} is whole: samples {start}..{end} in {}\n", options.part, path.display());
+        print_beside(batch.json.as_ref(), &words).map_err(Failure::Run)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    // What was put aside is no longer in its place.
+    let places = if found.is_none() { batch.renders.iter().map(Places::of).collect() } else { places };
+    render_all(batch, &places, found)
+}
+
+/// The film of the part, if there is one to go on with. A damaged one is put aside.
+fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Failure> {
+    if path.symlink_metadata().is_err() {
+        return Ok(None);
+    }
+    match saved::resume(path, &plan.job) {
+        Ok(found) if part.is_exceeded_by(found.film.samples()) => Err(Failure::Input(anyhow!(
+            "{} holds the samples {}, but this part has {}..{}; move the file away, and run this again",
+            path.display(),
+            found.film.samples(),
+            part.samples[0],
+            part.samples[1]
+        ))),
+        Ok(found) => Ok(Some(found)),
+        Err(
+            OpenError::Film(damaged @ CheckpointError::Damaged { .. })
+            | OpenError::NotFilm(damaged @ (CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. })),
+        ) => {
+            let aside = free_name(path);
+            std::fs::rename(path, &aside)
+                .with_context(|| format!("cannot rename {} to {}", path.display(), aside.display()))
+                .map_err(Failure::Input)?;
+            console::note(&format!(
+                "warning: {damaged}; it is now {}, and the part is rendered again",
+                aside.display()
+            ));
+            Ok(None)
+        }
+        Err(error) => Err(Failure::input(error)),
+    }
+}
+
+/// `part-0.exr.damaged`, or with a number behind it.
+fn free_name(path: &Path) -> PathBuf {
+    let named = |end: &str| {
+        let mut name = path.as_os_str().to_owned();
+        name.push(end);
+        PathBuf::from(name)
+    };
+    let plain = named(".damaged");
+    let numbered = (2..10_000).map(|number| named(&format!(".damaged-{number}")));
+    [plain.clone()].into_iter().chain(numbered).find(|path| path.symlink_metadata().is_err()).unwrap_or(plain)
+}

@@ -1,0 +1,121 @@
+//! `weekender plan`: divides a picture into parts and makes the commands for them.
+
+use crate::cli::{JsonTarget, PlanFormat, PlanOptions};
+use crate::console;
+use crate::describe::counted;
+use crate::failure::{Failure, output_failure};
+use crate::film::Film;
+use crate::memory;
+use crate::plan::{Commands, Division, Manifest, Plan, ScriptKind, divide, write_scripts};
+use crate::shell;
+use crate::terminal::write_json;
+use anyhow::{Context, anyhow};
+use serde::Serialize;
+use std::process::ExitCode;
+
+/// The largest array that Slurm takes unless it is configured otherwise.
+const USUAL_ARRAY: usize = 1001;
+
+/// Writes the plan and makes its commands.
+///
+/// # Errors
+/// [`Failure::Input`] if the plan cannot be written; [`Failure::Run`] if its commands cannot.
+pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
+    let division = divide(options.samples.clone(), options.parts)
+        .ok_or_else(|| Failure::input(anyhow!("{} parts need as many samples", options.parts)))?;
+    let directory = &options.directory;
+    std::fs::create_dir_all(directory)
+        .with_context(|| {
+            format!("cannot create the directory {}; choose another with --out", directory.display())
+        })
+        .map_err(Failure::Input)?;
+    let parts = Manifest::parts_of(&division.parts);
+    let manifest = Manifest {
+        command: options.command.clone(),
+        scene: options.recipe.name.clone(),
+        stage: options.stage.map(|stage| stage.id.to_owned()),
+        flags: options.flags.clone(),
+        ..Manifest::new(&options.samples, division.block, parts)
+    };
+    let plan = Plan::write(directory, &options.recipe, &options.job, manifest).map_err(Failure::input)?;
+    console::note(&about(&plan, &division));
+    let told =
+        || (plan.path.display().to_string(), directory.join(&plan.manifest.result).display().to_string());
+    let (path, result) = told();
+    let commands = Commands::new(&options.program, &path, &plan);
+    let kind = match options.format {
+        PlanFormat::Text => {
+            let lines: String =
+                (0..plan.manifest.parts.len()).map(|part| commands.part_line(part) + "\n").collect();
+            console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
+            console::note(&format!("then: {}", commands.merge_line(&result)));
+            return Ok(ExitCode::SUCCESS);
+        }
+        PlanFormat::Json => {
+            let json = PlanJson::of(&plan, &commands, &result);
+            write_json(&json, &JsonTarget::StandardOutput).map_err(Failure::Run)?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        PlanFormat::Slurm => ScriptKind::Slurm,
+        PlanFormat::Parallel => ScriptKind::Parallel,
+        PlanFormat::Make => ScriptKind::Make,
+    };
+    let files = write_scripts(kind, &plan, &options.program).map_err(Failure::run)?;
+    if kind == ScriptKind::Slurm && plan.manifest.parts.len() > USUAL_ARRAY {
+        console::note(&format!(
+            "Slurm refuses arrays of more than {USUAL_ARRAY} tasks unless its MaxArraySize is larger: \
+             scontrol show config | grep MaxArraySize"
+        ));
+    }
+    let start = match (kind, files.first()) {
+        (ScriptKind::Make, _) => shell::line(["make".into(), "-C".into(), directory.to_string_lossy()]),
+        (_, Some(first)) => shell::line(["sh".into(), first.to_string_lossy()]),
+        (_, None) => String::new(),
+    };
+    console::write_out(&(start + "\n")).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What was chosen, in words.
+fn about(plan: &Plan, Division { block, parts }: &Division) -> String {
+    let lengths = || parts.iter().map(|part| part.end - part.start);
+    let (shortest, longest) = (lengths().min().unwrap_or(0), lengths().max().unwrap_or(0));
+    let each = if shortest == longest {
+        format!("{} per pixel each", counted(longest, "sample"))
+    } else {
+        format!("{shortest} to {longest} samples per pixel, in blocks of {block}")
+    };
+    let settings = plan.job.settings();
+    let film = Film::bytes(settings.width, settings.height, if settings.estimate_error { 2 } else { 1 });
+    format!(
+        "{}: {} of {}x{}, {} of {each}; a part's film takes {} of memory",
+        plan.path.display(),
+        plan.recipe.name,
+        settings.width,
+        settings.height,
+        counted(parts.len() as u64, "part"),
+        memory::words(film)
+    )
+}
+
+/// The plan and its commands for other programs.
+#[derive(Serialize)]
+struct PlanJson<'a> {
+    plan: &'a str,
+    #[serde(flatten)]
+    manifest: &'a Manifest,
+    part_commands: Vec<Vec<String>>,
+    merge_command: Vec<String>,
+}
+
+impl<'a> PlanJson<'a> {
+    fn of(plan: &'a Plan, commands: &Commands<'a>, result: &str) -> Self {
+        let part = |part: usize| commands.part(&part.to_string());
+        PlanJson {
+            plan: commands.manifest,
+            manifest: &plan.manifest,
+            part_commands: (0..plan.manifest.parts.len()).map(part).collect(),
+            merge_command: commands.merge(result),
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! Flags of `weekender plan` and `weekender render-part`.
+
+use super::backend;
+use super::error::CliError;
+use super::raw::{self, ProgressChoice, RawBackend, RawPicture, RawSwitch};
+use super::render::CHECKPOINT_INTERVAL;
+use super::sources;
+use super::values::{JsonTarget, parse_duration, parse_sample_range};
+use crate::backends::BackendChoice;
+use crate::recipe::Recipe;
+use crate::render::{RenderJob, SAMPLE_LIMIT};
+use crate::stages::Stage;
+use clap::{Args, ValueEnum};
+use std::ops::Range;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Most parts of a plan.
+const PARTS_LIMIT: u64 = 100_000;
+
+/// The variables in which schedulers give a task its number.
+const PART_VARIABLES: [&str; 2] = ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"];
+
+#[derive(Debug, Args)]
+pub(super) struct RawPlan {
+    #[command(flatten)]
+    pub picture: RawPicture,
+
+    /// Samples per pixel of the whole picture, 1 to 4294967296 [default: the scene's]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+          allow_hyphen_values = true, help_heading = "Parts")]
+    pub samples: Option<u64>,
+    /// Divide only samples A to B - 1, to add them to a picture that has the others
+    #[arg(long, value_name = "A..B", value_parser = parse_sample_range, conflicts_with = "samples",
+          help_heading = "Parts")]
+    pub sample_range: Option<Range<u64>>,
+    /// Keep samples in two halves, which is needed to estimate the error; off halves the memory
+    /// [default: on, or the scene's]
+    #[arg(long, value_enum, help_heading = "Parts")]
+    pub estimate_error: Option<RawSwitch>,
+    /// Parts, 1 to 100000: each holds some samples of the whole picture
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=PARTS_LIMIT),
+          allow_hyphen_values = true, help_heading = "Parts")]
+    pub parts: u64,
+
+    #[command(flatten)]
+    pub backend: RawBackend,
+
+    /// The directory of the plan, of its parts and of the merged film; it is created if necessary
+    #[arg(long, value_name = "DIR", help_heading = "Files")]
+    pub out: PathBuf,
+    /// Interval at which a part's film is written, as for rendering: 0.1s to 30d [default: 60s]
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true,
+          help_heading = "Files")]
+    pub every: Option<Duration>,
+    /// What is made: the commands, one a line; the same as JSON; or files that give the parts to Slurm, GNU parallel or
+    /// make
+    #[arg(long, value_enum, default_value = "text", help_heading = "Files")]
+    pub format: PlanFormat,
+    /// How the commands call this program [default: as it was called, with its directory if that was given]
+    #[arg(long, value_name = "NAME", help_heading = "Files")]
+    pub program: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RawPart {
+    /// The plan: its directory, or its plan.json
+    #[arg(value_name = "PLAN")]
+    pub plan: PathBuf,
+    /// The number of the part, from 0 [default: SLURM_ARRAY_TASK_ID or JOB_COMPLETION_INDEX of the environment]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    pub part: Option<u64>,
+
+    #[command(flatten)]
+    pub backend: RawBackend,
+
+    /// Interval at which the part's film is written: 0.1s to 30d, such as 30s, 5m or 1h [default: 60s]
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true)]
+    pub every: Option<Duration>,
+    /// Write the final figures as JSON; - for standard output
+    #[arg(long, value_name = "FILE|-")]
+    pub json: Option<PathBuf>,
+    /// Show progress on standard error; auto: if it is a terminal
+    #[arg(long, value_enum, default_value = "auto")]
+    pub progress: ProgressChoice,
+}
+
+/// What `weekender plan` makes besides the plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum PlanFormat {
+    /// The commands on standard output, one a line.
+    Text,
+    /// Manifest and commands as JSON on standard output.
+    Json,
+    /// A Slurm job array.
+    Slurm,
+    /// A script for GNU parallel.
+    Parallel,
+    /// A makefile.
+    Make,
+}
+
+/// Options of `weekender plan`.
+#[derive(Debug)]
+pub struct PlanOptions {
+    /// What to render.
+    pub recipe: Recipe,
+    /// The validated job of the recipe.
+    pub job: RenderJob,
+    /// The stage that it comes from.
+    pub stage: Option<&'static Stage>,
+    /// The samples to divide.
+    pub samples: Range<u64>,
+    /// Number of parts.
+    pub parts: u64,
+    /// Directory of the plan.
+    pub directory: PathBuf,
+    /// What is made.
+    pub format: PlanFormat,
+    /// Flags for the command of every part.
+    pub flags: Vec<String>,
+    /// How the commands call this program.
+    pub program: String,
+    /// The command that makes the plan.
+    pub command: String,
+}
+
+/// Options of `weekender render-part`.
+#[derive(Debug)]
+pub struct PartOptions {
+    /// The manifest, or its directory.
+    pub plan: PathBuf,
+    /// The number of the part.
+    pub part: u64,
+    /// The backend.
+    pub backend: BackendChoice,
+    /// Interval at which the film is written.
+    pub every: Duration,
+    /// Whether progress is shown.
+    pub progress: ProgressChoice,
+    /// Where the JSON is written.
+    pub json: Option<JsonTarget>,
+    /// The command that renders it.
+    pub command: String,
+}
+
+pub(super) fn plan(raw: RawPlan, program: &str, command: String) -> Result<PlanOptions, CliError> {
+    if raw.picture.is_every_stage() {
+        let reason = "a plan is of one picture; choose one stage";
+        return Err(CliError::Together { flag: "--stage all", other: "plan", reason });
+    }
+    backend::choice(&raw.backend)?;
+    let mut chosen = sources::find(&raw.picture, None)?;
+    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
+    let samples = match raw.sample_range {
+        Some(range) => range,
+        None => 0..raw.samples.unwrap_or(chosen.recipe.samples_per_pixel),
+    };
+    chosen.recipe.samples_per_pixel = samples.end;
+    let job = chosen.recipe.job()?;
+    let count = samples.end - samples.start;
+    if raw.parts > count {
+        return Err(CliError::TooManyParts { parts: raw.parts, samples: count });
+    }
+    let name = raw.out.to_str().filter(|name| !name.chars().any(char::is_control));
+    if name.is_none() {
+        return Err(CliError::PlanDirectory { path: raw.out });
+    }
+    let mut flags = backend::words(&raw.backend);
+    flags.extend(raw.every.map(|every| format!("--every={}s", every.as_secs_f64())));
+    Ok(PlanOptions {
+        recipe: chosen.recipe,
+        job,
+        stage: chosen.stage,
+        samples,
+        parts: raw.parts,
+        directory: raw.out,
+        format: raw.format,
+        flags,
+        program: raw.program.unwrap_or_else(|| program.to_owned()),
+        command,
+    })
+}
+
+pub(super) fn part(raw: RawPart, command: String) -> Result<PartOptions, CliError> {
+    let part = match raw.part {
+        Some(part) => part,
+        None => part_of_environment(|name| std::env::var(name).ok())?,
+    };
+    Ok(PartOptions {
+        plan: raw.plan,
+        part,
+        backend: backend::choice(&raw.backend)?,
+        every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
+        progress: raw.progress,
+        json: raw.json.map(JsonTarget::from),
+        command,
+    })
+}
+
+fn part_of_environment(value: impl Fn(&str) -> Option<String>) -> Result<u64, CliError> {
+    let found = PART_VARIABLES.into_iter().find_map(|name| value(name).map(|value| (name, value)));
+    let (name, value) = found.ok_or(CliError::Needs {
+        flag: "render-part",
+        other: "--part NUMBER",
+        reason: "neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX says which part this task is to render",
+    })?;
+    value.parse().map_err(|_| CliError::PartVariable { name, value })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_environment_of_a_task_names_its_part() {
+        let with = |pairs: &'static [(&str, &str)]| {
+            part_of_environment(|name| {
+                pairs.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
+            })
+        };
+        assert_eq!(with(&[("JOB_COMPLETION_INDEX", "7")]).unwrap(), 7);
+        assert_eq!(with(&[("SLURM_ARRAY_TASK_ID", "12")]).unwrap(), 12);
+        let told = with(&[("JOB_COMPLETION_INDEX", "x7")]).unwrap_err().to_string();
+        assert!(told.contains("JOB_COMPLETION_INDEX") && told.contains("x7"), "{told}");
+        assert!(with(&[]).unwrap_err().to_string().contains("--part NUMBER"));
+    }
+}

@@ -1,0 +1,206 @@
+//! `weekender info`: what a film, picture, scene file or plan says about itself.
+
+use crate::cli::{InfoOptions, JsonTarget};
+use crate::describe::{counted, seconds};
+use crate::failure::Failure;
+use crate::film::{CheckpointError, ErrorEstimate, FilmHead, checkpoint, key};
+use crate::memory;
+use crate::plan::Plan;
+use crate::recipe::{Recipe, file};
+use crate::saved::Saved;
+use crate::terminal::{print, write_json};
+use serde::Serialize;
+use std::fmt;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Version of the JSON. It is raised when a key changes its meaning or is removed.
+const SCHEMA: u32 = 1;
+
+/// Prints what the file says about itself.
+///
+/// # Errors
+/// [`Failure::Input`] if the file cannot be read or does not say how it was made; [`Failure::Run`] if standard output
+/// cannot be written.
+pub fn run(options: &InfoOptions) -> Result<ExitCode, Failure> {
+    let info = Info::of(&options.file)?;
+    let printed =
+        if options.json { write_json(&info, &JsonTarget::StandardOutput) } else { print(&info.to_string()) };
+    printed.map(|()| ExitCode::SUCCESS).map_err(Failure::Run)
+}
+
+/// What a file says about itself.
+#[derive(Debug, Serialize)]
+struct Info {
+    schema: u32,
+    kind: &'static str,
+    file: String,
+    bytes: u64,
+    scene: String,
+    stage: Option<String>,
+    width: u32,
+    height: u32,
+    max_depth: u32,
+    sampler: &'static str,
+    seed: u32,
+    samples_per_pixel: Option<u64>,
+    sample_ranges: Option<String>,
+    halves: Option<usize>,
+    rejected_samples: Option<u64>,
+    rmse_estimate: Option<f64>,
+    rmse_deviation: Option<f64>,
+    trace_seconds: Option<f64>,
+    backend: Option<String>,
+    program: Option<String>,
+    film_version: Option<u32>,
+    sample_version: Option<u32>,
+    parts: Option<usize>,
+    command: Option<String>,
+    #[serde(skip)]
+    error_words: Option<String>,
+}
+
+impl Info {
+    fn of(path: &Path) -> Result<Info, Failure> {
+        if Plan::is_at(path) {
+            return Ok(Info::of_plan(&Plan::load(path).map_err(Failure::input)?));
+        }
+        if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
+            let recipe = file::load(path).map_err(Failure::input)?;
+            let samples = Some(recipe.samples_per_pixel);
+            return Ok(Info { samples_per_pixel: samples, ..Info::new("scene", path, &recipe) });
+        }
+        let saved = Saved::describe(path).map_err(Failure::input)?;
+        let recipe = saved.recipe().map_err(Failure::input)?;
+        let text = |key| saved.description.get(key).map(str::to_owned);
+        let mut info = Info {
+            stage: text(key::STAGE),
+            samples_per_pixel: saved.samples(),
+            trace_seconds: saved.seconds(),
+            backend: text(key::BACKEND),
+            program: text(key::SOFTWARE),
+            command: text(key::COMMAND),
+            ..Info::new("picture", path, &recipe)
+        };
+        match checkpoint::read_head(path) {
+            Ok(head) => info.add_film(path, &head).map_err(Failure::input)?,
+            Err(CheckpointError::NotExr { .. } | CheckpointError::NotFilm { .. }) => {}
+            Err(error) => return Err(Failure::input(error)),
+        }
+        Ok(info)
+    }
+
+    fn new(kind: &'static str, path: &Path, recipe: &Recipe) -> Info {
+        let settings = &recipe.settings;
+        Info {
+            schema: SCHEMA,
+            kind,
+            file: path.display().to_string(),
+            bytes: std::fs::metadata(path).map_or(0, |found| found.len()),
+            scene: recipe.name.clone(),
+            stage: None,
+            width: settings.width,
+            height: settings.height,
+            max_depth: settings.max_depth,
+            sampler: settings.sampler.name(),
+            seed: settings.seed,
+            samples_per_pixel: None,
+            sample_ranges: None,
+            halves: None,
+            rejected_samples: None,
+            rmse_estimate: None,
+            rmse_deviation: None,
+            trace_seconds: None,
+            backend: None,
+            program: None,
+            film_version: None,
+            sample_version: None,
+            parts: None,
+            command: None,
+            error_words: None,
+        }
+    }
+
+    fn of_plan(plan: &Plan) -> Info {
+        let manifest = &plan.manifest;
+        let [start, end] = manifest.samples;
+        Info {
+            stage: manifest.stage.clone(),
+            samples_per_pixel: Some(end - start),
+            sample_ranges: Some(format!("{start}..{end}")),
+            halves: Some(if plan.job.settings().estimate_error { 2 } else { 1 }),
+            program: Some(manifest.program.clone()),
+            sample_version: Some(manifest.sample_version),
+            parts: Some(manifest.parts.len()),
+            command: Some(manifest.command.clone()),
+            ..Info::new("plan", &plan.path, &plan.recipe)
+        }
+    }
+
+    /// Adds what a film's head says, and the error that its sums tell, if there is memory for them.
+    fn add_film(&mut self, path: &Path, head: &FilmHead) -> Result<(), CheckpointError> {
+        self.kind = "film";
+        self.samples_per_pixel = Some(head.samples.count());
+        self.sample_ranges = Some(head.samples.to_string());
+        (self.halves, self.rejected_samples) = (Some(head.halves), Some(head.rejected));
+        (self.film_version, self.sample_version) = (Some(head.version), Some(head.sample_version));
+        match checkpoint::load(path) {
+            Ok(read) => {
+                let error: Option<ErrorEstimate> = read.film.error();
+                (self.rmse_estimate, self.rmse_deviation) =
+                    (error.map(|error| error.rmse), error.map(|error| error.rmse_deviation));
+                self.error_words =
+                    error.map(|error| format!("{:.3e} {} RMSE", error.rmse, error.uncertainty()));
+            }
+            Err(CheckpointError::Memory { reason, .. }) => self.error_words = Some(reason.to_string()),
+            Err(error) => return Err(error),
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Info {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:<9}{}, {}", self.kind, self.file, memory::words(self.bytes))?;
+        if let Some(version) = self.film_version {
+            write!(f, ", version {version}")?;
+        }
+        let Info { scene, width, height, max_depth, sampler, seed, .. } = self;
+        writeln!(f, "\nscene    {scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}")?;
+        if let Some(stage) = &self.stage {
+            writeln!(f, "stage    {stage}")?;
+        }
+        if let Some(samples) = self.samples_per_pixel {
+            write!(f, "samples  {samples} per pixel")?;
+            if let Some(ranges) = &self.sample_ranges {
+                write!(f, " ({ranges})")?;
+            }
+            if let Some(parts) = self.parts {
+                write!(f, " in {}", counted(parts as u64, "part"))?;
+            }
+            if let Some(version) = self.sample_version {
+                write!(f, ", version {version}")?;
+            }
+            if let Some(rejected) = self.rejected_samples {
+                write!(f, ", {}", counted(rejected, "rejected sample"))?;
+            }
+            writeln!(f)?;
+        }
+        if self.kind == "film" {
+            let words = self.error_words.as_deref().unwrap_or("not estimated: the film has one half");
+            writeln!(f, "error    {words}")?;
+        }
+        let lines = [
+            ("time", self.trace_seconds.map(|time| format!("{} of tracing", seconds(time)))),
+            ("backend", self.backend.clone()),
+            ("program", self.program.clone()),
+            ("command", self.command.clone()),
+        ];
+        for (name, value) in lines {
+            if let Some(value) = value {
+                writeln!(f, "{name:<9}{value}")?;
+            }
+        }
+        Ok(())
+    }
+}

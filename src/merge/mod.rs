@@ -1,0 +1,88 @@
+//! `weekender merge`: adds films of the same picture, or the parts of a plan as they come.
+
+mod check;
+mod parts;
+mod watch;
+
+use crate::cli::{MergeOptions, MergeSource};
+use crate::console;
+use crate::describe::counted;
+use crate::failure::{FAILED, Failure};
+use crate::files::check_writable;
+use crate::film::{Description, Film, merge_files};
+use crate::output::write_image;
+use crate::plan::Plan;
+use crate::recipe::file;
+use crate::saved::same_job;
+use crate::stages::Transfer;
+use crate::terminal::print;
+use parts::{PlanSum, State};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Merges or checks what the options name.
+///
+/// # Errors
+/// [`Failure::Input`] if the films do not belong together, [`Failure::Run`] if the result cannot be written.
+pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
+    for out in &options.out {
+        check_writable(out).map_err(Failure::input)?;
+    }
+    match (&options.source, options.watch) {
+        (MergeSource::Films(films), _) if options.check => check::films(films, &options.program),
+        (MergeSource::Films(films), _) => merge_all(films, &options.out),
+        (MergeSource::Plan(path), watch) => {
+            let plan = Plan::load(path).map_err(Failure::input)?;
+            match watch {
+                _ if options.check => check::plan(&plan, &options.program),
+                None => merge_plan(&plan, options),
+                Some(every) => watch::run(&plan, options, every),
+            }
+        }
+    }
+}
+
+fn merge_all(films: &[PathBuf], out: &[PathBuf]) -> Result<ExitCode, Failure> {
+    let sum = merge_files(films, same_job).map_err(Failure::input)?;
+    let recipe = file::parse(sum.description.recipe(), "the films' recipe").map_err(Failure::input)?;
+    write(out, &sum.film, recipe.rules.transfer, &sum.description)?;
+    let samples = sum.film.samples();
+    let count = counted(samples.count(), "sample");
+    let from = counted(films.len() as u64, "film");
+    print(&format!("{count} per pixel ({samples}) from {from}\n{}", wrote(out))).map_err(Failure::Run)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Merges what is there of a plan, checkpoints of unfinished parts too, and says what is missing.
+fn merge_plan(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
+    let mut sum = PlanSum::new(plan).map_err(Failure::input)?;
+    for index in 0..plan.manifest.parts.len() {
+        sum.add(index, true).map_err(Failure::run)?;
+    }
+    let lacking = sum.lacking();
+    if sum.film().sample_count() > 0 {
+        write(&options.out, sum.film(), plan.recipe.rules.transfer, &sum.description())?;
+        print(&format!("{}\n{}", sum.words(), wrote(&options.out))).map_err(Failure::Run)?;
+    }
+    if lacking.is_empty() {
+        return Ok(ExitCode::SUCCESS);
+    }
+    for (index, state) in &lacking {
+        console::note(&parts::line(plan, *index, state));
+    }
+    console::note("to render what is missing:");
+    console::note(&parts::commands(plan, &lacking, &options.program));
+    Ok(ExitCode::from(FAILED))
+}
+
+/// Writes the film to each file.
+fn write(out: &[PathBuf], film: &Film, transfer: Transfer, description: &Description) -> Result<(), Failure> {
+    out.iter().try_for_each(|out| write_image(out, film, transfer, description)).map_err(Failure::run)
+}
+
+fn wrote(out: &[PathBuf]) -> String {
+    out.iter().map(|out| format!("wrote {}\n", out.display())).collect()
+}
+
+/// The parts of a plan that are not whole.
+type Lacking = Vec<(usize, State)>;

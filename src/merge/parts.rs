@@ -1,0 +1,192 @@
+//! The parts of a plan: what is there of each, and their sum.
+
+use super::Lacking;
+use crate::describe::describe;
+use crate::film::{CheckpointError, Description, Film, FilmSum, MergeError, SampleRanges, checkpoint, key};
+use crate::plan::{Commands, Plan};
+use crate::progressive::Status;
+use crate::saved::same_job;
+use std::path::Path;
+
+/// What is there of a part.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum State {
+    Whole,
+    /// A checkpoint that lacks this many samples per pixel.
+    Unfinished {
+        missing: u64,
+    },
+    Missing,
+    /// A film that is damaged, of another picture or of other samples, in words.
+    Wrong(String),
+}
+
+/// The sum of the parts of a plan.
+pub(super) struct PlanSum<'a> {
+    plan: &'a Plan,
+    sum: FilmSum,
+    states: Vec<State>,
+}
+
+impl<'a> PlanSum<'a> {
+    /// An empty sum.
+    pub fn new(plan: &'a Plan) -> Result<Self, MergeError> {
+        let settings = plan.job.settings();
+        let halves = if settings.estimate_error { 2 } else { 1 };
+        let mut description =
+            describe(&plan.recipe, plan.stage(), &Film::new(1, 1, 1), &Status::default(), None);
+        description.set(key::COMMAND, &plan.manifest.command);
+        let sum = FilmSum::new(settings.width, settings.height, halves, description, &plan.path)?;
+        Ok(PlanSum { plan, sum, states: vec![State::Missing; plan.manifest.parts.len()] })
+    }
+
+    /// Adds what is there of a part: only a whole one, or also a checkpoint, which [`PlanSum::take_back`] takes away
+    /// again. What cannot be added is left out.
+    ///
+    /// # Errors
+    /// [`MergeError::Lost`]: the sum is then worthless.
+    pub fn add(&mut self, index: usize, also_unfinished: bool) -> Result<&State, MergeError> {
+        let part = &self.plan.manifest.parts[index];
+        let path = self.plan.part_path(part);
+        let state = match head_state(self.plan, index) {
+            State::Unfinished { missing } if !also_unfinished => State::Unfinished { missing },
+            State::Whole | State::Unfinished { .. } => {
+                match self.sum.add(&path, same_job, |samples| part.missing(samples) > 0) {
+                    Ok(share) => match part.missing(share.samples()) {
+                        0 => State::Whole,
+                        missing => State::Unfinished { missing },
+                    },
+                    Err(error @ MergeError::Lost { .. }) => return Err(error),
+                    Err(error) => State::Wrong(words(&error)),
+                }
+            }
+            state => state,
+        };
+        self.states[index] = state;
+        Ok(&self.states[index])
+    }
+
+    /// Takes the unfinished parts away again.
+    ///
+    /// # Errors
+    /// [`MergeError::Lost`]: the sum is then worthless.
+    pub fn take_back(&mut self) -> Result<(), MergeError> {
+        self.sum.take_back()
+    }
+
+    pub fn film(&self) -> &Film {
+        self.sum.film()
+    }
+
+    pub fn description(&self) -> Description {
+        self.sum.description()
+    }
+
+    /// Whether a part is whole and in the sum for good.
+    pub fn is_whole(&self, index: usize) -> bool {
+        self.states[index] == State::Whole
+    }
+
+    /// How many parts are whole.
+    pub fn whole(&self) -> usize {
+        self.states.iter().filter(|state| **state == State::Whole).count()
+    }
+
+    /// The parts that are not whole.
+    pub fn lacking(&self) -> Lacking {
+        let parts = self.states.iter().cloned().enumerate();
+        parts.filter(|(_, state)| *state != State::Whole).collect()
+    }
+
+    /// How much of the picture is there.
+    pub fn words(&self) -> String {
+        let [start, end] = self.plan.manifest.samples;
+        let samples: &SampleRanges = self.film().samples();
+        format!(
+            "{} of {} samples per pixel ({samples}); {} of {} parts are whole",
+            samples.count(),
+            end - start,
+            self.whole(),
+            self.states.len()
+        )
+    }
+}
+
+/// What the head of a part's file says about it.
+pub(super) fn head_state(plan: &Plan, index: usize) -> State {
+    let part = &plan.manifest.parts[index];
+    let path = plan.part_path(part);
+    if path.symlink_metadata().is_err() {
+        return State::Missing;
+    }
+    match checkpoint::read_head(&path) {
+        Ok(head) => state_of(plan, index, &head.samples),
+        Err(error) => State::Wrong(error.to_string()),
+    }
+}
+
+/// What is there of a part whose file holds `samples`.
+pub(super) fn state_of(plan: &Plan, index: usize, samples: &SampleRanges) -> State {
+    let part = &plan.manifest.parts[index];
+    if part.is_exceeded_by(samples) {
+        let [start, end] = part.samples;
+        return State::Wrong(format!(
+            "{} holds the samples {samples}, but this part has {start}..{end}; move the file away",
+            plan.part_path(part).display()
+        ));
+    }
+    match part.missing(samples) {
+        0 => State::Whole,
+        missing => State::Unfinished { missing },
+    }
+}
+
+/// Reads the whole film of a part, and tells what is there of it.
+pub(super) fn checked_state(plan: &Plan, index: usize, recipe: &str) -> State {
+    let path = plan.part_path(&plan.manifest.parts[index]);
+    match head_state(plan, index) {
+        State::Whole | State::Unfinished { .. } => match checkpoint::check(&path) {
+            Ok(head) => match same_job(recipe, head.description.recipe()) {
+                Ok(()) => state_of(plan, index, &head.samples),
+                Err(difference) => State::Wrong(other_picture(&path, &difference)),
+            },
+            Err(error) => State::Wrong(error.to_string()),
+        },
+        state => state,
+    }
+}
+
+fn other_picture(path: &Path, difference: &str) -> String {
+    format!("{} is the film of another picture: {difference}; move it away", path.display())
+}
+
+fn words(error: &MergeError) -> String {
+    match error {
+        MergeError::OtherJob { other, difference, .. } => other_picture(other, difference),
+        MergeError::File(CheckpointError::Input(reason)) => reason.to_string(),
+        error => error.to_string(),
+    }
+}
+
+/// A line on a part that is not whole.
+pub(super) fn line(plan: &Plan, index: usize, state: &State) -> String {
+    let part = &plan.manifest.parts[index];
+    let ([start, end], file) = (part.samples, &part.file);
+    match state {
+        State::Whole => format!("part {index}: {file} is whole"),
+        State::Unfinished { missing } => {
+            let count = end - start;
+            format!("part {index}: {file} has {} of {count} samples per pixel", count - missing)
+        }
+        State::Missing => format!("part {index}: {file} is missing (samples {start}..{end})"),
+        State::Wrong(words) => format!("part {index}: {words}"),
+    }
+}
+
+/// The commands that render what is missing, one a line, without an end of line after the last.
+pub(super) fn commands(plan: &Plan, lacking: &Lacking, program: &str) -> String {
+    let manifest = plan.path.to_string_lossy();
+    let commands = Commands::new(program, &manifest, plan);
+    let lines: Vec<String> = lacking.iter().map(|(index, _)| commands.part_line(*index)).collect();
+    lines.join("\n")
+}

@@ -1,0 +1,98 @@
+//! `--watch`: merges parts as they come, and writes the picture so far.
+
+use super::parts::{self, PlanSum, State};
+use super::{write, wrote};
+use crate::cli::MergeOptions;
+use crate::console;
+use crate::failure::Failure;
+use crate::files::Stamp;
+use crate::interrupt::Interrupt;
+use crate::plan::Plan;
+use crate::terminal::print;
+use std::path::Path;
+use std::process::ExitCode;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Pause between two looks at the directory, and at the signals.
+const LOOK: Duration = Duration::from_secs(1);
+const SIGNAL: Duration = Duration::from_millis(100);
+
+/// A part that is awaited.
+struct Awaited {
+    index: usize,
+    /// The file that was seen last.
+    seen: Option<Stamp>,
+}
+
+/// Merges until all parts are whole, or until a signal.
+///
+/// # Errors
+/// [`Failure::Input`] if there is not enough memory; [`Failure::Run`] if the picture cannot be written.
+pub(super) fn run(plan: &Plan, options: &MergeOptions, every: Duration) -> Result<ExitCode, Failure> {
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let mut sum = PlanSum::new(plan).map_err(Failure::input)?;
+    let mut awaited: Vec<Awaited> =
+        (0..plan.manifest.parts.len()).map(|index| Awaited { index, seen: None }).collect();
+    let (mut is_news, mut last) = (false, None::<Instant>);
+    loop {
+        is_news |= look(plan, &mut sum, &mut awaited)?;
+        let is_over = awaited.is_empty() || interrupt.is_set();
+        let is_due = last.is_none_or(|last| last.elapsed() >= every);
+        if is_over || (is_news && is_due) {
+            // Checkpoints belong to the picture so far. They will grow, so they are taken away again.
+            for part in &awaited {
+                sum.add(part.index, true).map_err(Failure::run)?;
+            }
+            if sum.film().sample_count() > 0 {
+                let names: Vec<String> = options.out.iter().map(|out| out.display().to_string()).collect();
+                let _writing = interrupt.while_writing(names.join(" and "));
+                write(&options.out, sum.film(), plan.recipe.rules.transfer, &sum.description())?;
+                console::note(&sum.words());
+            }
+            (is_news, last) = (false, Some(Instant::now()));
+            if is_over {
+                break;
+            }
+            sum.take_back().map_err(Failure::run)?;
+            awaited.retain(|part| !sum.is_whole(part.index));
+            continue;
+        }
+        let begin = Instant::now();
+        while begin.elapsed() < LOOK && !interrupt.is_set() {
+            sleep(SIGNAL);
+        }
+    }
+    let lacking = sum.lacking();
+    if lacking.is_empty() {
+        print(&format!("{}\n{}", sum.words(), wrote(&options.out))).map_err(Failure::Run)?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    console::note("interrupted; the same command goes on. To render what is missing:");
+    console::note(&parts::commands(plan, &lacking, &options.program));
+    Ok(interrupt.exit_code())
+}
+
+/// Adds the parts that have become whole. Returns whether any file has changed.
+fn look(plan: &Plan, sum: &mut PlanSum, awaited: &mut Vec<Awaited>) -> Result<bool, Failure> {
+    let mut is_news = false;
+    for part in awaited.iter_mut() {
+        let path = plan.part_path(&plan.manifest.parts[part.index]);
+        let now = stamp(&path);
+        if now.is_none() || now == part.seen {
+            continue;
+        }
+        (part.seen, is_news) = (now, true);
+        let state = sum.add(part.index, false).map_err(Failure::run)?;
+        if let State::Wrong(_) = state {
+            console::note(&format!("warning: {}", parts::line(plan, part.index, state)));
+        }
+    }
+    awaited.retain(|part| !sum.is_whole(part.index));
+    Ok(is_news)
+}
+
+/// The file as it is now; `None` if there is none, or if it cannot be looked at.
+fn stamp(path: &Path) -> Option<Stamp> {
+    Stamp::of(path).ok().flatten()
+}

@@ -1,0 +1,31 @@
+//! Words of a command as a shell takes them.
+
+use std::borrow::Cow;
+
+/// A word in quotes, if it needs any. Vectors and the like have none, though shlex would put them around a comma.
+pub fn quoted(word: &str) -> Cow<'_, str> {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return Cow::Borrowed(word);
+    }
+    // It fails for a NUL alone, which no argument can have.
+    shlex::try_quote(word).unwrap_or(Cow::Borrowed(word))
+}
+
+/// A command line of these words.
+pub fn line<W: AsRef<str>>(words: impl IntoIterator<Item = W>) -> String {
+    words.into_iter().map(|word| quoted(word.as_ref()).into_owned()).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shell_finds_the_words_again() {
+        let words = ["weekender", "--size=8x4", "a b", "it's", "$HOME", "", "back\\slash", "ö*?", "-1,2,3"];
+        let line = line(words);
+        assert_eq!(shlex::split(&line).unwrap(), words);
+        assert!(line.starts_with("weekender --size=8x4 ") && line.ends_with(" -1,2,3"), "{line}");
+    }
+}

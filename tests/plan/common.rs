@@ -1,0 +1,69 @@
+//! The program, run in a directory of its own.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use weekender::film::{Film, checkpoint};
+
+/// A small picture. Two threads of the CPU make the same bits everywhere.
+pub const PICTURE: [&str; 6] = ["--size", "32x18", "--device", "cpu", "--threads", "2"];
+
+pub fn command(at: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    command.current_dir(at).args(arguments).stdin(Stdio::null());
+    for name in ["DISPLAY", "WAYLAND_DISPLAY", "SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"] {
+        command.env_remove(name);
+    }
+    command
+}
+
+pub fn run(at: &Path, arguments: &[&str]) -> Output {
+    command(at, arguments).output().unwrap()
+}
+
+/// Runs a command that must end with `code`. Returns standard output and standard error.
+pub fn ends(at: &Path, code: i32, arguments: &[&str]) -> (String, String) {
+    let output = run(at, arguments);
+    let (out, told) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(code), "{arguments:?}: {out}{told}");
+    (out, told)
+}
+
+pub fn succeeds(at: &Path, arguments: &[&str]) -> String {
+    ends(at, 0, arguments).0
+}
+
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+pub fn film(path: &Path) -> Film {
+    checkpoint::load(path).unwrap().film
+}
+
+/// Plans the small picture with these flags into `directory`. Returns standard output.
+pub fn plan(at: &Path, directory: &str, flags: &[&str]) -> String {
+    succeeds(at, &[&["plan"], &PICTURE[..], &["--out", directory], flags].concat())
+}
+
+/// The film of one run with the samples `range`.
+pub fn whole(at: &Path, range: &str, flags: &[&str]) -> Film {
+    let common = ["--sample-range", range, "--progress", "off", "--out", "one-run.exr"];
+    succeeds(at, &[&["--batch"], &PICTURE[..], &common, flags].concat());
+    film(&at.join("one-run.exr"))
+}
+
+pub fn render_part(at: &Path, plan: &str, part: u32) -> String {
+    succeeds(at, &["render-part", plan, "--part", &part.to_string(), "--device", "cpu"])
+}
+
+/// Changes a byte in the middle of a film's sums.
+pub fn damage(path: &Path) {
+    let mut bytes = std::fs::read(path).unwrap();
+    let middle = bytes.len() * 2 / 3;
+    bytes[middle] ^= 0x10;
+    std::fs::write(path, bytes).unwrap();
+}
+
+pub fn part_path(at: &Path, plan: &str, part: u32) -> PathBuf {
+    at.join(plan).join(format!("part-{part}.exr"))
+}

@@ -1,0 +1,12 @@
+//! Plans: parts of a picture rendered by separate commands, and their merged film.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
+
+mod common;
+mod info;
+mod merging;
+mod parts;
+mod refused;
+mod scripts;
+#[cfg(unix)]
+mod watching;

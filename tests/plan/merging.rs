@@ -1,0 +1,131 @@
+//! What a merge of unfinished, damaged and foreign parts says, and what it makes of the others.
+
+use super::common::{PICTURE, damage, ends, film, part_path, plan, render_part, succeeds, whole};
+use tempfile::TempDir;
+
+#[test]
+fn what_is_there_is_merged_and_what_is_missing_is_named() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "32", "--parts", "4"]);
+    render_part(at, "p", 0);
+    render_part(at, "p", 3);
+    // Part 1 is unfinished, part 2 missing.
+    whole(at, "8..11", &[]);
+    std::fs::rename(at.join("one-run.exr"), part_path(at, "p", 1)).unwrap();
+    let (out, told) = ends(at, 1, &["merge", "p", "--out", "m.exr"]);
+    assert!(out.contains("19 of 32 samples per pixel (0..11, 24..32); 2 of 4 parts are whole"), "{out}");
+    for part in
+        ["part-1.exr has 3 of 8 samples", "part-2.exr is missing (samples 16..24)", "--part 1", "--part 2"]
+    {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    let so_far = film(&at.join("m.exr"));
+    let mut sum = whole(at, "0..11", &[]);
+    sum.merge(&whole(at, "24..32", &[])).unwrap();
+    assert!(so_far == sum);
+    let (checked, _) = ends(at, 1, &["merge", "p", "--check"]);
+    assert!(checked.contains("(--array=1,2 in Slurm)"), "{checked}");
+    render_part(at, "p", 1);
+    render_part(at, "p", 2);
+    succeeds(at, &["merge", "p", "--out", "m.exr"]);
+    assert!(film(&at.join("m.exr")) == whole(at, "0..32", &[]));
+}
+
+#[test]
+fn a_damaged_part_is_named_with_its_rows_and_leaves_nothing_in_the_sum() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    // Several bands, so that some are added before the damage is met.
+    let flags =
+        ["plan", "--size", "32x150", "--samples", "4", "--parts", "2", "--device", "cpu", "--out", "p"];
+    succeeds(at, &flags);
+    for part in [0, 1] {
+        render_part(at, "p", part);
+    }
+    let other = film(&part_path(at, "p", 1));
+    damage(&part_path(at, "p", 0));
+    for arguments in [&["merge", "p", "--check"][..], &["merge", "p", "--out", "m.exr"]] {
+        let (out, told) = ends(at, 1, arguments);
+        let all = out + &told;
+        assert!(all.contains("part-0.exr is damaged: the rows ") && all.contains("--part 0"), "{all}");
+        assert!(!all.contains("--part 1"), "{all}");
+    }
+    assert!(film(&at.join("m.exr")) == other, "what was added of the damaged film is taken away again");
+    // Without a plan, nothing is merged.
+    let (_, told) = ends(at, 2, &["merge", "p/part-0.exr", "p/part-1.exr", "--out", "x.exr"]);
+    assert!(told.contains("part-0.exr is damaged"), "{told}");
+    assert!(!at.join("x.exr").exists());
+}
+
+#[test]
+fn parts_in_the_wrong_place_and_foreign_ones_are_named() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "8", "--parts", "4"]);
+    for part in 0..4 {
+        render_part(at, "p", part);
+    }
+    let part = |index| part_path(at, "p", index);
+    let whole_parts = film(&part(0));
+    std::fs::copy(part(0), part(1)).unwrap();
+    whole(at, "4..6", &["--seed", "9"]);
+    std::fs::rename(at.join("one-run.exr"), part(2)).unwrap();
+    std::fs::copy(part(3), at.join("p/part-3-2.exr")).unwrap();
+    let (checked, _) = ends(at, 1, &["merge", "p", "--check"]);
+    for words in [
+        "part-1.exr holds the samples 0..2, but this part has 2..4",
+        "part-2.exr is the film of another picture: seed is 0 here, 9 there",
+        "part-3-2.exr is not in the plan (samples 6..8)",
+        "2 of 4 parts are whole",
+        "--array=1,2 ",
+    ] {
+        assert!(checked.contains(words), "{words}: {checked}");
+    }
+    let (out, told) = ends(at, 1, &["merge", "p", "--out", "m.exr"]);
+    assert!(out.contains("(0..2, 6..8)") && told.contains("seed is 0 here, 9 there"), "{out}{told}");
+    let mut sum = whole_parts;
+    sum.merge(&film(&part(3))).unwrap();
+    assert!(film(&at.join("m.exr")) == sum);
+    // The program does not replace what may be somebody's film.
+    for (index, words) in [("1", "0..2"), ("2", "seed")] {
+        let (_, told) = ends(at, 2, &["render-part", "p", "--part", index, "--device", "cpu"]);
+        assert!(told.contains(words), "{told}");
+    }
+}
+
+#[test]
+fn films_without_a_plan_are_checked_for_gaps_and_overlaps() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let render = |range: &str, name: &str, more: &[&str]| {
+        let flags = ["--sample-range", range, "--progress", "off", "--out", name];
+        succeeds(at, &[&["--batch"], &PICTURE[..], &flags, more].concat());
+    };
+    render("0..8", "a.exr", &[]);
+    render("13..24", "b c.exr", &[]);
+    render("6..9", "d.exr", &[]);
+    render("24..26", "e.exr", &["--seed", "1"]);
+    render("26..27", "f.exr", &[]);
+    damage(&at.join("f.exr"));
+    let (told, _) = ends(at, 1, &["merge", "--check", "a.exr", "b c.exr", "d.exr", "e.exr", "f.exr"]);
+    for words in [
+        "a.exr and d.exr both hold the samples 6..8",
+        "samples 9..13 are missing",
+        "e.exr is the film of another picture than a.exr: seed is 0 here, 1 there",
+        "f.exr is damaged: the rows 0 to 15",
+        "20 samples per pixel (0..9, 13..24) in 3 of 5 films",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    // The command fills the gap.
+    let (told, _) = ends(at, 1, &["merge", "--check", "a.exr", "b c.exr"]);
+    let words = shlex::split(told.lines().last().unwrap()).unwrap();
+    let arguments: Vec<&str> = words.iter().skip(1).map(String::as_str).collect();
+    succeeds(at, &[&arguments[..], &["--device", "cpu", "--threads", "2"]].concat());
+    assert!(
+        succeeds(at, &["merge", "--check", "a.exr", "b c.exr"]).starts_with("24 samples per pixel (0..24)")
+    );
+    succeeds(at, &["merge", "a.exr", "b c.exr", "--out", "all.exr"]);
+    assert!(film(&at.join("all.exr")) == whole(at, "0..24", &[]));
+}

@@ -1,0 +1,162 @@
+//! Parts rendered one by one.
+
+use super::common::{command, damage, ends, film, part_path, plan, render_part, succeeds, whole};
+use std::path::Path;
+use tempfile::TempDir;
+
+#[test]
+fn the_parts_of_a_plan_add_up_to_one_run_to_the_bit() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    // 100 samples in 3 parts: blocks of 2, because larger ones would make a part too long.
+    for (flags, range) in [
+        (&["--scene", "book", "--samples", "100", "--parts", "3"][..], "0..100"),
+        (&["--stage", "shadow-acne", "--sample-range", "7..50", "--parts", "2"], "7..50"),
+        (&["--samples", "16", "--parts", "4", "--estimate-error", "off", "--seed", "3"], "0..16"),
+    ] {
+        let directory = format!("plan of {range}");
+        let lines = plan(at, &directory, flags);
+        for (part, line) in lines.lines().enumerate().collect::<Vec<_>>().into_iter().rev() {
+            assert!(line.contains(&format!("--part {part} --device=cpu --threads=2")), "{line}");
+            render_part(at, &directory, part as u32);
+        }
+        let told = succeeds(at, &["merge", &directory, "--out", "merged.exr", "--out", "merged.png"]);
+        assert!(told.contains(&format!("({range})")) && told.contains("merged.png"), "{told}");
+        let kept: Vec<&str> = flags
+            .chunks(2)
+            .filter(|pair| !["--parts", "--samples", "--sample-range"].contains(&pair[0]))
+            .flatten()
+            .copied()
+            .collect();
+        assert!(film(&at.join("merged.exr")) == whole(at, range, &kept), "{flags:?}");
+        assert!(at.join("merged.png").exists());
+        assert!(succeeds(at, &["merge", &directory, "--check"]).contains("parts are whole"));
+    }
+}
+
+#[test]
+fn commands_name_any_directory_so_that_a_shell_finds_it() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let directory = "it's a \"plan\" for $HOME & Köln; *";
+    let lines = plan(at, directory, &["--samples", "4", "--parts", "2"]);
+    assert_eq!(lines.lines().count(), 2);
+    let shell =
+        std::process::Command::new("sh").arg("-e").arg("-c").arg(&lines).current_dir(at).output().unwrap();
+    assert!(shell.status.success(), "{lines}{}", String::from_utf8_lossy(&shell.stderr));
+    succeeds(at, &["merge", directory, "--out", "merged.exr"]);
+    assert!(film(&at.join("merged.exr")) == whole(at, "0..4", &[]));
+    std::fs::remove_file(part_path(at, directory, 1)).unwrap();
+    // The command for what is missing is ready for a shell, too.
+    let (told, _) = ends(at, 1, &["merge", directory, "--check"]);
+    let line = told.lines().last().unwrap();
+    let shell = std::process::Command::new("sh").arg("-c").arg(line).current_dir(at).output().unwrap();
+    assert!(shell.status.success(), "{line}{}", String::from_utf8_lossy(&shell.stderr));
+    succeeds(at, &["merge", directory, "--check"]);
+}
+
+#[test]
+fn a_part_goes_on_from_its_checkpoint_and_a_whole_one_is_left_alone() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "64", "--parts", "2"]);
+    let path = part_path(at, "p", 1);
+    // As a killed run leaves it.
+    let begun = whole(at, "32..39", &[]);
+    std::fs::rename(at.join("one-run.exr"), &path).unwrap();
+    let json = succeeds(
+        at,
+        &["render-part", "p/plan.json", "--part", "1", "--device", "cpu", "--threads", "2", "--json", "-"],
+    );
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&json["added_samples_per_pixel"], &json["samples_per_pixel"]), (&25.into(), &32.into()));
+    assert_eq!(begun.sample_count(), 7);
+    let complete = film(&path);
+    assert!(complete == whole(at, "32..64", &[]));
+
+    let modified = || std::fs::metadata(&path).unwrap().modified().unwrap();
+    let before = modified();
+    assert!(render_part(at, "p", 1).contains("part 1 is whole: samples 32..64 in"));
+    assert_eq!(modified(), before);
+    // Only the unfinished one is asked for.
+    let (told, _) = ends(at, 1, &["merge", "p", "--check"]);
+    assert!(told.contains("part 0: part-0.exr is missing") && told.contains("--array=0 "), "{told}");
+    assert!(told.contains("--part 0") && !told.contains("--part 1"), "{told}");
+}
+
+#[test]
+fn a_damaged_part_is_put_aside_and_rendered_again() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "4", "--parts", "2"]);
+    let path = part_path(at, "p", 0);
+    render_part(at, "p", 0);
+    let good = film(&path);
+    for (round, aside) in
+        ["part-0.exr.damaged", "part-0.exr.damaged-2", "part-0.exr.damaged-3"].iter().enumerate()
+    {
+        if round < 2 {
+            damage(&path);
+        } else {
+            // Cut off, as a copy is that ran out of space.
+            std::fs::write(&path, "").unwrap();
+        }
+        let (_, told) =
+            ends(at, 0, &["render-part", "p", "--part", "0", "--device", "cpu", "--threads", "2"]);
+        assert!(told.contains(aside) && told.contains("rendered again"), "{told}");
+        assert!(at.join("p").join(aside).exists() && film(&path) == good);
+    }
+}
+
+#[test]
+fn the_environment_of_a_task_chooses_its_part() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "4", "--parts", "4"]);
+    let task = |name: &str, value: &str| {
+        let mut command = command(at, &["render-part", "p", "--device", "cpu"]);
+        command.env(name, value).output().unwrap().status.code()
+    };
+    assert_eq!(task("SLURM_ARRAY_TASK_ID", "2"), Some(0));
+    assert_eq!(task("JOB_COMPLETION_INDEX", "1"), Some(0));
+    assert_eq!(task("JOB_COMPLETION_INDEX", "4"), Some(2));
+    let there = [0, 1, 2, 3].map(|part| part_path(at, "p", part).exists());
+    assert_eq!(there, [false, true, true, false]);
+}
+
+#[test]
+fn one_command_starts_a_render_and_goes_on_with_it() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let go_on = |samples: &str| {
+        let flags =
+            ["--samples", samples, "--checkpoint", "f.exr", "--continue", "--out", "f.png", "--json", "-"];
+        let common = ["--batch", "--size", "32x18", "--device", "cpu", "--threads", "2"];
+        let json: serde_json::Value =
+            serde_json::from_str(&succeeds(at, &[&common[..], &flags].concat())).unwrap();
+        json["added_samples_per_pixel"].as_u64().unwrap()
+    };
+    assert_eq!([go_on("5"), go_on("5"), go_on("12")], [5, 0, 7]);
+    assert!(film(Path::new(&at.join("f.exr"))) == whole(at, "0..12", &[]));
+    let (_, told) = ends(at, 2, &["--batch", "--continue", "--out", "f.png"]);
+    assert!(told.contains("--checkpoint"), "{told}");
+}
+
+/// As when a scheduler starts a task again on another machine while the first one still runs.
+#[test]
+fn two_runs_of_one_part_make_one_film() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "12288", "--parts", "2"]);
+    let part = ["render-part", "p", "--part", "0", "--device", "cpu", "--threads", "1", "--every", "0.1s"];
+    let start = || command(at, &part).stdout(std::process::Stdio::null()).spawn().unwrap();
+    let mut runs = [start(), start()];
+    for run in &mut runs {
+        assert_eq!(run.wait().unwrap().code(), Some(0));
+    }
+    let mut names: Vec<_> =
+        std::fs::read_dir(at.join("p")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["part-0.exr", "plan.json", "scene.toml"]);
+    assert!(film(&part_path(at, "p", 0)) == whole(at, "0..6144", &[]));
+}

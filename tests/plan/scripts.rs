@@ -1,0 +1,146 @@
+//! The files for Slurm, GNU parallel and make.
+
+use super::common::{PICTURE, ends, film, part_path, plan, succeeds, whole};
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use tempfile::TempDir;
+
+/// A program whose name a shell and make take apart if it is not quoted.
+fn awkward_program(at: &Path) -> String {
+    let path = at.join("it's $HOME's weekender");
+    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_weekender"), &path).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+fn is_there(tool: &str) -> bool {
+    let found = Command::new(tool).arg("--version").output().is_ok_and(|output| output.status.success());
+    if !found {
+        eprintln!("NOT TESTED: there is no {tool}");
+    }
+    found
+}
+
+#[test]
+fn json_has_the_words_of_every_command() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let json = plan(at, "p q", &["--samples", "8", "--parts", "2", "--format", "json", "--every", "2m"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["samples"], serde_json::json!([0, 8]));
+    assert_eq!(json["parts"][1], serde_json::json!({"file": "part-1.exr", "samples": [4, 8]}));
+    let words: Vec<&str> =
+        json["part_commands"][1].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+    assert_eq!(
+        words[1..],
+        ["render-part", "p q/plan.json", "--part", "1", "--device=cpu", "--threads=2", "--every=120s"]
+    );
+    assert_eq!(json["merge_command"][2], "p q/plan.json");
+}
+
+#[cfg(unix)]
+#[test]
+fn make_renders_and_merges() {
+    if !is_there("make") {
+        return;
+    }
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let program = awkward_program(at);
+    let flags = ["--samples", "6", "--parts", "3", "--format", "make", "--program", &program];
+    let start = plan(at, "a b", &flags);
+    assert_eq!(start, "make -C 'a b'\n");
+    let make = || Command::new("sh").arg("-c").arg(&start).current_dir(at).output().unwrap();
+    let made = make();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    assert!(film(&at.join("a b/picture.exr")) == whole(at, "0..6", &[]));
+    // What is lost is rendered again, and only that.
+    fs::remove_file(part_path(at, "a b", 1)).unwrap();
+    let again = make();
+    let told = String::from_utf8_lossy(&again.stdout);
+    assert!(again.status.success() && told.matches("is whole: samples").count() == 2, "{told}");
+}
+
+#[cfg(unix)]
+#[test]
+fn parallel_renders_and_merges() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let program = awkward_program(at);
+    let flags = ["--samples", "6", "--parts", "3", "--format", "parallel", "--program", &program];
+    let start = plan(at, "a b", &flags);
+    assert_eq!(start, "sh 'a b/run.sh'\n");
+    if !is_there("parallel") {
+        return;
+    }
+    let run = Command::new("sh").arg("-c").arg(&start).current_dir(at).output().unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    assert!(film(&at.join("a b/picture.exr")) == whole(at, "0..6", &[]));
+}
+
+/// Slurm itself is not needed: a task is its script with the variables that Slurm sets.
+#[cfg(unix)]
+#[test]
+fn a_slurm_task_renders_its_part_and_queues_itself_again_after_sigterm() {
+    if !is_there("bash") {
+        return;
+    }
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let program = awkward_program(at);
+    let flags = ["--samples", "4294967296", "--parts", "64", "--format", "slurm", "--every", "0.2s"];
+    assert_eq!(plan(at, "a b", &[&flags[..], &["--program", &program]].concat()), "sh 'a b/submit.sh'\n");
+    let script = fs::read_to_string(at.join("a b/parts.sbatch")).unwrap();
+    for line in ["#SBATCH --array=0-63", "#SBATCH --requeue", "#SBATCH --signal=B:TERM@120"] {
+        assert!(script.lines().any(|found| found == line), "{line}: {script}");
+    }
+    assert!(fs::read_to_string(at.join("a b/submit.sh")).unwrap().contains("afterany"));
+    // A scontrol that writes down what it is asked.
+    let tools = at.join("tools");
+    fs::create_dir(&tools).unwrap();
+    let fake = "#!/bin/sh\necho \"$@\" >> \"$ASKED\"\necho JobState=\"$STATE\"\n";
+    fs::write(tools.join("scontrol"), fake).unwrap();
+    assert!(Command::new("chmod").arg("+x").arg(tools.join("scontrol")).status().unwrap().success());
+    for (state, asked) in [("RUNNING", "show job 70_5\nrequeue 70_5\n"), ("COMPLETING", "show job 70_5\n")] {
+        let asked_path = at.join(format!("asked-{state}"));
+        let path = std::env::join_paths(
+            [tools.clone()].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
+        );
+        let mut task = Command::new("bash")
+            .arg("parts.sbatch")
+            .current_dir(at.join("a b"))
+            .env("PATH", path.unwrap())
+            .env("ASKED", &asked_path)
+            .env("STATE", state)
+            .envs([("SLURM_ARRAY_TASK_ID", "5"), ("SLURM_ARRAY_JOB_ID", "70"), ("SLURM_JOB_ID", "77")])
+            .spawn()
+            .unwrap();
+        let part = at.join("a b/part-05.exr");
+        let before = if part.exists() { film(&part).sample_count() } else { 0 };
+        let begin = std::time::Instant::now();
+        while !part.exists() || film(&part).sample_count() == before {
+            assert!(begin.elapsed().as_secs() < 120, "no checkpoint is written");
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+        let killed = Command::new("kill").args(["-s", "TERM", &task.id().to_string()]).status().unwrap();
+        assert!(killed.success());
+        assert_eq!(task.wait().unwrap().code(), Some(143));
+        assert_eq!(fs::read_to_string(&asked_path).unwrap(), asked);
+        assert!(film(&part).sample_count() > before);
+    }
+}
+
+#[test]
+fn a_plan_of_the_usual_example_is_divided_evenly() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let flags =
+        ["plan", "--scene", "book", "--size", "1200x675", "--samples", "4096", "--parts", "32", "--out", "d"];
+    let (out, told) = ends(at, 0, &flags);
+    assert!(told.contains("32 parts of 128 samples per pixel each"), "{told}");
+    assert!(out.lines().nth(31).unwrap().ends_with("render-part d/plan.json --part 31"), "{out}");
+    let uneven = [&["plan"], &PICTURE[..], &["--samples", "1000", "--parts", "3", "--out", "e"]].concat();
+    let (_, told) = ends(at, 0, &uneven);
+    assert!(told.contains("3 parts of 328 to 336 samples per pixel, in blocks of 16"), "{told}");
+    succeeds(at, &["info", "d"]);
+}
