@@ -66,6 +66,9 @@ impl Window {
         let begin = Instant::now();
         let pictured = self.main.poll(context);
         self.frame_times.picture = begin.elapsed();
+        if self.crashes_at.is_some_and(|samples| self.main.status().samples_per_pixel >= samples) {
+            panic!("injected fault");
+        }
         if let Some(log) = &mut self.frame_log {
             if let Some(begun) = pictured {
                 log.pictured(begun);

@@ -31,6 +31,7 @@ mod pixel_values;
 mod plot;
 mod prediction;
 mod receive;
+mod rescue;
 mod second;
 mod status_bar;
 mod texture;

@@ -81,6 +81,8 @@ pub struct Window {
     pub(super) told_messages: (u64, usize),
     pub(super) is_dressed: bool,
     pub(super) frames_to_fit: u8,
+    /// Samples per pixel at which the window panics, as an injected fault.
+    pub(super) crashes_at: Option<u64>,
 }
 
 impl Window {
@@ -142,6 +144,7 @@ impl Window {
             told_messages: (0, 0),
             is_dressed: false,
             frames_to_fit: FRAMES_TO_FIT,
+            crashes_at: options.crashes_at,
         })
     }
 

@@ -54,7 +54,14 @@ impl Writer {
         let RenderOptions { recipe, stage, .. } = &self.render;
         let description = describe(recipe, *stage, film, &status, self.seconds_before);
         let outcome = match self.place.lock().save(film, &description, &same_job) {
-            Ok(saved) => Outcome { samples: Some(film.sample_count()), words: saved.note },
+            Ok(saved) => {
+                log::info!(
+                    "checkpoint: {} samples per pixel in {}",
+                    film.sample_count(),
+                    saved.path.display()
+                );
+                Outcome { samples: Some(film.sample_count()), words: saved.note }
+            }
             Err(error) => {
                 let words = format!("{error}; rendering continues, and writing will be tried again");
                 Outcome { samples: None, words: Some(words) }

@@ -36,6 +36,8 @@ pub struct BatchOptions {
     pub progress: ProgressChoice,
     /// Where the JSON is written.
     pub json: Option<JsonTarget>,
+    /// Samples per pixel at which the program panics (fault injection).
+    pub crashes_at: Option<u64>,
 }
 
 /// Options of the window.
@@ -61,6 +63,8 @@ pub struct WindowOptions {
     pub draw_with: DrawWith,
     /// File for the times of the window's frames.
     pub frame_log: Option<PathBuf>,
+    /// Samples per pixel at which the program panics (fault injection).
+    pub crashes_at: Option<u64>,
 }
 
 /// A picture to render.
@@ -132,6 +136,7 @@ pub(super) fn request(raw: RawRender) -> Result<Request, CliError> {
             backend,
             progress: raw.progress,
             json,
+            crashes_at: raw.simulate_crash,
         }))),
     }
 }
@@ -186,6 +191,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         resume: raw.resume.clone(),
         draw_with: raw.draw_with,
         frame_log: raw.frame_log.clone(),
+        crashes_at: raw.simulate_crash,
     })
 }
 
