@@ -13,7 +13,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("heat", &[]),
     ("recipe", &["memory", "files", "scene", "stages", "film", "render", "suggest"]),
     ("output", &["memory", "files", "stages", "film"]),
-    ("saved", &["stages", "film", "render", "recipe", "output"]),
+    ("saved", &["files", "stages", "film", "render", "recipe", "output"]),
     ("chart", &["files"]),
     ("sampling", &["render"]),
     ("kernel", &["scene", "stages", "film", "render", "sampling"]),
@@ -27,8 +27,10 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("progressive", &["stages", "film", "render", "heat", "backends"]),
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
     ("baseline", &["scene", "render"]),
+    ("environment", &[]),
     ("console", &[]),
     ("failure", &["console"]),
+    ("journal", &["files", "console", "failure"]),
     ("interrupt", &["console", "failure"]),
     ("statistics", &[]),
     (
@@ -51,6 +53,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("terminal", &["console", "failure", "cli", "files"]),
+    ("about", &["film", "render_cpu", "render_gpu", "terminal"]),
     (
         "batch",
         &[
@@ -68,6 +71,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "console",
             "failure",
             "interrupt",
+            "journal",
             "cli",
             "terminal",
             "files",
@@ -274,6 +278,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("maud", &["gallery", "companion"]),
     ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
+    ("env_filter", &["journal"]),
     ("ctrlc", &["interrupt"]),
     ("signal_hook", &["interrupt"]),
     ("pulldown_cmark", &["companion"]),
@@ -343,6 +348,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ),
     ("perform", &["model", "command", "facts", "theme", "plot", "dialogs", "window"]),
     ("receive", &["model", "command", "files", "window"]),
+    ("rescue", &["window"]),
     (
         "frame",
         &[
@@ -364,4 +370,4 @@ pub const WINDOW: &[(&str, &[&str])] = &[
 ];
 
 /// Files that may use the whole window.
-pub const TOP: &[&str] = &["window", "perform", "receive", "frame", "mod"];
+pub const TOP: &[&str] = &["window", "perform", "receive", "rescue", "frame", "mod"];
