@@ -6,9 +6,8 @@ use std::process::ExitCode;
 use weekender::about::Build;
 use weekender::cli::{self, Request};
 use weekender::failure::Failure;
-use weekender::journal::{self, Watched};
 use weekender::{
-    batch, bench, check, companion, compare, diff, environment, gallery, interrupt, report, stress,
+    batch, bench, check, companion, compare, diff, environment, gallery, interrupt, journal, report, stress,
 };
 
 /// Here, and not in the library, so that a commit does not compile the library again.
@@ -22,7 +21,7 @@ const BUILD: Build = Build {
 fn main() -> ExitCode {
     environment::provide_runtime_directory();
     interrupt::survive_file_size_limit();
-    journal::watched(Watched { version: BUILD.line() }, || run().unwrap_or_else(|failure| failure.report()))
+    journal::watched(BUILD.line(), || run().unwrap_or_else(|failure| failure.report()))
 }
 
 fn run() -> Result<ExitCode, Failure> {

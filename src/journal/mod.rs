@@ -6,7 +6,7 @@
 mod kept;
 mod panic;
 
-pub use panic::{Watched, watched, write_report};
+pub use panic::{watched, write_report};
 
 use crate::console;
 use env_filter::Filter;

@@ -10,22 +10,17 @@ use std::env;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 
-/// What a report says about the program.
-#[derive(Clone, Debug)]
-pub struct Watched {
-    /// Version, commit and target, in one line.
-    pub version: String,
-}
+/// Version, commit and target in one line, for the report.
+static VERSION: OnceLock<String> = OnceLock::new();
 
-static PROGRAM: Mutex<Option<Watched>> = Mutex::new(None);
 /// The words of the latest panic, of whatever thread.
 static LATEST: Mutex<Option<String>> = Mutex::new(None);
 
-/// Runs the program. If it panics, says where the report is.
-pub fn watched(watched: Watched, program: impl FnOnce() -> ExitCode) -> ExitCode {
-    *PROGRAM.lock().unwrap_or_else(PoisonError::into_inner) = Some(watched);
+/// Runs the program of this version. If it panics, writes a report and says where it is.
+pub fn watched(version: String, program: impl FnOnce() -> ExitCode) -> ExitCode {
+    VERSION.get_or_init(|| version);
     std::panic::set_hook(Box::new(note));
     catch_unwind(AssertUnwindSafe(program)).unwrap_or_else(|_| {
         write_report();
@@ -36,9 +31,8 @@ pub fn watched(watched: Watched, program: impl FnOnce() -> ExitCode) -> ExitCode
 /// Writes what is known about the latest panic to a file, and its path to standard error. Without a panic, does nothing.
 pub fn write_report() {
     let Some(words) = LATEST.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
-    let version =
-        PROGRAM.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|it| it.version.clone());
-    let text = report(&version.unwrap_or_default(), &command_line(), &words, &KEPT.text());
+    let version = VERSION.get().map_or("unknown", String::as_str);
+    let text = report(version, &command_line(), &words, &KEPT.text());
     let name = format!("weekender-report-{}.txt", std::process::id());
     let mut reasons = Vec::new();
     for place in places() {
