@@ -1,9 +1,7 @@
-//! Failures that end the program early, their exit codes, and the message after a panic.
+//! Failures that end the program early, and their exit codes.
 
 use crate::console;
-use std::backtrace::{Backtrace, BacktraceStatus};
 use std::fmt;
-use std::panic::PanicHookInfo;
 use std::process::ExitCode;
 
 /// Exit code for a failure during the run, and for two inputs that differ.
@@ -97,25 +95,4 @@ pub fn output_failure(error: &std::io::Error) -> String {
     format!(
         "cannot write to standard output: {error}; keep its reader running, or write to a disk with free space"
     )
-}
-
-/// Makes panics print a message that tells the user what to do. The hook itself cannot fail, even if standard error is
-/// closed.
-pub fn install_panic_hook() {
-    std::panic::set_hook(Box::new(|panic| console::note(&fault_words(panic))));
-}
-
-fn fault_words(panic: &PanicHookInfo<'_>) -> String {
-    let reason = panic.payload_as_str().unwrap_or("no reason given");
-    let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
-    let thread = std::thread::current();
-    let thread = thread.name().unwrap_or("(unnamed)");
-    let mut words = format!(
-        "internal error in thread {thread}: {reason}{place}; please report it with the command that led to it"
-    );
-    let backtrace = Backtrace::capture();
-    if backtrace.status() == BacktraceStatus::Captured {
-        words.push_str(&format!("\n{backtrace}"));
-    }
-    words
 }

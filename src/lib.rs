@@ -3,6 +3,8 @@
 // See clippy.toml. Tests and examples may print.
 #![warn(clippy::disallowed_macros)]
 
+pub mod about;
+#[cfg(feature = "window")]
 pub mod app;
 pub mod backends;
 pub mod baseline;
@@ -16,6 +18,7 @@ pub mod compare;
 pub mod console;
 pub mod describe;
 pub mod diff;
+pub mod environment;
 pub mod explain;
 pub mod failure;
 pub mod files;
@@ -24,6 +27,7 @@ pub mod gallery;
 pub mod heat;
 pub mod info;
 pub mod interrupt;
+pub mod journal;
 pub mod kernel;
 pub mod layers;
 pub mod memory;

@@ -3,21 +3,42 @@
 #![warn(clippy::disallowed_macros)]
 
 use std::process::ExitCode;
+use weekender::about::Build;
 use weekender::cli::{self, Request};
-use weekender::failure::{self, Failure};
+use weekender::failure::Failure;
 use weekender::{
-    app, batch, bench, check, companion, compare, diff, gallery, info, interrupt, merge, report, stress,
+    batch, bench, check, companion, compare, diff, environment, gallery, info, interrupt, journal, merge,
+    report, stress,
+};
+
+/// Here, and not in the library, so that a commit does not compile the library again.
+const BUILD: Build = Build {
+    commit: git_version::git_version!(
+        args = ["--always", "--dirty=+", "--abbrev=12", "--exclude=*"],
+        fallback = ""
+    ),
 };
 
 fn main() -> ExitCode {
-    failure::install_panic_hook();
+    environment::provide_runtime_directory();
     interrupt::survive_file_size_limit();
-    run().unwrap_or_else(|failure| failure.report())
+    journal::watched(BUILD.line(), || run().unwrap_or_else(|failure| failure.report()))
 }
 
 fn run() -> Result<ExitCode, Failure> {
+    journal::start(cli::log_file(std::env::args_os())?.as_deref()).map_err(Failure::input)?;
+    log::info!("{}", BUILD.line());
     match cli::parse(std::env::args_os())? {
-        Request::Window(options) => app::run(*options).map_err(Failure::Input),
+        Request::Version { is_verbose } => {
+            BUILD.print(is_verbose).map(|()| ExitCode::SUCCESS).map_err(Failure::Run)
+        }
+        #[cfg(feature = "window")]
+        Request::Window(options) => weekender::app::run(*options).map_err(Failure::Input),
+        #[cfg(not(feature = "window"))]
+        Request::Window(_) => Err(Failure::Input(anyhow::anyhow!(
+            "this build of Weekender has no window; add --batch to render to a file, for example: weekender --batch \
+             --stage glass-schlick --out glass.png; or build it with its window: cargo build --release"
+        ))),
         Request::Bench(options) => bench::run(&options),
         Request::List => batch::list(),
         Request::SaveScene(options) => batch::save_scene(&options),

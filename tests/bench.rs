@@ -9,8 +9,6 @@ use weekender::stages::Stage;
 
 fn bench(directory: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    // Otherwise, some drivers complain.
-    command.env("XDG_RUNTIME_DIR", directory);
     command.current_dir(directory).arg("bench").args(arguments).stdin(Stdio::null()).output().unwrap()
 }
 

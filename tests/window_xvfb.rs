@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use weekender::app::Device;
+use weekender::film::checkpoint;
 use weekender::output::read_description;
 
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -280,6 +281,32 @@ fn a_person_can_use_the_window() {
     assert!(copied.status.success(), "{line}: {}", String::from_utf8_lossy(&copied.stderr));
     let rendered = home.path().join("glass-schlick.png");
     assert!(pixels(&saved) == pixels(&rendered), "the saved picture differs from that of {line}");
+}
+
+#[test]
+fn a_panic_of_the_window_keeps_its_film_and_leaves_a_report() {
+    let Some(display) = Display::start() else { return };
+    let home = tempfile::tempdir().unwrap();
+    let output = display
+        .weekender(home.path())
+        .env("TMPDIR", home.path())
+        .args(["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000", "--device", "cpu"])
+        .args(["--simulate-crash", "16"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    let files: Vec<PathBuf> =
+        std::fs::read_dir(home.path()).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let ending = |ending: &str| {
+        let found = files.iter().find(|path| path.extension().is_some_and(|own| own == ending));
+        found.unwrap_or_else(|| panic!("no {ending} in {files:?}: {said}"))
+    };
+    let film = ending("exr");
+    assert!(checkpoint::load(film).unwrap().film.sample_count() >= 16);
+    assert!(said.contains(&format!("continue with --resume {}", film.display())), "{said}");
+    let report = std::fs::read_to_string(ending("txt")).unwrap();
+    assert!(report.contains("injected fault") && report.contains("--stage glass-refract"), "{report}");
 }
 
 #[test]

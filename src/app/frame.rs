@@ -78,6 +78,9 @@ impl Window {
         let pictured = self.main.poll(context);
         self.frame_times.picture = begin.elapsed();
         self.speed.follow(self.main.status());
+        if self.crashes_at.is_some_and(|samples| self.main.status().samples_per_pixel >= samples) {
+            panic!("injected fault");
+        }
         if let Some(log) = &mut self.frame_log {
             if let Some(begun) = pictured {
                 log.pictured(begun);

@@ -33,6 +33,7 @@ mod places;
 mod plot;
 mod prediction;
 mod receive;
+mod rescue;
 mod second;
 mod speed;
 mod status_bar;

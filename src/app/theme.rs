@@ -170,26 +170,10 @@ pub fn float_frame(ui: &Ui) -> Frame {
         .inner_margin(Margin::symmetric(10, 6))
 }
 
-/// The window's icon: a ball under the sky.
+/// The window's icon.
 pub fn icon() -> Arc<egui::IconData> {
-    const SIDE: u32 = 64;
-    let mut rgba = Vec::with_capacity((SIDE * SIDE * 4) as usize);
-    for y in 0..SIDE {
-        for x in 0..SIDE {
-            let [dx, dy] = [x, y].map(|at| (f64::from(at) + 0.5) / f64::from(SIDE) * 2.0 - 1.0);
-            let squared = dx * dx + dy * dy;
-            let colour = if squared < 0.6 * 0.6 {
-                let z = (0.36 - squared).sqrt();
-                [dx, -dy, z].map(|n| 0.5 + 0.5 * n / 0.6)
-            } else {
-                let a = 0.5 - 0.5 * dy;
-                [1.0 - 0.5 * a, 1.0 - 0.3 * a, 1.0]
-            };
-            rgba.extend(colour.map(|c: f64| (c * 255.0) as u8));
-            rgba.push(255);
-        }
-    }
-    Arc::new(egui::IconData { rgba, width: SIDE, height: SIDE })
+    let png = include_bytes!("../../assets/package/icons/64.png");
+    Arc::new(eframe::icon_data::from_png_bytes(png).unwrap_or_default())
 }
 
 /// A panel's frame. It has no fill: the window is cleared to the panel's colour, which costs almost nothing in software

@@ -4,7 +4,7 @@ use super::model::document::Document;
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop, View};
+use crate::progressive::{Plan, Progressive, RenderRequest, Status, Stop, View};
 use eframe::egui;
 use std::io;
 use std::sync::Arc;
@@ -151,6 +151,12 @@ impl Tracer {
         self.is_full(document) && self.status.samples_per_pixel > 0
     }
 
+    /// Takes the film, and waits for the end of its pass. The next request starts a new one.
+    pub fn take_film(&mut self) -> Option<Film> {
+        self.started = None;
+        self.progressive.take_film()
+    }
+
     /// Runs `look` with the film on the render thread.
     pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
         self.progressive.inspect(look);
@@ -221,7 +227,7 @@ impl Tracer {
             self.progressive.ask_for_picture();
             self.asked = Instant::now();
         }
-        if matches!(self.status.phase, Phase::Preparing | Phase::Tracing) {
+        if self.status.phase.is_working() {
             context.request_repaint_after(interval.max(Duration::from_millis(16)));
         }
         pictured
@@ -250,7 +256,7 @@ impl Tracer {
         }
         // Until a preview has been displayed, starting another one would only delay it.
         let is_unseen = self.started.as_ref().is_some_and(|run| !run.is_pictured);
-        if want.is_moving && is_unseen && matches!(self.status.phase, Phase::Preparing | Phase::Tracing) {
+        if want.is_moving && is_unseen && self.status.phase.is_working() {
             return Ok(());
         }
         self.start(want, divisor, None)

@@ -92,6 +92,8 @@ pub struct Window {
     pub(super) panel: Option<Place>,
     pub(super) is_dressed: bool,
     pub(super) frames_to_fit: u8,
+    /// Samples per pixel at which the window panics, as an injected fault.
+    pub(super) crashes_at: Option<u64>,
 }
 
 impl Window {
@@ -158,6 +160,7 @@ impl Window {
             panel: None,
             is_dressed: false,
             frames_to_fit: FRAMES_TO_FIT,
+            crashes_at: options.crashes_at,
         })
     }
 

@@ -123,6 +123,7 @@ pub enum BackendError {
 /// # Errors
 /// [`BackendError`], which says what is available instead.
 pub fn create(choice: &BackendChoice) -> Result<Box<dyn Renderer>, BackendError> {
+    log::info!("the backend is to be {choice:?}");
     Ok(match choice {
         BackendChoice::Cpu(options) => Box::new(CpuRenderer::new(*options)?),
         BackendChoice::Gpu(options) => Box::new(GpuRenderer::new(options.clone())?),

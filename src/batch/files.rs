@@ -1,13 +1,12 @@
 //! Writes the picture and the film with their descriptions.
 
-use super::rescue;
 use crate::cli::RenderOptions;
 use crate::describe::describe;
 use crate::files::FileIdentity;
 use crate::film::{Description, Film, SaveOutcome, SharedFile, key};
 use crate::output::{OutputFormat, write_image_as};
 use crate::progressive::Status;
-use crate::saved::same_job;
+use crate::saved::{rescue, same_job};
 use anyhow::anyhow;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -123,7 +122,7 @@ pub(super) fn write(
         }
     }
     if !failures.is_empty() && !is_film_kept {
-        match rescue::rescue(render, film, &description) {
+        match rescue(&beside(render), &render.recipe.name, film, &description) {
             Ok(path) => {
                 failures.push(format!(
                     "the samples were saved in {0}; continue with --resume {0}",
@@ -148,6 +147,16 @@ pub(super) fn described(
     let mut description = describe(&render.recipe, render.stage, film, status, seconds_before);
     description.set(key::COMMAND, &render.command);
     description
+}
+
+/// The directories of the files that the render writes.
+fn beside(render: &RenderOptions) -> Vec<PathBuf> {
+    let files = [Some(&render.out), render.checkpoint.as_ref()];
+    let directory = |path: &PathBuf| match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+        _ => PathBuf::from("."),
+    };
+    files.into_iter().flatten().map(directory).collect()
 }
 
 /// Whether the name is that of a film.

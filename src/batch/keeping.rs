@@ -52,7 +52,14 @@ impl Writer {
         let status = status_of(film, status, self.held_before);
         let description = described(&self.render, film, &status, self.seconds_before);
         let outcome = match self.place.lock().save(film, &description, &same_job) {
-            Ok(saved) => Outcome { samples: Some(film.sample_count()), words: saved.note },
+            Ok(saved) => {
+                log::info!(
+                    "checkpoint: {} samples per pixel in {}",
+                    film.sample_count(),
+                    saved.path.display()
+                );
+                Outcome { samples: Some(film.sample_count()), words: saved.note }
+            }
             Err(error) => {
                 let words = format!("{error}; rendering continues, and writing will be tried again");
                 Outcome { samples: None, words: Some(words) }

@@ -6,7 +6,6 @@ mod listing;
 mod part;
 mod planning;
 mod progress;
-mod rescue;
 mod summary;
 
 pub use listing::list;
@@ -20,15 +19,17 @@ use crate::failure::Failure;
 use crate::files::{check_replaceable, check_writable, write_text};
 use crate::film::Film;
 use crate::interrupt::Interrupt;
+use crate::journal;
 use crate::progressive::{Phase, Progressive, RenderRequest, Status};
 use crate::recipe::{Recipe, file};
-use crate::render::Renderer;
+use crate::render::{Renderer, panic_text};
 use crate::saved::{self, SavedFilm};
 use crate::terminal::{print, print_beside, write_json};
 use anyhow::{Context, anyhow};
 use files::{Places, SharedPlace};
 use keeping::Keeper;
 use progress::Progress;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -168,7 +169,17 @@ impl Begun<'_> {
             plan: render.plan.clone(),
             film,
         };
-        let mut status = self.watch(progressive, request, &mut progress, keeper.as_mut());
+        let watched = catch_unwind(AssertUnwindSafe(|| {
+            self.watch(progressive, request, &mut progress, keeper.as_mut())
+        }));
+        let mut status = watched.unwrap_or_else(|payload| {
+            progressive.stop();
+            while progressive.status().phase.is_working() {
+                progressive.wait(Progressive::LOOK);
+            }
+            let phase = Phase::Failed(format!("the program failed ({})", panic_text(payload.as_ref())));
+            Status { phase, ..progressive.status() }
+        });
         let mut names: Vec<String> = [render.checkpoint.as_ref(), Some(&render.out)]
             .into_iter()
             .flatten()
@@ -190,11 +201,17 @@ impl Begun<'_> {
             _ => files::Written::default(),
         };
         drop(writing);
+        for path in &written.files {
+            log::info!("wrote {}", path.display());
+        }
         for note in &written.notes {
             progress.say(&format!("warning: {note}"));
         }
         status.messages.append(&mut written.notes);
         progress.finish();
+        if matches!(status.phase, Phase::Failed(_)) {
+            journal::write_report();
+        }
         let kept = keeper.and_then(|keeper| keeper.kept());
         let outcome = outcome(render, &status, film.as_ref(), &written, kept);
         (Summary::new(render, &status, film.as_ref(), written.files, begin.elapsed()), outcome)
@@ -216,6 +233,9 @@ impl Begun<'_> {
             told = status.messages.len();
             if status.phase.is_over() {
                 return;
+            }
+            if self.options.crashes_at.is_some_and(|samples| status.samples_per_pixel >= samples) {
+                panic!("injected fault");
             }
             if self.interrupt.is_set() && !is_stopping {
                 is_stopping = true;

@@ -47,6 +47,7 @@ pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
         backend: options.backend,
         progress: options.progress,
         json: options.json,
+        crashes_at: None,
     };
     check_before(&batch)?;
     // The places are noted before the film is read: another run may be writing it.

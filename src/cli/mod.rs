@@ -36,14 +36,19 @@ pub use values::JsonTarget;
 
 use crate::failure::Failure;
 use crate::shell;
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use subcommands::{Raw, RawCommand};
 
 /// What the program is to do.
 #[derive(Debug)]
 pub enum Request {
+    /// Print the version.
+    Version {
+        /// Also what the build and the machine are like.
+        is_verbose: bool,
+    },
     /// Open the window.
     Window(Box<WindowOptions>),
     /// Measure the speed.
@@ -78,6 +83,24 @@ pub enum Request {
     Batch(Box<BatchOptions>),
 }
 
+/// All flags and subcommands with their help, from which manual pages and completions are made.
+pub fn command() -> clap::Command {
+    Raw::command()
+}
+
+/// The file of `--log`, which is needed before the flags are validated. A command line that clap does not accept has
+/// none; [`parse`] says what is wrong with it.
+///
+/// # Errors
+/// If its name does not end in `.log`. Other names are refused so that a log never replaces a picture.
+pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<PathBuf>, Failure> {
+    let log = Raw::try_parse_from(arguments).ok().and_then(|raw| raw.log);
+    if let Some(path) = &log {
+        sources::check_ending("--log", path, "the log", ".log").map_err(Failure::input)?;
+    }
+    Ok(log)
+}
+
 /// Parses the command line; the first argument is the program's name.
 ///
 /// # Errors
@@ -90,6 +113,9 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
     let typed = shell::line(["weekender".into()].into_iter().chain(words));
     let program = called(arguments.first());
     let raw = Raw::try_parse_from(&arguments).map_err(Failure::CommandLine)?;
+    if raw.version {
+        return Ok(Request::Version { is_verbose: raw.verbose });
+    }
     match raw.command {
         Some(RawCommand::Bench(raw)) => {
             bench::bench(*raw).map(|options| Request::Bench(Box::new(options))).map_err(Failure::input)

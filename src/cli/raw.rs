@@ -127,6 +127,9 @@ pub(super) struct RawBackend {
     /// Let the CPU's tracer panic after this many tiles (fault injection)
     #[arg(long, value_name = "TILES", hide = true, help_heading = "Device")]
     pub simulate_panic: Option<u64>,
+    /// Let the program panic once the film has this many samples per pixel (fault injection)
+    #[arg(long, value_name = "SAMPLES", hide = true, help_heading = "Device")]
+    pub simulate_crash: Option<u64>,
     /// Lanes of the CPU's packets: auto, off (1), 4, 8, 16
     #[arg(long, value_name = "LANES", value_parser = parse_simd, default_value = "auto",
           help_heading = "Device")]

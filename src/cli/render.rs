@@ -35,6 +35,8 @@ pub struct BatchOptions {
     pub progress: ProgressChoice,
     /// Where the JSON is written.
     pub json: Option<JsonTarget>,
+    /// Samples per pixel at which the program panics (fault injection).
+    pub crashes_at: Option<u64>,
 }
 
 /// Options of the window.
@@ -60,6 +62,8 @@ pub struct WindowOptions {
     pub draw_with: DrawWith,
     /// File for the times of the window's frames.
     pub frame_log: Option<PathBuf>,
+    /// Samples per pixel at which the program panics (fault injection).
+    pub crashes_at: Option<u64>,
 }
 
 /// A picture to render.
@@ -136,6 +140,7 @@ pub(super) fn request(mut raw: RawRender, command: String) -> Result<Request, Cl
             backend,
             progress: raw.progress,
             json,
+            crashes_at: raw.backend.simulate_crash,
         }))),
     }
 }
@@ -187,6 +192,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         resume: raw.resume.clone(),
         draw_with: raw.draw_with,
         frame_log: raw.frame_log.clone(),
+        crashes_at: raw.backend.simulate_crash,
     })
 }
 

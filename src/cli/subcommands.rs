@@ -13,13 +13,24 @@ use super::report::RawReport;
 use super::stress::RawStress;
 use crate::failure::EXIT_CODES;
 use clap::{Parser, Subcommand};
+use std::path::PathBuf;
 
 /// The path tracer of "Ray Tracing in One Weekend", as a viewer and a headless renderer.
 #[derive(Debug, Parser)]
-#[command(name = "weekender", version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
+#[command(name = "weekender", version, disable_version_flag = true, args_conflicts_with_subcommands = true,
+          after_help = EXIT_CODES)]
 pub(super) struct Raw {
     #[command(flatten)]
     pub render: RawRender,
+    /// Print the version; with --verbose also commit, target, instruction level, adapters and version of film files
+    #[arg(short = 'V', long)]
+    pub version: bool,
+    /// With --version: print everything that a report of a fault should say
+    #[arg(long, requires = "version")]
+    pub verbose: bool,
+    /// Write a log of what the program does; RUST_LOG chooses what, such as warn,weekender=trace
+    #[arg(long, value_name = "FILE.log", global = true)]
+    pub log: Option<PathBuf>,
     #[command(subcommand)]
     pub command: Option<RawCommand>,
 }

@@ -2,11 +2,13 @@
 
 mod identity;
 mod leftovers;
+mod places;
 mod read;
 mod replace;
 
 pub use identity::FileIdentity;
 pub(crate) use identity::Stamp;
+pub use places::{home_directory, state_directory};
 pub use read::{InputError, open, read};
 pub(crate) use replace::NewFile;
 pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};

@@ -25,6 +25,11 @@ pub enum Phase {
 }
 
 impl Phase {
+    /// Whether samples are being added, or will be.
+    pub fn is_working(&self) -> bool {
+        matches!(self, Phase::Preparing | Phase::Tracing)
+    }
+
     /// Whether no more samples will come without a new command.
     pub fn is_over(&self) -> bool {
         matches!(self, Phase::Done(_) | Phase::Failed(_))
@@ -120,6 +125,7 @@ impl Status {
     pub(super) fn say(&mut self, messages: Vec<String>) {
         for message in messages {
             if !self.messages.contains(&message) {
+                log::warn!("{message}");
                 self.messages.push(message);
             }
         }

@@ -126,6 +126,10 @@ pub fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, 
         adapters.extend(adapters_of(wgpu::Backends::GL));
     }
     adapters.sort_by_key(|(info, _)| info.rank());
+    for (info, _) in &adapters {
+        let lacks = info.lacks.as_ref().map_or(String::new(), |lacks| format!("; not usable: {lacks}"));
+        log::info!("found {info}{lacks}");
+    }
     adapters
 }
 

@@ -15,6 +15,7 @@ pub struct Faults {
 
 impl Faults {
     fn note(&self, what: String) {
+        log::warn!("the device failed: {what}");
         self.first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(what);
     }
 
@@ -166,6 +167,7 @@ impl Gpu {
         let layouts = Layouts::new(&device);
         let silence = Arc::default();
         let gpu = Gpu { adapter: info.clone(), device, queue, layouts, faults, patience, silence };
+        log::info!("opened {}", gpu.adapter);
         gpu.faults.check().map_err(|reason| GpuError::Device { adapter: gpu.adapter.to_string(), reason })?;
         Ok(gpu)
     }

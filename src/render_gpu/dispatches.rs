@@ -224,6 +224,15 @@ impl Dispatches {
             pass.dispatch_workgroups(x, y, 1);
         }
         receipt.end(&mut encoder, &dispatch.counters);
+        log::debug!(
+            "dispatch {}: {} tiles from tile {}, {} blocks of samples, {} samples{}",
+            self.count,
+            dispatch.order.tile_count,
+            dispatch.order.first_tile,
+            dispatch.blocks.len(),
+            dispatch.samples,
+            if dispatch.order.resumes == 0 { "" } else { ", resumed" }
+        );
         let submitted = Instant::now();
         let submission = gpu.queue.submit([encoder.finish()]);
         receipt.ask();
@@ -253,6 +262,7 @@ impl Dispatches {
             self.last_done - begun
         });
         self.time += took;
+        log::debug!("a dispatch took {:.3} ms", took.as_secs_f64() * 1e3);
         if !done.is_wanted {
             self.slots[done.slot].is_littered |= result.counters.unfinished > 0;
             return Ok(());

@@ -2,8 +2,10 @@
 //! opens or resumes a file uses this module.
 
 mod difference;
+mod rescue;
 
 pub use difference::{difference, same_job};
+pub use rescue::rescue;
 
 use crate::film::{CheckpointError, Description, Film, checkpoint, key};
 use crate::output::{OutputError, OutputFormat, read_description};

@@ -14,7 +14,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("heat", &[]),
     ("recipe", &["memory", "files", "scene", "stages", "film", "render", "suggest"]),
     ("output", &["memory", "files", "stages", "film"]),
-    ("saved", &["stages", "film", "render", "recipe", "output"]),
+    ("saved", &["files", "stages", "film", "render", "recipe", "output"]),
     ("plan", &["files", "film", "render", "recipe", "stages", "shell"]),
     ("chart", &["files"]),
     ("sampling", &["render"]),
@@ -29,8 +29,10 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("progressive", &["stages", "film", "render", "heat", "backends"]),
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
     ("baseline", &["scene", "render"]),
+    ("environment", &[]),
     ("console", &[]),
     ("failure", &["console"]),
+    ("journal", &["files", "console", "failure"]),
     ("interrupt", &["console", "failure"]),
     ("statistics", &[]),
     (
@@ -55,6 +57,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         ],
     ),
     ("terminal", &["console", "failure", "cli", "files"]),
+    ("about", &["film", "render_cpu", "render_gpu", "terminal"]),
     (
         "batch",
         &[
@@ -72,6 +75,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "console",
             "failure",
             "interrupt",
+            "journal",
             "cli",
             "terminal",
             "files",
@@ -304,6 +308,7 @@ pub const CRATES: &[(&str, &[&str])] = &[
     ("maud", &["gallery", "companion"]),
     ("plotters", &["chart"]),
     ("clap", &["cli", "failure"]),
+    ("env_filter", &["journal"]),
     ("ctrlc", &["interrupt"]),
     ("signal_hook", &["interrupt"]),
     ("pulldown_cmark", &["companion"]),
@@ -381,6 +386,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ),
     ("perform", &["model", "command", "facts", "theme", "places", "plot", "dialogs", "window"]),
     ("receive", &["model", "command", "files", "window"]),
+    ("rescue", &["window"]),
     (
         "frame",
         &[
@@ -404,4 +410,4 @@ pub const WINDOW: &[(&str, &[&str])] = &[
 ];
 
 /// Files that may use the whole window.
-pub const TOP: &[&str] = &["window", "perform", "receive", "frame", "mod"];
+pub const TOP: &[&str] = &["window", "perform", "receive", "rescue", "frame", "mod"];

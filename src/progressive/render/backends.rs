@@ -53,6 +53,7 @@ impl Render {
                 self.status.left_out = ready.renderer.kernel_contents().left_out;
                 self.status.hierarchy += ready.renderer.hierarchy_time();
                 self.status.prepare += ready.took;
+                log::info!("switched from {} to {}", self.choice.name(), pending.choice.name());
                 self.choice = pending.choice;
                 dismiss(backend.replace((self.choice.clone(), ready.renderer)));
                 self.sizer.restart();
@@ -86,6 +87,7 @@ impl Render {
         self.requested = self.film.samples().clone();
         self.failed.push(self.choice.clone());
         self.status.given_up.push(self.choice.name());
+        log::error!("{} failed: {error}", self.choice.name());
         match BackendChoice::fallback(&self.failed) {
             Some(fallback) => {
                 let name = fallback.words();
@@ -133,6 +135,16 @@ impl Render {
             self.is_prepared = true;
             self.status.phase = Phase::Tracing;
             self.status.prepare += begin.elapsed();
+            let info = renderer.info();
+            log::info!(
+                "prepared in {:.3} s: {} {}, {} lanes, {} threads; kernel: {}",
+                begin.elapsed().as_secs_f64(),
+                info.name,
+                info.device,
+                info.lanes,
+                info.threads,
+                self.status.kernel
+            );
         }
         Ok(())
     }

@@ -69,7 +69,7 @@ impl Render {
     }
 
     pub fn is_working(&self) -> bool {
-        matches!(self.status.phase, Phase::Preparing | Phase::Tracing)
+        self.status.phase.is_working()
     }
 
     pub fn film(&self) -> &Film {
@@ -113,6 +113,7 @@ impl Render {
     pub fn end(&mut self, reason: EndReason) {
         self.estimate_error();
         self.status.say(self.status.doubt.iter().cloned().collect());
+        log::info!("the render ended ({reason:?}) with {} samples per pixel", self.film.sample_count());
         self.status.phase = Phase::Done(reason);
     }
 
@@ -180,6 +181,13 @@ impl Render {
         let took = begin.elapsed();
         self.status.trace += took;
         self.note_added(renderer, held, &outcome);
+        log::debug!(
+            "pass of samples {}..{} took {:.3} ms; the film holds {}",
+            range.start,
+            range.end,
+            took.as_secs_f64() * 1e3,
+            self.film.sample_count()
+        );
         outcome?;
         self.requested.insert(range)?;
         self.sizer.measured(added, took, self.plan.pass_target);

@@ -1,6 +1,6 @@
 //! Rescues samples whose file cannot be written, by saving them wherever there is room.
 
-use crate::cli::RenderOptions;
+use crate::files::{home_directory, state_directory};
 use crate::film::{Description, Film, checkpoint, key};
 use crate::recipe::plain_name;
 use std::env;
@@ -12,12 +12,14 @@ const NAME_LENGTH: usize = 60;
 /// Largest number that is appended to find a free name.
 const NAME_LIMIT: u32 = 1000;
 
-/// Saves the film at the first place that works, and returns its path.
+/// Saves the film of the picture `name` at the first place that works, and returns its path: the directories `first`,
+/// then those for temporary files, for the state of programs, and the home directory.
 ///
 /// # Errors
 /// What is lost, and why each place failed.
-pub(super) fn rescue(
-    render: &RenderOptions,
+pub fn rescue(
+    first: &[PathBuf],
+    name: &str,
     film: &Film,
     description: &Description,
 ) -> Result<PathBuf, String> {
@@ -25,18 +27,18 @@ pub(super) fn rescue(
         // If it cannot be created, writing the file will say so.
         let _ = std::fs::create_dir_all(state);
     }
-    keep_in(&places(render), render, film, description)
+    keep_in(&places(first), name, film, description)
 }
 
 fn keep_in(
     places: &[PathBuf],
-    render: &RenderOptions,
+    name: &str,
     film: &Film,
     description: &Description,
 ) -> Result<PathBuf, String> {
     let mut reasons = Vec::new();
     for place in places {
-        let Some(path) = free_name(place, &render.recipe.name) else {
+        let Some(path) = free_name(place, name) else {
             reasons.push(format!("{} (no free name)", place.display()));
             continue;
         };
@@ -54,37 +56,15 @@ fn keep_in(
     ))
 }
 
-/// Directories to try in turn: next to the file that cannot be written, for temporary files, for the state of
-/// programs, and the home directory.
-fn places(render: &RenderOptions) -> Vec<PathBuf> {
-    let beside = |path: &Path| match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
-        _ => PathBuf::from("."),
-    };
-    let all = [
-        Some(beside(&render.out)),
-        render.checkpoint.as_deref().map(beside),
-        Some(env::temp_dir()),
-        state_directory(),
-        home(),
-    ];
+fn places(first: &[PathBuf]) -> Vec<PathBuf> {
+    let others = [Some(env::temp_dir()), state_directory(), home_directory()];
     let mut places: Vec<PathBuf> = Vec::new();
-    for place in all.into_iter().flatten() {
+    for place in first.iter().cloned().chain(others.into_iter().flatten()) {
         if !places.contains(&place) {
             places.push(place);
         }
     }
     places
-}
-
-/// The directory for the persistent state of programs.
-fn state_directory() -> Option<PathBuf> {
-    let state = env::var_os("XDG_STATE_HOME").map(PathBuf::from).filter(|state| state.is_absolute());
-    Some(state.or_else(|| Some(home()?.join(".local/state")))?.join("weekender"))
-}
-
-fn home() -> Option<PathBuf> {
-    env::home_dir().filter(|home| home.is_absolute())
 }
 
 fn free_name(directory: &Path, picture: &str) -> Option<PathBuf> {
@@ -100,7 +80,6 @@ fn free_name(directory: &Path, picture: &str) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::tests::options;
 
     #[test]
     fn the_first_place_that_takes_it_has_it_and_else_it_is_said_what_is_lost() {
@@ -108,12 +87,11 @@ mod tests {
         let at = |name: &str| directory.path().join(name);
         std::fs::write(at("file"), "").unwrap();
         std::fs::create_dir_all(at("made/deep")).unwrap();
-        let render = options(&[]);
-        let mut film = render.job.new_film();
+        let mut film = Film::new(4, 3, 2);
         film.record(0..6, 0).unwrap();
         let mut description = Description::new("r");
         description.set(key::SECONDS, 7.2);
-        let keep = |places: &[PathBuf]| keep_in(places, &render, &film, &description);
+        let keep = |places: &[PathBuf]| keep_in(places, "a/b", &film, &description);
 
         let path = keep(&[at("file"), at("made/deep"), at("unused")]).unwrap();
         assert_eq!(path.parent(), Some(at("made/deep").as_path()));
@@ -129,11 +107,10 @@ mod tests {
     }
 
     #[test]
-    fn there_are_places_beside_the_output_and_elsewhere() {
-        let directory = tempfile::tempdir().unwrap();
-        let out = directory.path().join("x.png");
-        let places = places(&options(&["--out", out.to_str().unwrap(), "--checkpoint", "x.exr"]));
-        assert_eq!(places[..2], [directory.path().to_owned(), PathBuf::from(".")]);
-        assert!(places.contains(&env::temp_dir()), "{places:?}");
+    fn the_given_places_come_first_and_each_once() {
+        let [first, second] = [PathBuf::from("x"), env::temp_dir()];
+        let places = places(&[first.clone(), second.clone(), first.clone()]);
+        assert_eq!(places[..2], [first, second.clone()]);
+        assert_eq!(places.iter().filter(|place| **place == second).count(), 1, "{places:?}");
     }
 }

@@ -1,0 +1,124 @@
+//! The log, the version, and what the program prints where it has no runtime directory.
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+const PICTURE: [&str; 7] = ["--batch", "--size", "32x18", "--samples", "8", "--device", "cpu"];
+
+fn program(directory: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    for variable in ["RUST_LOG", "DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(variable);
+    }
+    command.current_dir(directory).args(arguments).stdin(Stdio::null());
+    command
+}
+
+fn said(output: &Output) -> [String; 2] {
+    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned())
+}
+
+#[test]
+fn the_log_is_off_unless_it_is_asked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let [_, errors] = said(&program(directory.path(), &PICTURE).output().unwrap());
+    assert_eq!(errors, "");
+    let [_, errors] = said(&program(directory.path(), &PICTURE).env("RUST_LOG", "info").output().unwrap());
+    for part in [
+        "INFO  weekender",
+        "backend is to be Cpu",
+        "prepared in",
+        "render ended (Samples) with 8",
+        "wrote three",
+    ] {
+        assert!(errors.contains(part), "{part} is not in {errors}");
+    }
+    assert!(!errors.contains("DEBUG"), "{errors}");
+}
+
+#[test]
+fn a_log_file_has_passes_and_checkpoints_and_replaces_no_picture() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let flags = ["--checkpoint", "film.exr", "--log", "run.log"];
+    let output = program(directory.path(), &[&PICTURE[..], &flags].concat()).output().unwrap();
+    assert!(output.status.success() && said(&output)[1].is_empty(), "{:?}", said(&output));
+    let log = fs::read_to_string(at("run.log")).unwrap();
+    for part in ["DEBUG weekender::progressive", "pass of samples 0..", "wrote film.exr"] {
+        assert!(log.contains(part), "{part} is not in {log}");
+    }
+    fs::write(at("old.png"), "a picture").unwrap();
+    for (flags, part) in [
+        (["--log", "old.png"], "must end in .log"),
+        (["--log", "missing/run.log"], "choose a file in a directory"),
+    ] {
+        let output = program(directory.path(), &[&PICTURE[..], &flags].concat()).output().unwrap();
+        assert!(output.status.code() == Some(2) && said(&output)[1].contains(part), "{:?}", said(&output));
+    }
+    assert_eq!(fs::read(at("old.png")).unwrap(), b"a picture");
+    let output = program(directory.path(), &PICTURE).env("RUST_LOG", "weekender=loud").output().unwrap();
+    assert!(
+        output.status.code() == Some(2) && said(&output)[1].contains("weekender=loud"),
+        "{:?}",
+        said(&output)
+    );
+}
+
+#[test]
+fn every_subcommand_can_write_a_log() {
+    let directory = tempfile::tempdir().unwrap();
+    let flags = ["stress", "--filter", "no-such-scene", "--log", "run.log"];
+    let output = program(directory.path(), &flags).output().unwrap();
+    assert!(
+        fs::read_to_string(directory.path().join("run.log")).unwrap().contains("INFO  weekender: weekender "),
+        "{output:?}"
+    );
+}
+
+#[test]
+fn the_version_tells_what_a_report_of_a_fault_needs() {
+    let directory = tempfile::tempdir().unwrap();
+    let version = format!("weekender {}\n", env!("CARGO_PKG_VERSION"));
+    for flag in ["--version", "-V"] {
+        let output = program(directory.path(), &[flag]).output().unwrap();
+        assert_eq!((output.status.code(), said(&output)), (Some(0), [version.clone(), String::new()]));
+    }
+    let output = program(directory.path(), &["--version", "--verbose"]).output().unwrap();
+    let [text, _] = said(&output);
+    assert!(output.status.success() && text.starts_with(&version), "{text}");
+    for line in ["commit", "target", "window", "allocator", "instructions", "film files", "adapters"] {
+        assert!(text.lines().any(|found| found.starts_with(line)), "{line} is not in {text}");
+    }
+    let window = if cfg!(feature = "window") { "window        yes" } else { "window        no" };
+    assert!(text.contains(window), "{text}");
+    let output = program(directory.path(), &["--verbose"]).output().unwrap();
+    assert!(output.status.code() == Some(2) && said(&output)[1].contains("--version"), "{output:?}");
+}
+
+#[test]
+fn drivers_do_not_complain_where_there_is_no_runtime_directory() {
+    let directory = tempfile::tempdir().unwrap();
+    for value in [None, Some(""), Some("relative")] {
+        let mut command = program(directory.path(), &["--list"]);
+        match value {
+            None => command.env_remove("XDG_RUNTIME_DIR"),
+            Some(value) => command.env("XDG_RUNTIME_DIR", value),
+        };
+        let [listed, errors] = said(&command.output().unwrap());
+        assert!(listed.contains("three-spheres") && errors.is_empty(), "{value:?}: {errors}");
+    }
+}
+
+#[test]
+#[cfg(not(feature = "window"))]
+fn a_build_without_a_window_says_what_to_do() {
+    let directory = tempfile::tempdir().unwrap();
+    let output = program(directory.path(), &[]).output().unwrap();
+    let [_, errors] = said(&output);
+    assert!(
+        output.status.code() == Some(2) && errors.contains("no window") && errors.contains("--batch"),
+        "{errors}"
+    );
+}

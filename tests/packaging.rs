@@ -1,0 +1,111 @@
+//! What is shipped with the program: manual pages, completions, desktop entry, icons, and the library's examples.
+#![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
+
+#[allow(dead_code, reason = "its main function is not called")]
+#[path = "../examples/own_scene.rs"]
+mod own_scene;
+#[allow(dead_code, reason = "its main function is not called")]
+#[path = "../examples/render_a_film.rs"]
+mod render_a_film;
+#[path = "../examples/package/texts.rs"]
+mod texts;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use weekender::film::checkpoint;
+use weekender::recipe::{Recipe, file};
+
+const PACKAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/package");
+
+fn names(directory: &Path) -> BTreeSet<String> {
+    fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+}
+
+/// Runs a checker, if it is installed.
+fn check(program: &str, arguments: &[&str]) {
+    match Command::new(program).args(arguments).output() {
+        Ok(output) => {
+            let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+            assert!(output.status.success(), "{program} {arguments:?}: {said}");
+        }
+        Err(error) => eprintln!("{program} was not run ({error}): not checked: {arguments:?}"),
+    }
+}
+
+#[test]
+fn every_command_has_a_manual_page_and_five_shells_complete_every_flag() {
+    let directory = tempfile::tempdir().unwrap();
+    texts::write(directory.path()).unwrap();
+    let command = weekender::cli::command();
+    let [man, completions] = ["man", "completions"].map(|folder| directory.path().join(folder));
+
+    let pages = names(&man);
+    assert!(pages.contains("weekender.1"), "{pages:?}");
+    for subcommand in command.get_subcommands().filter(|subcommand| !subcommand.is_hide_set()) {
+        let page = format!("weekender-{}.1", subcommand.get_name());
+        assert!(pages.contains(&page), "{page} is not in {pages:?}");
+    }
+    let page = fs::read_to_string(man.join("weekender.1")).unwrap();
+    assert!(page.contains("noise\\-target") && page.contains("Exit codes"), "{page}");
+    assert!(!page.contains("simulate\\-hang"), "a hidden flag is documented");
+    for page in &pages {
+        check("mandoc", &["-T", "lint", "-W", "error", man.join(page).to_str().unwrap()]);
+    }
+
+    let files = names(&completions);
+    let expected = ["_weekender", "_weekender.ps1", "weekender.bash", "weekender.elv", "weekender.fish"];
+    assert_eq!(files.iter().map(String::as_str).collect::<Vec<_>>(), expected);
+    for file in &files {
+        let text = fs::read_to_string(completions.join(file)).unwrap();
+        let flags =
+            command.get_arguments().filter(|flag| !flag.is_hide_set()).filter_map(|flag| flag.get_long());
+        for flag in flags {
+            assert!(text.contains(flag), "{file} does not know --{flag}");
+        }
+    }
+    check("bash", &["-n", completions.join("weekender.bash").to_str().unwrap()]);
+}
+
+#[test]
+fn the_desktop_entry_and_the_description_are_valid_and_the_icons_are_there() {
+    check("desktop-file-validate", &[&format!("{PACKAGE}/weekender.desktop")]);
+    // A reverse domain name needs a domain, which the project does not have yet.
+    let lenient = "--override=cid-desktopapp-is-not-rdns=info";
+    check("appstreamcli", &["validate", "--no-net", lenient, &format!("{PACKAGE}/weekender.metainfo.xml")]);
+    let manifest = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml")).unwrap();
+    for side in [16, 32, 48, 64, 128, 256, 512] {
+        let path = format!("{PACKAGE}/icons/{side}.png");
+        assert_eq!(image::image_dimensions(&path).unwrap(), (side, side), "{path}");
+        assert!(
+            manifest.contains(&format!("icons/{side}.png\", \"usr/share/icons/hicolor/{side}x{side}/")),
+            "{path}"
+        );
+    }
+    let recipe = file::load(Path::new(&format!("{PACKAGE}/icon.toml"))).unwrap();
+    recipe.job().unwrap();
+}
+
+#[test]
+fn the_example_renders_a_film_that_can_be_continued() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut recipe = Recipe::find("three-spheres").unwrap();
+    (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (64, 36, 32);
+    let (film, error) = render_a_film::render(&recipe, directory.path()).unwrap();
+    assert!(film.sample_count() == 32 && error.rmse > 1e-4 && error.rmse < 0.1, "{error:?}");
+    assert!(checkpoint::load(&directory.path().join("three-spheres.exr")).unwrap().film == film);
+    let picture = image::open(directory.path().join("three-spheres.png")).unwrap();
+    assert_eq!((picture.width(), picture.height()), (64, 36));
+}
+
+#[test]
+fn the_example_scene_is_rendered_and_its_file_is_the_same_scene() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut recipe = own_scene::spiral();
+    (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (48, 27, 4);
+    own_scene::render(&recipe, directory.path()).unwrap();
+    let read = file::load(&directory.path().join("spiral.toml")).unwrap();
+    assert_eq!((&read.scene, read.camera, read.settings), (&recipe.scene, recipe.camera, recipe.settings));
+    assert!(image::open(directory.path().join("spiral.png")).is_ok());
+}
