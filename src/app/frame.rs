@@ -81,7 +81,11 @@ impl Window {
         for path in input::dropped(context) {
             self.files.open(context, path);
         }
-        let keyboard = Keyboard { had_focus: self.had_focus, is_full_screen: self.model.is_full_screen };
+        let keyboard = Keyboard {
+            had_focus: self.had_focus,
+            has_selection: self.model.selected.is_some(),
+            is_full_screen: self.model.is_full_screen,
+        };
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
         if is_free && input::fly(context, &mut self.model.document.camera) {
             self.changes.note_move();
@@ -110,8 +114,12 @@ impl Window {
             packet,
             code,
             commands,
+            spheres,
             ..
         } = self;
+        let selected = spheres.selected(model);
+        let selected = selected.as_ref();
+        let mut edits = Vec::new();
         let Model { document, view, remembered, .. } = model;
         let is_narrow = ui.available_width() < NARROW;
         let layer = view.show().layer();
@@ -139,7 +147,7 @@ impl Window {
             if has.has_controls {
                 let panel = egui::Panel::left("controls").default_size(244.0).size_range(190.0..=380.0);
                 scrolling(ui, panel, |ui| {
-                    panels::ui(ui, document, remembered, &facts, commands);
+                    panels::ui(ui, (document, selected), remembered, &facts, (&mut edits, commands));
                     if is_narrow && has.has_info {
                         info(ui, commands);
                     }
@@ -165,7 +173,8 @@ impl Window {
                 paths,
                 values,
             };
-            let handle = Handle { camera: &mut document.camera, divider: &mut view.divider };
+            let (camera, divider) = (&mut document.camera, &mut view.divider);
+            let handle = Handle { camera, divider, selected };
             viewport.ui(ui, handle, pictures, &facts, commands)
         });
         let touch = touch.inner;
@@ -173,9 +182,13 @@ impl Window {
         if let Some(pixel) = touch.listed {
             self.paths.list(&self.model.document, pixel, ui.ctx());
         }
-        if touch.is_move {
+        if touch.is_move || touch.edit.is_some() {
             self.changes.note_move();
         }
+        if let Some(sphere) = touch.select {
+            self.model.selected = sphere;
+        }
+        edits.into_iter().chain(touch.edit).for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
             self.toasts.ui(ui, room);
         }
@@ -188,6 +201,9 @@ impl Window {
 
     /// Notes what has changed and starts the render that this requires.
     fn follow(&mut self, context: &egui::Context) {
+        if let Err(reason) = self.spheres.follow(context, &mut self.model) {
+            self.toasts.bad(reason);
+        }
         if self.changes.follow(context, &self.model.document) {
             self.seconds_before = Some(0.0);
             if let Some(log) = &mut self.frame_log {
@@ -219,6 +235,10 @@ impl Window {
             && let Some(named) = self.pending_save.take()
         {
             self.files.save(context, (document, &self.main), self.seconds_before, named);
+        }
+        let has_samples = self.main.has_samples(document);
+        if let Some(words) = self.spheres.told(document, self.main.status(), has_samples) {
+            self.toasts.good(words);
         }
         self.inspector.follow(document, &self.main, context);
         self.tone.follow(document, view.tone.white(), &self.main, context);

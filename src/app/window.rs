@@ -21,6 +21,7 @@ use super::packet::Packet;
 use super::paths::Paths;
 use super::pixel_values::PixelValues;
 use super::second::Second;
+use super::spheres::Spheres;
 use super::toasts::Toasts;
 use super::tone::ToneUi;
 use super::tracer::Tracer;
@@ -51,6 +52,7 @@ pub struct Window {
     pub(super) layers: Layers,
     pub(super) tone: ToneUi,
     pub(super) values: PixelValues,
+    pub(super) spheres: Spheres,
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
     pub(super) paths: Paths,
@@ -109,6 +111,7 @@ impl Window {
             changes: Changes::new(document.clone()),
             model: Model {
                 document,
+                selected: None,
                 view: ViewState::default(),
                 remembered,
                 devices: DeviceOptions::of(&options.backend),
@@ -120,6 +123,7 @@ impl Window {
             layers: Layers::default(),
             tone: ToneUi::default(),
             values: PixelValues::default(),
+            spheres: Spheres::default(),
             viewport: Viewport::default(),
             inspector: Inspector::default(),
             paths: Paths::default(),
@@ -203,6 +207,11 @@ impl Window {
     /// Whether a second picture of the current comparison is available.
     pub fn has_other_picture(&self) -> bool {
         self.second.has_picture(self.document(), &self.model.view)
+    }
+
+    /// The selected sphere, by its index in the scene.
+    pub fn selected(&self) -> Option<usize> {
+        self.model.selected
     }
 
     /// The current view.
@@ -293,6 +302,7 @@ impl Window {
     /// Shows another document.
     pub(super) fn show_document(&mut self, document: Document) {
         self.model.document = document;
+        self.model.selected = None;
         self.inspector.forget();
         self.paths.forget();
     }

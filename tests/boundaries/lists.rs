@@ -230,6 +230,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "app",
         &[
+            "memory",
             "scene",
             "stages",
             "film",

@@ -4,9 +4,11 @@
 mod commands;
 mod common;
 mod device;
+mod edits;
 mod extreme;
 mod faults;
 mod files;
+mod objects;
 mod panels;
 mod plot;
 mod preview;

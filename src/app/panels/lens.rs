@@ -44,7 +44,7 @@ pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
     }
     let about = About::new(
         "Focus distance",
-        "Distance to the plane in focus, scene units (focus_distance). A click on the picture sets it too",
+        "Distance to the plane in focus, scene units (focus_distance). Ctrl and a click on the picture set it too",
     );
     let mut distance = camera.effective_focus_distance();
     let slider = slider(ui, about.disabled_if(disabled_reason), &mut distance, 0.01..=1000.0, |slider| {
