@@ -236,8 +236,7 @@ impl Window {
         {
             self.files.save(context, (document, &self.main), self.seconds_before, named);
         }
-        let has_samples = self.main.has_samples(document);
-        if let Some(words) = self.spheres.told(document, self.main.status(), has_samples) {
+        if let Some(words) = self.spheres.told(document, &self.main) {
             self.toasts.good(words);
         }
         self.inspector.follow(document, &self.main, context);

@@ -170,7 +170,7 @@ fn stage_bar(ui: &mut Ui, is_wide: bool, facts: &Facts, commands: &mut Vec<Comma
         Some(stage) => format!("{}  {}", stage.section, stage.title),
         None => facts.document().title(),
     };
-    let width = if is_wide { (ui.available_width() - 400.0).clamp(160.0, 340.0) } else { 240.0 };
+    let width = if is_wide { (ui.available_width() - 400.0).clamp(160.0, 284.0) } else { 240.0 };
     let button = Button::new(RichText::new(title).strong()).min_size(egui::vec2(width, 0.0)).truncate();
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);

@@ -3,13 +3,10 @@
 use super::command::Command;
 use super::model::edit::{Edit, first_difference};
 use super::navigation;
-use super::spheres::grip::new_body;
+use super::spheres::grip::{new_body, to_copy};
 use super::spheres::neighbour;
 use super::window::Window;
 use std::sync::Arc;
-
-/// How far from its original a copy of a sphere is, in radii.
-const COPY_RADII: f64 = 2.2;
 
 impl Window {
     /// Carries out a command about spheres. Other commands do nothing.
@@ -33,7 +30,7 @@ impl Window {
                 });
             }
             (Command::DuplicateSphere, Some(selected)) => {
-                let by = COPY_RADII * selected.body.radius * camera.basis().u;
+                let by = to_copy(scene, &camera, document.aspect(), selected.sphere);
                 self.edit(Edit::Duplicate(selected.sphere, by));
             }
             (Command::DeleteSphere, Some(selected)) => self.edit(Edit::Delete(selected.sphere)),

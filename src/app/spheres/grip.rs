@@ -1,7 +1,7 @@
 //! What a drag does to a sphere, and where a new sphere goes.
 
 use crate::app::model::edit::Body;
-use crate::scene::{Camera, Material, Scene};
+use crate::scene::{Camera, Material, Scene, Sphere};
 use glam::DVec3;
 
 /// A sphere never becomes larger than this share of the distance from the eye to its centre, so that the eye stays
@@ -16,6 +16,12 @@ const FAR: f64 = 8.0;
 
 /// The radius of a new sphere as a share of the picture's height at its distance.
 const NEW_SHARE: f64 = 0.09;
+
+/// How far from its original a copy of a sphere is, in radii.
+const COPY_RADII: f64 = 2.2;
+
+/// Spheres that overlap by no more than this share of the radius merely touch.
+const OVERLAP: f64 = 0.05;
 
 /// What a drag changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,6 +103,30 @@ pub fn new_body(scene: &Scene, camera: &Camera, aspect: f64, place: [f64; 2]) ->
     }
 }
 
+/// From a sphere to a place for its copy: beside it, where the copy is in sight and in no other sphere; above it if there
+/// is no such place.
+pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DVec3 {
+    let Some(original) = scene.spheres.get(sphere) else { return DVec3::ZERO };
+    let radius = original.radius;
+    let overlaps = |center: DVec3, other: &Sphere| {
+        center.distance(other.center) < other.radius + radius * (1.0 - OVERLAP)
+    };
+    let basis = camera.basis();
+    let is_free = |by: &DVec3| {
+        let center = original.center + *by;
+        let is_in_sight = camera.place_of(center, aspect).is_some_and(|place| {
+            place.iter().all(|along| (0.0..1.0).contains(along))
+                && camera.look_from.distance(center) > 2.0 * radius
+        });
+        // What the original overlaps too, such as the ground or a glass around it, is no obstacle.
+        let is_obstacle = |other: &&Sphere| overlaps(center, other) && !overlaps(original.center, other);
+        is_in_sight && scene.spheres.iter().find(is_obstacle).is_none()
+    };
+    let directions = [basis.u, -basis.u, basis.v, basis.w, -basis.w];
+    let places = directions.map(|direction| COPY_RADII * radius * direction);
+    places.into_iter().find(is_free).unwrap_or(COPY_RADII * radius * basis.v)
+}
+
 /// Rounds a positive number to two digits.
 fn two_digits(value: f64) -> f64 {
     let unit = 10.0_f64.powf(value.log10().floor() - 1.0);
@@ -150,6 +180,25 @@ mod tests {
             let sine = BODY.center.cross(towards).length() / distance;
             prop_assert!((dragged.radius / distance - sine.clamp(RADIUS_SHARE_LEAST, RADIUS_SHARE_LIMIT)).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn a_copy_is_where_it_can_be_seen() {
+        let mut scene = Scene::default();
+        scene.add_sphere(DVec3::new(0.0, -100.5, -3.0), 100.0, 0);
+        scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, 0);
+        let to_copy = |scene: &Scene| to_copy(scene, &Camera::BOOK, 1.5, 1) / (0.5 * COPY_RADII);
+        for (direction, obstacle) in
+            [(DVec3::X, DVec3::X), (DVec3::NEG_X, DVec3::NEG_X), (DVec3::Y, DVec3::Y)]
+        {
+            assert!(to_copy(&scene).distance(direction) < 1e-12, "{direction}");
+            scene.add_sphere(scene.spheres[1].center + obstacle, 0.5, 0);
+        }
+        assert!(to_copy(&scene).distance(DVec3::Z) < 1e-12, "towards the eye");
+        // Nothing else is in sight of a narrow lens.
+        let narrow = Camera { vfov_degrees: 1.0, ..Camera::BOOK };
+        assert_eq!(super::to_copy(&scene, &narrow, 1.5, 1).normalize(), DVec3::Z);
+        assert_eq!(super::to_copy(&scene, &narrow, 1.5, 99), DVec3::ZERO);
     }
 
     #[test]

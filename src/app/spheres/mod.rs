@@ -9,8 +9,8 @@ use super::model::Model;
 use super::model::checked::CheckedScene;
 use super::model::document::Document;
 use super::model::edit::{Body, Edit};
+use super::tracer::Tracer;
 use crate::memory;
-use crate::progressive::Status;
 use crate::recipe::Recipe;
 use crate::render::TRACING_BYTES_PER_SPHERE;
 use crate::scene::{Scene, Sphere};
@@ -154,11 +154,11 @@ impl Spheres {
     }
 
     /// What an edit of a large scene took, once its picture has samples.
-    pub fn told(&mut self, document: &Document, status: &Status, has_samples: bool) -> Option<String> {
-        let (_, hierarchy) = self.untold.as_mut()?;
+    pub fn told(&mut self, document: &Document, main: &Tracer) -> Option<String> {
+        let (_, hierarchy) = self.untold.as_mut().filter(|_| main.is_of(document))?;
         // The full-size render that follows a preview takes over the hierarchy.
-        *hierarchy = status.hierarchy.max(*hierarchy);
-        let (copy, hierarchy) = self.untold.take_if(|_| has_samples)?;
+        *hierarchy = main.status().hierarchy.max(*hierarchy);
+        let (copy, hierarchy) = self.untold.take_if(|_| main.has_samples(document))?;
         let count = document.scene().spheres.len();
         let [copy, hierarchy] = [copy, hierarchy].map(|time| time.as_secs_f64());
         Some(format!(
