@@ -98,6 +98,22 @@ impl Facts {
             Command::GoOn if self.further().is_none() => {
                 no("The render has not ended, or more samples would change nothing")
             }
+            Command::AddSphere if self.no_rays().is_some() => self.no_rays().map(str::to_owned),
+            Command::NextSphere | Command::PreviousSphere if document.scene().spheres.is_empty() => {
+                no("There is no sphere in this scene")
+            }
+            Command::Deselect
+            | Command::DuplicateSphere
+            | Command::DeleteSphere
+            | Command::FocusSphere
+            | Command::LookAtSphere
+                if self.model.selected.is_none() =>
+            {
+                no("No sphere is selected; click one in the picture, or press Period to go through them")
+            }
+            Command::ResetSpheres if !document.has_changed_scene() => {
+                no("The spheres are those of the stage")
+            }
             Command::Home if document.camera == document.origin.recipe.camera => {
                 no("This is already the stage's camera")
             }

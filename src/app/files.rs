@@ -8,11 +8,13 @@ use crate::describe::describe;
 use crate::files::replace_file;
 use crate::output::{OutputFormat, write_image};
 use crate::progressive::{FilmIdentity, ReferenceMeans};
+use crate::recipe::file;
 use crate::render::RenderJob;
 use crate::saved::{self, OpenError, Opened, SavedFilm};
 use eframe::egui::Context;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The film that the window resumes at startup.
 pub struct Resumed {
@@ -58,7 +60,8 @@ impl Files {
         (format, path): (OutputFormat, PathBuf),
     ) {
         let mut recipe = document.recipe();
-        let (stage, status) = (document.stage(), main.status().clone());
+        let stage = document.stage().filter(|_| !document.has_changed_scene());
+        let status = main.status().clone();
         let answer = self.saved.answer(context);
         main.inspect(move |film| {
             recipe.samples_per_pixel = film.sample_count().max(1);
@@ -80,6 +83,22 @@ impl Files {
         let outcome = replace_file(path, |writer| writer.write_all(text.as_bytes()));
         let outcome = outcome.map(|()| path.to_owned()).map_err(|error| error.to_string());
         self.saved.answer(context).give(outcome);
+    }
+
+    /// Writes a scene file. The text of a large scene takes seconds.
+    pub fn save_scene(&self, context: &Context, path: PathBuf, document: &Document) {
+        let (recipe, checked) = (document.recipe(), Arc::clone(&document.checked));
+        let work = move || {
+            let text = file::to_toml(&recipe);
+            replace_file(&path, |writer| writer.write_all(text.as_bytes()))
+                .map_err(|error| error.to_string())?;
+            checked.note_file(&std::path::absolute(&path).unwrap_or_else(|_| path.clone()));
+            Ok(path)
+        };
+        if let Err(error) = self.saved.ask("files", context, work) {
+            let reason = format!("the scene cannot be written: no thread could be started ({error})");
+            self.saved.answer(context).give(Err(reason));
+        }
     }
 
     /// Reads a scene file, picture or film.

@@ -96,9 +96,13 @@ impl Window {
         for path in input::dropped(context) {
             self.files.open(context, path);
         }
-        let Model { view, is_full_screen, .. } = &self.model;
-        let is_other_view = view.mode().is_some() || view.show() != Show::Picture;
-        let keyboard = Keyboard { had_focus: self.had_focus, is_other_view, is_full_screen: *is_full_screen };
+        let Model { view, selected, is_full_screen, .. } = &self.model;
+        let keyboard = Keyboard {
+            had_focus: self.had_focus,
+            is_other_view: view.mode().is_some() || view.show() != Show::Picture,
+            has_selection: selected.is_some(),
+            is_full_screen: *is_full_screen,
+        };
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
         let before = self.model.document.camera;
         if is_free && input::fly(context, &mut self.model.document.camera) {
@@ -153,8 +157,12 @@ impl Window {
             packet,
             code,
             commands,
+            spheres,
             ..
         } = self;
+        let selected = spheres.selected(model);
+        let selected = selected.as_ref();
+        let mut edits = Vec::new();
         let Model { document, view, remembered, .. } = model;
         let is_narrow = ui.available_width() < NARROW;
         let layer = view.show().layer();
@@ -193,7 +201,7 @@ impl Window {
                     let help = "The window has no room for it at the right; it follows the controls";
                     let is_asked =
                         has_info_below && ui.button("Stage and pixel: below").on_hover_text(help).clicked();
-                    panels::ui(ui, document, remembered, &facts, commands);
+                    panels::ui(ui, (document, selected), remembered, &facts, (&mut edits, commands));
                     if is_asked {
                         ui.scroll_to_cursor(Some(egui::Align::Min));
                     }
@@ -228,7 +236,8 @@ impl Window {
                 values,
                 notices: surfaces.inside(document).into_iter().chain(same).collect(),
             };
-            let handle = Handle { camera: &mut document.camera, divider: &mut view.divider };
+            let (camera, divider) = (&mut document.camera, &mut view.divider);
+            let handle = Handle { camera, divider, selected };
             viewport.ui(ui, handle, pictures, &facts, commands)
         });
         let touch = touch.inner;
@@ -241,8 +250,14 @@ impl Window {
         }
         if touch.is_move {
             self.stop_at_surfaces(&before);
+        }
+        if touch.is_move || touch.edit.is_some() {
             self.changes.note_move();
         }
+        if let Some(sphere) = touch.select {
+            self.model.selected = sphere;
+        }
+        edits.into_iter().chain(touch.edit).for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
             self.toasts.ui(ui, room);
         }
@@ -258,6 +273,9 @@ impl Window {
 
     /// Notes what has changed and starts the render that this requires.
     fn follow(&mut self, context: &egui::Context) {
+        if let Err(reason) = self.spheres.follow(context, &mut self.model) {
+            self.toasts.bad(reason);
+        }
         if self.changes.follow(context, &self.model.document) {
             self.seconds_before = Some(0.0);
             if let Some(log) = &mut self.frame_log {
@@ -289,6 +307,9 @@ impl Window {
             && let Some(named) = self.pending_save.take()
         {
             self.files.save(context, (document, &self.main), self.seconds_before, named);
+        }
+        if let Some(words) = self.spheres.told(document, &self.main) {
+            self.toasts.good(words);
         }
         self.inspector.follow(document, &self.main, context);
         self.tone.follow(document, view.tone.white(), &self.main, context);

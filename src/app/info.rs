@@ -20,7 +20,7 @@ pub fn ui(ui: &mut Ui, is_with_next: &mut bool, facts: &Facts, commands: &mut Ve
             compare_ui(ui, stage, is_with_next, facts, commands);
         }
         (None, Some(case)) => case_ui(ui, case, facts, commands),
-        (None, None) => recipe_ui(ui, document),
+        (None, None) => recipe_ui(ui, document, facts, commands),
     }
     ui.add_space(8.0);
     ui.separator();
@@ -33,6 +33,7 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
     let over = format!("{} {}", stage.chapter(), stage.chapter_title);
     ui.add(egui::Label::new(RichText::new(over).small().color(weak)).wrap());
     ui.add(egui::Label::new(RichText::new(stage.title).heading()).wrap());
+    changed_ui(ui, facts, commands);
     let link = format!("{} {}", stage.section, stage.section_title);
     ui.add(egui::Hyperlink::from_label_and_url(link, stage.url()).open_in_new_tab(true))
         .on_hover_text(format!("Opens this section of the book in the web browser:\n{}", stage.url()));
@@ -56,12 +57,29 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
 }
 
 /// Text about a scene that is not a stage.
-fn recipe_ui(ui: &mut Ui, document: &Document) {
+fn recipe_ui(ui: &mut Ui, document: &Document, facts: &Facts, commands: &mut Vec<Command>) {
     let recipe = &document.origin.recipe;
     ui.add(egui::Label::new(RichText::new(&recipe.name).heading()).wrap());
     let scene = document.scene();
     let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
     ui.label(format!("{spheres} spheres, {materials} materials"));
+    changed_ui(ui, facts, commands);
+}
+
+/// Says that the scene was changed, with a button that resets it.
+fn changed_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    if !facts.document().has_changed_scene() {
+        return;
+    }
+    ui.horizontal(|ui| {
+        ui.label(RichText::new("changed").color(ui.visuals().warn_fg_color))
+            .on_hover_text("The spheres are not those of the stage");
+        let button = egui::Button::new("Reset").small();
+        let response = ui.add(button).on_hover_text(Command::ResetSpheres.help());
+        if response.accessible_name("Reset the scene").clicked() {
+            commands.push(Command::ResetSpheres);
+        }
+    });
 }
 
 /// Text about an extreme scene: what makes it difficult and what to watch.
@@ -69,6 +87,7 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
     let weak = ui.visuals().weak_text_color();
     ui.add(egui::Label::new(RichText::new(case.family.title).small().color(weak)).wrap());
     ui.add(egui::Label::new(RichText::new(case.title()).heading()).wrap());
+    changed_ui(ui, facts, commands);
     let watch = case.watch.map_or("", |watch| watch.look_for);
     for (heading, text) in
         [("Watch", watch), ("What is stiff", case.stiff.as_str()), ("What it teaches", case.family.lesson)]

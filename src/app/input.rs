@@ -20,6 +20,8 @@ pub struct Keyboard {
     pub had_focus: bool,
     /// The window shows something other than the picture.
     pub is_other_view: bool,
+    /// A sphere is selected.
+    pub has_selection: bool,
     /// The window is in full-screen mode.
     pub is_full_screen: bool,
 }
@@ -59,9 +61,15 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, Key::Y)) {
         commands.push(Command::Redo);
     }
-    // Escape first leaves a control, then a comparison or another view, then full-screen mode.
+    // The Delete key of an Apple keyboard.
+    if also(Key::Backspace) {
+        commands.push(Command::DeleteSphere);
+    }
+    // Escape first leaves a control, then deselects, then leaves a comparison or another view, then full-screen mode.
     if !keyboard.had_focus && also(Key::Escape) {
-        if keyboard.is_other_view {
+        if keyboard.has_selection {
+            commands.push(Command::Deselect);
+        } else if keyboard.is_other_view {
             commands.push(Command::Show(Show::Picture));
         } else if keyboard.is_full_screen {
             commands.push(Command::FullScreen);
@@ -72,9 +80,10 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
 
 /// Moves the camera while keys are held. Returns whether it moved.
 pub fn fly(context: &egui::Context, camera: &mut Camera) -> bool {
+    let taken = taken_keys(context);
     let (by, seconds, is_fast) = context.input(|input| {
         let is_plain = !input.modifiers.command && !input.modifiers.alt;
-        let held = |key| f64::from(u8::from(is_plain && input.key_down(key)));
+        let held = |key| f64::from(u8::from(is_plain && input.key_down(key) && !taken.contains(&key)));
         let by =
             DVec3::new(held(Key::D) - held(Key::A), held(Key::E) - held(Key::Q), held(Key::W) - held(Key::S));
         // Limited, because after a pause without frames the first step would be a jump.
@@ -88,6 +97,25 @@ pub fn fly(context: &egui::Context, camera: &mut Camera) -> bool {
     *camera = navigation::fly(camera, by * speed * seconds);
     context.request_repaint();
     true
+}
+
+/// The keys that are held since they were pressed with Ctrl. After Ctrl+D, D may be released later than Ctrl, but the
+/// camera must not move.
+fn taken_keys(context: &egui::Context) -> Vec<Key> {
+    let id = egui::Id::unique("taken keys");
+    let mut taken: Vec<Key> = context.data(|data| data.get_temp(id)).unwrap_or_default();
+    context.input(|input| {
+        for event in &input.raw.events {
+            if let egui::Event::Key { key, pressed: true, modifiers, .. } = event
+                && modifiers.command
+            {
+                taken.push(*key);
+            }
+        }
+        taken.retain(|key| input.key_down(*key));
+    });
+    context.data_mut(|data| data.insert_temp(id, taken.clone()));
+    taken
 }
 
 /// The files that were dropped on the window.

@@ -80,6 +80,9 @@ fn section(command: Command) -> u8 {
         Command::Quit => 4,
         Command::Home | Command::ResetAll => 1,
         Command::AddBookmark => 2,
+        Command::NextSphere | Command::PreviousSphere | Command::Deselect => 1,
+        Command::FocusSphere | Command::LookAtSphere => 2,
+        Command::ResetSpheres => 3,
         Command::Wipe | Command::WipeDifference => 1,
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => 2,
         Command::Panels
@@ -183,10 +186,13 @@ fn stage_bar(ui: &mut Ui, is_wide: bool, facts: &Facts, commands: &mut Vec<Comma
     ui.spacing_mut().item_spacing.x = 4.0;
     step(ui, facts, commands, Command::PreviousStage, "‹");
     let title = match facts.document().stage() {
+        Some(stage) if facts.document().has_changed_scene() => {
+            format!("{}  {} (changed)", stage.section, stage.title)
+        }
         Some(stage) => format!("{}  {}", stage.section, stage.title),
         None => facts.document().title(),
     };
-    let width = if is_wide { (ui.available_width() - 400.0).clamp(160.0, 340.0) } else { 240.0 };
+    let width = if is_wide { (ui.available_width() - 400.0).clamp(160.0, 284.0) } else { 240.0 };
     let button = Button::new(RichText::new(title).strong()).min_size(egui::vec2(width, 0.0)).truncate();
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);

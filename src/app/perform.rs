@@ -14,7 +14,6 @@ use super::plot;
 use super::theme;
 use super::window::Window;
 use crate::gallery::Figure;
-use crate::recipe::file;
 use crate::stages::Stage;
 use eframe::egui::{self, ViewportCommand};
 use std::path::PathBuf;
@@ -47,10 +46,14 @@ impl Window {
                 self.toasts.good("Copied the plot's points");
             }
             Command::Quit => context.send_viewport_cmd(ViewportCommand::Close),
-            Command::Undo => self.changes.undo(&mut self.model.document),
-            Command::Redo => self.changes.redo(&mut self.model.document),
+            Command::Undo => {
+                self.keep_selection_after(|window| window.changes.undo(&mut window.model.document));
+            }
+            Command::Redo => {
+                self.keep_selection_after(|window| window.changes.redo(&mut window.model.document));
+            }
             Command::Home => self.model.document.camera = self.document().origin.recipe.camera,
-            Command::ResetAll => self.model.document.reset(),
+            Command::ResetAll => self.keep_selection_after(|window| window.model.document.reset()),
             Command::AddBookmark => {
                 let bookmarks = &mut self.model.remembered.bookmarks;
                 let document = &self.model.document;
@@ -58,6 +61,15 @@ impl Window {
                 bookmarks.push(Bookmark::new(name, &document.camera));
                 self.toasts.good("Bookmarked; see the Camera panel");
             }
+            Command::AddSphere
+            | Command::DuplicateSphere
+            | Command::DeleteSphere
+            | Command::NextSphere
+            | Command::PreviousSphere
+            | Command::Deselect
+            | Command::FocusSphere
+            | Command::LookAtSphere
+            | Command::ResetSpheres => self.perform_on_spheres(command),
             Command::NextRay => self.paths.step(true),
             Command::PreviousRay => self.paths.step(false),
             Command::Show(show) => self.model.view.choose(show),
@@ -205,9 +217,9 @@ impl Window {
     }
 
     fn ask_path(&mut self, purpose: Purpose) {
-        let name = &self.document().origin.recipe.name;
+        let name = self.document().name();
         let directory = self.model.remembered.directory.as_deref();
-        self.dialogs.open(Dialog::Path(PathBox::new(purpose, name, directory)));
+        self.dialogs.open(Dialog::Path(PathBox::new(purpose, &name, directory)));
     }
 
     /// Uses a file for the purpose for which it was chosen.
@@ -216,7 +228,7 @@ impl Window {
             Purpose::Open => self.files.open(context, path),
             Purpose::Save(format) => self.pending_save = Some((format, path)),
             Purpose::SaveScene => {
-                self.files.save_text(context, &path, &file::to_toml(&self.document().recipe()));
+                self.files.save_scene(context, path, self.document());
             }
             Purpose::SavePlot => {
                 self.files.save_text(context, &path, &plot::csv(&self.main.status().history));
@@ -238,11 +250,13 @@ impl Window {
         let adapter = adapter.map(|adapter| adapter.name.as_str());
         let line = self.document().command_line(samples.max(1), device.name(), adapter);
         context.copy_text(line);
-        self.toasts.good(match &self.document().origin.source {
-            Source::Embedded | Source::Extreme(_) => {
-                "Copied; the scene has no file yet: save the scene file, which the command reads"
-            }
-            _ => "Copied: the command line that renders this picture",
+        let document = self.document();
+        let is_in_no_file = document.has_changed_scene()
+            || matches!(document.origin.source, Source::Embedded | Source::Extreme(_));
+        self.toasts.good(if is_in_no_file && document.checked.file().is_none() {
+            "Copied; the scene has no file yet: save the scene file, which the command reads"
+        } else {
+            "Copied: the command line that renders this picture"
         });
     }
 }

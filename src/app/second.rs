@@ -139,7 +139,7 @@ impl Second {
         } else {
             mine.camera
         };
-        Document { camera, settings, stop, origin: Arc::clone(origin) }
+        Document { camera, settings, stop, ..Document::of(Arc::clone(origin)) }
     }
 }
 
@@ -205,7 +205,8 @@ mod tests {
         let mut second = Second::default();
         for case in shown_cases() {
             let mine = Document::new(Origin::of_case(case));
-            let theirs = second.document_of(Other::ByTheBook(Arc::clone(&mine.origin)), &mine);
+            let other = Other::ByTheBook(Arc::clone(&mine.origin), Arc::clone(&mine.checked));
+            let theirs = second.document_of(other, &mine);
             assert_eq!(theirs.rules().surface, SurfaceRule::Book, "{}", case.id);
             assert_eq!(
                 (theirs.camera, theirs.settings, theirs.stop),

@@ -2,8 +2,8 @@
 //! told so.
 
 use super::answers::Answers;
+use super::model::checked::CheckedScene;
 use super::model::document::Document;
-use super::model::origin::Origin;
 use crate::prepared::hierarchy::Hierarchy;
 use crate::scene::{Camera, Scene, Sphere};
 use crate::stages::Shading;
@@ -30,11 +30,11 @@ struct Tree {
 /// The surfaces of the document's scene.
 #[derive(Default)]
 pub struct Surfaces {
-    /// The origin of the document whose hierarchy was asked for.
-    of: Option<Arc<Origin>>,
+    /// The scene whose hierarchy was asked for.
+    of: Option<Arc<CheckedScene>>,
     tree: Option<Tree>,
     is_asked: bool,
-    answers: Answers<(Arc<Origin>, Tree)>,
+    answers: Answers<(Arc<CheckedScene>, Tree)>,
     /// Where the camera was last, and the innermost sphere around it.
     around: Option<(DVec3, Option<usize>)>,
 }
@@ -44,26 +44,26 @@ impl Surfaces {
     /// prepared the scene: before, both would compete for the processor.
     pub fn follow(&mut self, document: &Document, has_picture: bool, context: &Context) {
         let is_other =
-            |of: &Option<Arc<Origin>>| of.as_ref().is_none_or(|of| !Arc::ptr_eq(of, &document.origin));
+            |of: &Option<Arc<CheckedScene>>| of.as_ref().is_none_or(|of| !Arc::ptr_eq(of, &document.checked));
         if is_other(&self.of) {
             *self = Surfaces { answers: std::mem::take(&mut self.answers), ..Surfaces::default() };
-            self.of = Some(Arc::clone(&document.origin));
+            self.of = Some(Arc::clone(&document.checked));
         }
         if has_picture && !self.is_asked {
             self.is_asked = true;
             if document.scene().spheres.len() > SCAN_LIMIT {
-                let origin = Arc::clone(&document.origin);
+                let (scene, center) =
+                    (Arc::clone(&document.checked), document.origin.recipe.camera.look_from);
                 let build = move || {
-                    let center = origin.recipe.camera.look_from;
-                    let hierarchy = Hierarchy::build(&origin.recipe.scene.spheres, center);
-                    (origin, Tree { hierarchy, origin: center })
+                    let hierarchy = Hierarchy::build(&scene.scene().spheres, center);
+                    (scene, Tree { hierarchy, origin: center })
                 };
                 // Without a thread, every sphere is looked at.
                 let _ = self.answers.ask("surfaces", context, build);
             }
         }
-        while let Some((origin, tree)) = self.answers.take() {
-            if self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, &origin)) {
+        while let Some((scene, tree)) = self.answers.take() {
+            if self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, &scene)) {
                 self.tree = Some(tree);
             }
         }
@@ -210,7 +210,7 @@ fn share_to(from: DVec3, radius: f64, by: DVec3) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::origin::Source;
+    use crate::app::model::origin::{Origin, Source};
     use crate::app::navigation;
     use crate::recipe::Recipe;
     use crate::scene::Material;

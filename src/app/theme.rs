@@ -125,6 +125,8 @@ fn visuals(is_dark: bool) -> Visuals {
     visuals.selection.bg_fill = colours.accent;
     visuals.selection.stroke = Stroke::new(1.0, colours.on_accent);
     visuals.slider_trailing_fill = true;
+    // Colours have the numbers of scene files.
+    visuals.numeric_color_space = egui::style::NumericColorSpace::Linear;
     visuals.handle_shape = egui::style::HandleShape::Circle;
     visuals.disabled_alpha = 0.45;
     let shadow = Shadow { offset: [0, 4], blur: 14, spread: 0, color: Color32::from_black_alpha(60) };

@@ -133,6 +133,11 @@ impl Tracer {
         self.started.as_ref().is_some_and(|run| run.divisor == 1 && run.document.has_same_film(document))
     }
 
+    /// Whether the current film is the document's, at any size.
+    pub fn is_of(&self, document: &Document) -> bool {
+        self.started.as_ref().is_some_and(|run| run.document.has_same_film(document))
+    }
+
     /// Sets the view for pictures.
     fn look(&mut self, view: &View) {
         let is_same = match (&self.view, view) {

@@ -24,6 +24,7 @@ use super::pixel_values::PixelValues;
 use super::places::Place;
 use super::second::Second;
 use super::speed::Speed;
+use super::spheres::Spheres;
 use super::surfaces::Surfaces;
 use super::toasts::Toasts;
 use super::tone::ToneUi;
@@ -58,6 +59,7 @@ pub struct Window {
     pub(super) surfaces: Surfaces,
     pub(super) identity: Identity,
     pub(super) speed: Speed,
+    pub(super) spheres: Spheres,
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
     pub(super) paths: Paths,
@@ -122,6 +124,7 @@ impl Window {
             changes: Changes::new(document.clone()),
             model: Model {
                 document,
+                selected: None,
                 view: ViewState::default(),
                 remembered,
                 devices: DeviceOptions::of(&options.backend),
@@ -136,6 +139,7 @@ impl Window {
             surfaces: Surfaces::default(),
             identity: Identity::default(),
             speed: Speed::default(),
+            spheres: Spheres::default(),
             viewport: Viewport::default(),
             inspector: Inspector::default(),
             paths: Paths::default(),
@@ -229,6 +233,11 @@ impl Window {
         self.model.view.divider
     }
 
+    /// The selected sphere, by its index in the scene.
+    pub fn selected(&self) -> Option<usize> {
+        self.model.selected
+    }
+
     /// The current view.
     pub fn show(&self) -> Show {
         self.model.view.show()
@@ -319,6 +328,7 @@ impl Window {
     /// Shows another document.
     pub(super) fn show_document(&mut self, document: Document) {
         self.model.document = document;
+        self.model.selected = None;
         self.inspector.forget();
         self.paths.forget();
     }

@@ -4,6 +4,10 @@ use super::SceneError;
 use super::error::{colour, finite};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
+
+/// Limits on the refraction index.
+pub const REFRACTION_INDEX_LIMITS: RangeInclusive<f64> = 1e-9..=1e9;
 
 /// The behaviour of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,7 +118,7 @@ impl Material {
             }
             Material::Dielectric { refraction_index } => {
                 finite(|| of("refraction_index"), refraction_index)?;
-                if !(refraction_index > 0.0 && (1e-9..=1e9).contains(&refraction_index)) {
+                if !REFRACTION_INDEX_LIMITS.contains(&refraction_index) {
                     return Err(SceneError::range(
                         of("refraction_index"),
                         refraction_index,

@@ -13,9 +13,9 @@ mod sphere;
 
 pub use camera::{Camera, CameraBasis, DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, VFOV_LIMITS_DEGREES};
 pub use error::{LENGTH_LIMIT, SceneError};
-pub use material::{Material, NamedMaterial, Parameter};
+pub use material::{Material, NamedMaterial, Parameter, REFRACTION_INDEX_LIMITS};
 pub use pick::Pick;
-pub use sphere::Sphere;
+pub use sphere::{RADIUS_LIMITS, Sphere};
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};

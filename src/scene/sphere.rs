@@ -3,6 +3,7 @@
 use super::SceneError;
 use super::error::{LENGTH_LIMIT, finite, position};
 use glam::DVec3;
+use std::ops::RangeInclusive;
 
 /// A sphere with a single material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,15 +17,15 @@ pub struct Sphere {
     pub material: usize,
 }
 
-/// Smallest radius. Its square must be a normal number in `f32`.
-const RADIUS_MIN: f64 = 1e-18;
+/// Limits on the radius, scene units. The square of the smallest must be a normal number in `f32`.
+pub const RADIUS_LIMITS: RangeInclusive<f64> = 1e-18..=LENGTH_LIMIT;
 
 impl Sphere {
     pub(super) fn validate(&self, index: usize, material_count: usize) -> Result<(), SceneError> {
         let of = |key: &str| format!("spheres[{index}].{key}");
         position(|| of("center"), self.center)?;
         finite(|| of("radius"), self.radius)?;
-        if !(RADIUS_MIN..=LENGTH_LIMIT).contains(&self.radius) {
+        if !RADIUS_LIMITS.contains(&self.radius) {
             return Err(SceneError::range(
                 of("radius"),
                 self.radius,

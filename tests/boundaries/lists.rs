@@ -262,6 +262,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     (
         "app",
         &[
+            "memory",
             "scene",
             "stages",
             "film",

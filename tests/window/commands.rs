@@ -60,7 +60,7 @@ fn every_command_is_found_in_the_palette() {
 #[test]
 fn every_menu_lists_its_commands() {
     let mut harness = open(SMALL);
-    for menu in ["File", "Edit", "View", "Render", "Extreme scenes", "Help"] {
+    for menu in ["File", "Edit", "Spheres", "View", "Render", "Extreme scenes", "Help"] {
         control(&harness, menu).click();
         harness.run_steps(3);
         for command in Command::all().into_iter().filter(|command| command.group().name() == menu) {
@@ -94,6 +94,12 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::Undo | Command::Redo | Command::Home | Command::ResetAll => {
             document.camera != before.camera || document.settings != before.settings
         }
+        Command::AddSphere | Command::DuplicateSphere | Command::DeleteSphere | Command::ResetSpheres => {
+            document.scene() != before.scene()
+        }
+        Command::NextSphere | Command::PreviousSphere => window.selected().is_some(),
+        Command::Deselect => window.selected().is_none(),
+        Command::FocusSphere | Command::LookAtSphere => document.camera != before.camera,
         Command::AddBookmark => remembered.bookmarks.len() == 1,
         Command::Show(show) => window.show() == show,
         Command::Wipe | Command::WipeDifference | Command::BookArithmetic => window.is_comparing(),
@@ -133,6 +139,17 @@ fn every_command_does_what_it_says() {
             harness.run_steps(90);
             harness.state_mut().document_mut().camera.vfov_degrees = 33.0;
             harness.run_steps(90);
+        }
+        if matches!(
+            command,
+            Command::DuplicateSphere
+                | Command::DeleteSphere
+                | Command::Deselect
+                | Command::FocusSphere
+                | Command::LookAtSphere
+                | Command::ResetSpheres
+        ) {
+            send(&mut harness, Command::AddSphere);
         }
         if command == Command::Redo {
             send(&mut harness, Command::Undo);

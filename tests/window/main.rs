@@ -4,10 +4,12 @@
 mod commands;
 mod common;
 mod device;
+mod edits;
 mod extreme;
 mod faults;
 mod files;
 mod numbers;
+mod objects;
 mod panels;
 mod plot;
 mod preview;

@@ -168,10 +168,11 @@ fn the_wheel_and_keys_move_and_clicks_aim() {
             harness.step();
         }
     };
-    click(&mut harness, Modifiers::NONE);
+    click(&mut harness, Modifiers::COMMAND);
     let focused = harness.state().document().camera;
     assert_eq!(focused.look_at, flown.look_at);
     assert_ne!(focused.focus_distance, flown.focus_distance);
+    assert_eq!(harness.state().selected(), None, "Ctrl and a click only focus");
     click(&mut harness, Modifiers::NONE);
     harness.run_steps(2);
     assert_ne!(harness.state().document().camera.look_at, focused.look_at, "a second click at once centres");

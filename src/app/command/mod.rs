@@ -17,6 +17,8 @@ pub enum Group {
     File,
     /// Undo, reset and bookmarks.
     Edit,
+    /// Selecting and editing the spheres of the scene.
+    Spheres,
     /// What the window shows.
     View,
     /// Pause, restart and devices.
@@ -31,14 +33,23 @@ pub enum Group {
 
 impl Group {
     /// The menus, in order.
-    pub const ALL: [Group; 7] =
-        [Group::File, Group::Edit, Group::View, Group::Render, Group::Stage, Group::Extreme, Group::Help];
+    pub const ALL: [Group; 8] = [
+        Group::File,
+        Group::Edit,
+        Group::Spheres,
+        Group::View,
+        Group::Render,
+        Group::Stage,
+        Group::Extreme,
+        Group::Help,
+    ];
 
     /// The title of the menu.
     pub fn name(self) -> &'static str {
         match self {
             Group::File => "File",
             Group::Edit => "Edit",
+            Group::Spheres => "Spheres",
             Group::View => "View",
             Group::Render => "Render",
             Group::Stage => "Stage",
@@ -77,6 +88,24 @@ pub enum Command {
     ResetAll,
     /// Add a bookmark of the camera.
     AddBookmark,
+    /// Add a sphere where the pointer is.
+    AddSphere,
+    /// Add a copy of the selected sphere.
+    DuplicateSphere,
+    /// Delete the selected sphere.
+    DeleteSphere,
+    /// Select the next sphere of the scene.
+    NextSphere,
+    /// Select the previous sphere of the scene.
+    PreviousSphere,
+    /// Select no sphere.
+    Deselect,
+    /// Focus the lens on the selected sphere.
+    FocusSphere,
+    /// Turn the camera to the selected sphere.
+    LookAtSphere,
+    /// Reset the spheres to those of the stage.
+    ResetSpheres,
     /// Show a view of the picture.
     Show(Show),
     /// Compare this stage with another one on both sides of a divider.
@@ -174,6 +203,8 @@ impl Command {
         let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
         all.extend([SaveScene, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
+        all.extend([AddSphere, DuplicateSphere, DeleteSphere, NextSphere, PreviousSphere, Deselect]);
+        all.extend([FocusSphere, LookAtSphere, ResetSpheres]);
         all.extend(self::Show::ALL.map(Show));
         all.extend([Wipe, WipeDifference, Brighter, Darker, NoExposure, Fit, ActualSize, ZoomIn, ZoomOut]);
         all.extend([
@@ -219,6 +250,15 @@ impl Command {
             Command::Undo | Command::Redo | Command::Home | Command::ResetAll | Command::AddBookmark => {
                 Group::Edit
             }
+            Command::AddSphere
+            | Command::DuplicateSphere
+            | Command::DeleteSphere
+            | Command::NextSphere
+            | Command::PreviousSphere
+            | Command::Deselect
+            | Command::FocusSphere
+            | Command::LookAtSphere
+            | Command::ResetSpheres => Group::Spheres,
             Command::Pause
             | Command::GoOn
             | Command::Restart
@@ -263,6 +303,11 @@ impl Command {
             Command::Redo => ctrl_shift(Key::Z),
             Command::Home => key(Key::Home),
             Command::AddBookmark => ctrl(Key::B),
+            Command::AddSphere => key(Key::Insert),
+            Command::DuplicateSphere => ctrl(Key::D),
+            Command::DeleteSphere => key(Key::Delete),
+            Command::NextSphere => key(Key::Period),
+            Command::PreviousSphere => key(Key::Comma),
             Command::Show(show) => {
                 let place = Show::ALL.iter().position(|other| *other == show)?;
                 ctrl(*VIEW_KEYS.get(place)?)

@@ -4,13 +4,16 @@ use super::outcome::Outcome;
 use crate::app::command::{Command, Group};
 use eframe::egui::{self, RichText, Ui};
 
-const MOUSE: [(&str, &str); 12] = [
+const MOUSE: [(&str, &str); 15] = [
     ("Drag", "orbit around the point looked at"),
     ("Right drag", "look around"),
     ("Wheel", "move closer or away"),
     ("Ctrl and wheel", "zoom the picture at the pointer"),
     ("Middle or Shift drag", "move the picture"),
-    ("Click", "focus on what is there"),
+    ("Click", "select a sphere; on the sky: none"),
+    ("Drag the selected sphere", "move it; with Ctrl level"),
+    ("Drag its handle", "change its radius"),
+    ("Ctrl and click", "focus on what is there"),
     ("Double click", "look at what is there"),
     ("Right click", "a menu of what is there"),
     ("T; Alt and click", "list the paths of a pixel"),
@@ -24,7 +27,7 @@ const TWO_COLUMNS: f32 = 640.0;
 
 /// The groups of each column; `None` stands for the mouse actions.
 const COLUMNS: [&[Option<Group>]; 2] = [
-    &[None, Some(Group::File), Some(Group::Edit)],
+    &[None, Some(Group::File), Some(Group::Edit), Some(Group::Spheres)],
     &[Some(Group::View), Some(Group::Render), Some(Group::Stage), Some(Group::Help)],
 ];
 
@@ -50,7 +53,7 @@ pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
 fn section(ui: &mut Ui, group: Option<Group>) {
     let title = group.map_or("Mouse and flying", Group::name);
     ui.label(RichText::new(title).small().color(ui.visuals().weak_text_color()));
-    egui::Grid::new(title).num_columns(2).min_row_height(0.0).spacing([14.0, 3.0]).show(ui, |ui| {
+    egui::Grid::new(title).num_columns(2).min_row_height(0.0).spacing([14.0, 2.0]).show(ui, |ui| {
         let context = ui.ctx().clone();
         let mut row = |keys: &str, what: &str| {
             ui.label(RichText::new(keys).strong());
@@ -68,5 +71,5 @@ fn section(ui: &mut Ui, group: Option<Group>) {
             }
         }
     });
-    ui.add_space(8.0);
+    ui.add_space(6.0);
 }

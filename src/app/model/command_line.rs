@@ -2,35 +2,41 @@
 
 use super::document::Document;
 use super::origin::Source;
+use crate::recipe::plain_name;
 use crate::render::RenderSettings;
 use crate::shell::quoted;
 use std::fmt::Write;
 
 impl Document {
     /// The command line that renders the same picture with `samples` samples per pixel; on the CPU it is identical to
-    /// the bit.
+    /// the bit. A changed scene is read from its scene file. Everything else is then repeated, because the file may have
+    /// been saved with another camera or other settings.
     pub fn command_line(&self, samples: u64, device: &str, adapter: Option<&str>) -> String {
-        let origin = &self.origin.recipe;
+        let (origin, name) = (&self.origin.recipe, self.name());
         let mut line = String::from("weekender --batch");
         // Writing to a string cannot fail.
         let mut add = |flag: &str, value: &dyn std::fmt::Display| {
             let _ = write!(line, " {flag}={}", quoted(&value.to_string()));
         };
+        let mut repeats = false;
         match &self.origin.source {
-            Source::Stage(stage) => add("--stage", &stage.id),
-            Source::Builtin => add("--scene", &origin.name),
-            Source::File(path) => add("--scene", &path.display()),
-            Source::Embedded | Source::Extreme(_) | Source::ByTheBook => {
-                add("--scene", &format!("{}.toml", origin.name))
+            Source::Stage(stage) if !self.has_changed_scene() => add("--stage", &stage.id),
+            Source::Builtin if !self.has_changed_scene() => add("--scene", &origin.name),
+            Source::File(path) if !self.has_changed_scene() => add("--scene", &path.display()),
+            _ => {
+                let file =
+                    self.checked.file().unwrap_or_else(|| format!("{}.toml", plain_name(&name)).into());
+                add("--scene", &file.display());
+                repeats = true;
             }
         }
         let (mine, theirs) = (&self.settings, &origin.settings);
-        if (mine.width, mine.height) != (theirs.width, theirs.height) {
+        if repeats || (mine.width, mine.height) != (theirs.width, theirs.height) {
             add("--size", &format!("{}x{}", mine.width, mine.height));
         }
         for named in RenderSettings::NAMED {
             let value = (named.value)(mine);
-            if value != (named.value)(theirs) {
+            if repeats || value != (named.value)(theirs) {
                 add(&format!("--{}", named.flag), &value);
             }
         }
@@ -40,18 +46,19 @@ impl Document {
             ("--look-at", camera.look_at, base.look_at),
             ("--vup", camera.vup, base.vup),
         ] {
-            if value != default {
+            if repeats || value != default {
                 add(flag, &format!("{},{},{}", value.x, value.y, value.z));
             }
         }
-        if camera.vfov_degrees != base.vfov_degrees {
+        if repeats || camera.vfov_degrees != base.vfov_degrees {
             add("--vfov", &camera.vfov_degrees);
         }
-        if camera.defocus_angle_degrees != base.defocus_angle_degrees {
+        if repeats || camera.defocus_angle_degrees != base.defocus_angle_degrees {
             add("--defocus-angle", &camera.defocus_angle_degrees);
         }
         // No flag removes a focus distance, but a flag can set the equivalent distance.
-        if camera.focus_distance != base.focus_distance {
+        let has_lens = camera.defocus_angle_degrees > 0.0;
+        if (repeats && has_lens) || camera.focus_distance != base.focus_distance {
             add("--focus-distance", &camera.effective_focus_distance());
         }
         add("--samples", &samples);
@@ -61,7 +68,7 @@ impl Document {
         if let Some(adapter) = adapter {
             add("--adapter", &adapter);
         }
-        add("--out", &format!("{}.png", origin.name));
+        add("--out", &format!("{}.png", plain_name(&name)));
         line
     }
 }

@@ -1,5 +1,6 @@
 //! The document, which the user edits and undo restores: the origin of a picture and the changes to it.
 
+use super::checked::CheckedScene;
 use super::origin::{Origin, Source};
 use crate::progressive::Stop;
 use crate::recipe::Recipe;
@@ -14,6 +15,8 @@ use std::sync::Arc;
 pub struct Document {
     /// Where the picture comes from.
     pub origin: Arc<Origin>,
+    /// The scene, as edited.
+    pub checked: Arc<CheckedScene>,
     /// The camera, as edited.
     pub camera: Camera,
     /// Size, depth, sampler, seed, halves.
@@ -23,7 +26,7 @@ pub struct Document {
 }
 
 impl PartialEq for Document {
-    /// Origins are immutable, so comparing their addresses is enough.
+    /// Origins and scenes are immutable, so comparing their addresses is enough.
     fn eq(&self, other: &Self) -> bool {
         self.has_same_film(other) && self.camera == other.camera && self.stop == other.stop
     }
@@ -32,19 +35,30 @@ impl PartialEq for Document {
 impl Document {
     /// An unchanged document of `origin`.
     pub fn new(origin: Origin) -> Self {
+        Document::of(Arc::new(origin))
+    }
+
+    /// An unchanged document of `origin`.
+    pub fn of(origin: Arc<Origin>) -> Self {
         let Recipe { camera, settings, .. } = origin.recipe;
-        Document { stop: origin.usual_stop(), camera, settings, origin: Arc::new(origin) }
+        Document { stop: origin.usual_stop(), checked: Arc::clone(&origin.scene), camera, settings, origin }
     }
 
     /// Resets everything to the origin's values.
     pub fn reset(&mut self) {
         let Recipe { camera, settings, .. } = self.origin.recipe;
         (self.camera, self.settings, self.stop) = (camera, settings, self.origin.usual_stop());
+        self.checked = Arc::clone(&self.origin.scene);
     }
 
-    /// The scene of the origin.
+    /// The scene, as edited.
     pub fn scene(&self) -> &Scene {
-        &self.origin.recipe.scene
+        self.checked.scene()
+    }
+
+    /// Whether the scene is not the origin's.
+    pub fn has_changed_scene(&self) -> bool {
+        !Arc::ptr_eq(&self.checked, &self.origin.scene)
     }
 
     /// The rules of the origin.
@@ -67,11 +81,20 @@ impl Document {
 
     /// The name of the picture in menus and badges.
     pub fn title(&self) -> String {
-        match &self.origin.source {
+        let title = match &self.origin.source {
             Source::Stage(stage) => format!("{} {}", stage.section, stage.title),
             Source::Extreme(case) => case.title().to_owned(),
             _ => self.origin.recipe.name.clone(),
-        }
+        };
+        if self.has_changed_scene() { format!("{title} (changed)") } else { title }
+    }
+
+    /// The name for files: a changed scene has its own, so that it does not replace the file that it came from.
+    pub fn name(&self) -> String {
+        const CHANGED: &str = "-changed";
+        let name = &self.origin.recipe.name;
+        let is_new = self.has_changed_scene() && !name.ends_with(CHANGED);
+        if is_new { format!("{name}{CHANGED}") } else { name.clone() }
     }
 
     /// Width divided by height.
@@ -88,6 +111,7 @@ impl Document {
     /// Whether both documents consist of the same samples.
     pub fn has_same_film(&self, other: &Document) -> bool {
         Arc::ptr_eq(&self.origin, &other.origin)
+            && Arc::ptr_eq(&self.checked, &other.checked)
             && self.acting_camera() == other.acting_camera()
             && self.settings == other.settings
     }
@@ -96,6 +120,8 @@ impl Document {
     pub fn recipe(&self) -> Recipe {
         let origin = &self.origin.recipe;
         Recipe {
+            name: self.name(),
+            scene: Arc::clone(self.checked.scene()),
             camera: self.acting_camera(),
             settings: self.settings,
             samples_per_pixel: self.stop.samples.unwrap_or(origin.samples_per_pixel),
@@ -117,7 +143,7 @@ impl Document {
             estimate_error: self.settings.estimate_error && divisor == 1,
             ..self.settings
         };
-        self.origin.job(self.acting_camera(), settings)
+        self.checked.job(self.acting_camera(), settings)
     }
 }
 

@@ -1,9 +1,11 @@
 //! The model of the window: the document, the view, the device, and the remembered settings. It does not depend on
 //! widgets or drawing.
 
+pub mod checked;
 pub mod command_line;
 pub mod device;
 pub mod document;
+pub mod edit;
 pub mod further;
 pub mod origin;
 pub mod remembered;
@@ -22,6 +24,8 @@ use view::ViewState;
 pub struct Model {
     /// The picture being edited.
     pub document: Document,
+    /// The selected sphere.
+    pub selected: Option<usize>,
     /// The current view and comparison.
     pub view: ViewState,
     /// The window's settings, including the device.

@@ -1,13 +1,12 @@
 //! The origin of a picture.
 
+use super::checked::CheckedScene;
 use crate::progressive::Stop;
 use crate::recipe::Recipe;
-use crate::render::{JobError, RenderJob, RenderSettings};
-use crate::scene::Camera;
 use crate::stages::{Shading, Stage, SurfaceRule};
 use crate::stress::{Case, by_the_book};
 use std::path::PathBuf;
-use std::sync::OnceLock;
+use std::sync::Arc;
 
 /// Where a picture comes from.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,14 +32,15 @@ pub struct Origin {
     pub recipe: Recipe,
     /// The source of the recipe.
     pub source: Source,
-    /// The scene with its rules, validated; usable for any camera and size.
-    base: OnceLock<Result<RenderJob, JobError>>,
+    /// The scene of the recipe.
+    pub scene: Arc<CheckedScene>,
 }
 
 impl Origin {
     /// An origin from its parts.
     pub fn new(recipe: Recipe, source: Source) -> Self {
-        Origin { recipe, source, base: OnceLock::new() }
+        let scene = Arc::new(CheckedScene::new(Arc::clone(&recipe.scene), recipe.rules));
+        Origin { recipe, source, scene }
     }
 
     /// The origin of a stage.
@@ -53,9 +53,13 @@ impl Origin {
         Origin::new(case.shown(), Source::Extreme(case))
     }
 
-    /// The same picture by the book's own arithmetic.
-    pub fn by_the_book(&self) -> Self {
-        let recipe = Recipe { name: "The book's arithmetic".to_owned(), ..by_the_book(&self.recipe) };
+    /// The same picture by the book's own arithmetic, with this scene instead of its own.
+    pub fn by_the_book(&self, scene: &CheckedScene) -> Self {
+        let recipe = Recipe {
+            name: "The book's arithmetic".to_owned(),
+            scene: Arc::clone(scene.scene()),
+            ..by_the_book(&self.recipe)
+        };
         Origin::new(recipe, Source::ByTheBook)
     }
 
@@ -96,15 +100,6 @@ impl Origin {
             Source::Stage(stage) => Some(stage),
             _ => None,
         }
-    }
-
-    /// The job with this `camera` and `settings`. All jobs share one scene.
-    pub(super) fn job(&self, camera: Camera, settings: RenderSettings) -> Result<RenderJob, JobError> {
-        let checked = || {
-            let (scene, rules) = (self.recipe.scene.clone(), self.recipe.rules);
-            RenderJob::new(scene, Camera::BOOK, RenderSettings::default(), rules)
-        };
-        self.base.get_or_init(checked).clone()?.seen_by(camera, settings)
     }
 }
 

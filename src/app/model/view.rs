@@ -1,5 +1,6 @@
 //! What the viewport shows: a view of the film, or a comparison with another picture.
 
+use super::checked::CheckedScene;
 use super::document::Document;
 use super::origin::Origin;
 use super::show::Show;
@@ -23,16 +24,18 @@ pub enum Mode {
 pub enum Other {
     /// Another stage.
     Stage(&'static Stage),
-    /// The same picture by the book's own arithmetic.
-    ByTheBook(Arc<Origin>),
+    /// The same picture, with its scene as edited, by the book's own arithmetic.
+    ByTheBook(Arc<Origin>, Arc<CheckedScene>),
 }
 
 impl PartialEq for Other {
-    /// Origins are immutable, so comparing their addresses is enough.
+    /// Origins and scenes are immutable, so comparing their addresses is enough.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
             (Other::Stage(a), Other::Stage(b)) => a == b,
-            (Other::ByTheBook(a), Other::ByTheBook(b)) => Arc::ptr_eq(a, b),
+            (Other::ByTheBook(a, of_a), Other::ByTheBook(b, of_b)) => {
+                Arc::ptr_eq(a, b) && Arc::ptr_eq(of_a, of_b)
+            }
             _ => false,
         }
     }
@@ -43,7 +46,7 @@ impl Other {
     pub fn origin(&self) -> Origin {
         match self {
             Other::Stage(stage) => Origin::of_stage(stage),
-            Other::ByTheBook(mine) => mine.by_the_book(),
+            Other::ByTheBook(mine, scene) => mine.by_the_book(scene),
         }
     }
 }
@@ -141,7 +144,8 @@ impl ViewState {
             Some(stage) => self.other_of(stage).map(Other::Stage),
             None => {
                 let origin = &document.origin;
-                origin.is_other_by_the_book().then(|| Other::ByTheBook(Arc::clone(origin)))
+                let by_book = || Other::ByTheBook(Arc::clone(origin), Arc::clone(&document.checked));
+                origin.is_other_by_the_book().then(by_book)
             }
         }
     }
@@ -195,17 +199,21 @@ mod tests {
     use super::*;
     use crate::stress::shown_cases;
 
+    fn by_the_book(mine: &Document) -> Other {
+        Other::ByTheBook(Arc::clone(&mine.origin), Arc::clone(&mine.checked))
+    }
+
     #[test]
     fn what_is_no_stage_is_compared_with_the_books_arithmetic() {
         let mut view = ViewState::default();
         for case in shown_cases() {
             let mine = Document::new(Origin::of_case(case));
-            assert_eq!(view.other(&mine), Some(Other::ByTheBook(Arc::clone(&mine.origin))));
+            assert_eq!(view.other(&mine), Some(by_the_book(&mine)));
         }
         let stage = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         assert!(matches!(view.other(&stage), Some(Other::Stage(_))));
         view.toggle(Mode::Wipe, true);
-        assert!(matches!(view.other(&stage), Some(Other::ByTheBook(_))));
+        assert!(matches!(view.other(&stage), Some(Other::ByTheBook(..))));
         let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
         assert_eq!(view.other(&no_rays), None);
     }

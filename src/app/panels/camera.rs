@@ -13,7 +13,7 @@ use std::ops::RangeInclusive;
 pub(super) const RESET: Reset = Reset { is_changed, reset };
 
 /// What a coordinate can be, scene units.
-const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
+pub(super) const POSITIONS: RangeInclusive<f64> = -LENGTH_LIMIT..=LENGTH_LIMIT;
 
 fn placed(camera: &Camera) -> (glam::DVec3, glam::DVec3, glam::DVec3, f64) {
     (camera.look_from, camera.look_at, camera.vup, camera.vfov_degrees)

@@ -46,7 +46,7 @@ pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
     }
     let about = About::new(
         "Focus distance",
-        "Distance to the plane in focus, scene units (focus_distance). A click on the picture sets it too",
+        "Distance to the plane in focus, scene units (focus_distance). Ctrl and a click on the picture set it too",
     );
     let mut distance = camera.effective_focus_distance();
     let (about, ranges) = (about.disabled_if(disabled_reason), (0.01..=1000.0, FOCUS_LIMITS));

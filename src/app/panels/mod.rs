@@ -5,28 +5,34 @@ mod lens;
 mod output;
 mod render;
 mod reset;
+mod spheres;
 mod stop;
 
 use super::command::Command;
 use super::facts::Facts;
 use super::model::document::Document;
+use super::model::edit::Edit;
 use super::model::remembered::Remembered;
+use super::spheres::Selected;
 use eframe::egui::{self, RichText, Ui};
 use reset::Reset;
 
 /// Draws the groups.
 pub fn ui(
     ui: &mut Ui,
-    document: &mut Document,
+    (document, selected): (&mut Document, Option<&Selected>),
     remembered: &mut Remembered,
     facts: &Facts,
-    commands: &mut Vec<Command>,
+    (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
 ) {
     if let Some(reason) = &facts.invalid {
         let text = RichText::new(reason).color(ui.visuals().error_fg_color);
         ui.add(egui::Label::new(text).wrap());
         ui.add_space(4.0);
     }
+    group(ui, "Spheres", Some(&spheres::RESET), document, |ui, _| {
+        spheres::ui(ui, selected, facts, edits, commands);
+    });
     group(ui, "Camera", Some(&camera::RESET), document, |ui, document| {
         camera::ui(ui, &mut document.camera, &mut remembered.bookmarks, facts, commands);
     });

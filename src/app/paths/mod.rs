@@ -109,7 +109,8 @@ impl Paths {
             self.learn(listed);
         }
         let Some(listed) = &self.listed else { return };
-        if self.is_waiting || listed.document.settings == document.settings {
+        let is_same_scene = std::sync::Arc::ptr_eq(&listed.document.checked, &document.checked);
+        if self.is_waiting || (is_same_scene && listed.document.settings == document.settings) {
             return;
         }
         let [x, y] = listed.pixel;

@@ -2,6 +2,7 @@
 
 mod paint;
 mod placement;
+mod selection;
 
 pub use paint::Pictures;
 pub use placement::Placement;
@@ -10,13 +11,17 @@ use super::command::Command;
 use super::facts::Facts;
 use super::menu;
 use super::model::document::Document;
+use super::model::edit::Edit;
 use super::model::view::Mode;
 use super::navigation;
+use super::spheres::Selected;
+use super::spheres::grip::{Held, new_body};
 use crate::scene::{Camera, Pick};
 use eframe::egui::{
-    self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, vec2,
+    self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
 };
 use paint::{Mark, paint, paint_drop};
+use selection::{Drawn, place_at};
 use std::time::Instant;
 
 /// Radians of rotation per point of dragging.
@@ -39,6 +44,12 @@ pub struct Viewport {
     menu_at: Option<Pos2>,
     /// The area of the viewport when it was last drawn.
     room: Option<Rect>,
+    /// The sphere that the user drags.
+    held: Option<Held>,
+    /// The outline of the selected sphere.
+    drawn: Option<Drawn>,
+    /// The place of the pointer in the picture, 0 to 1 from the upper left.
+    pointer: Option<[f64; 2]>,
 }
 
 /// The input of a frame.
@@ -50,6 +61,10 @@ pub struct Touch {
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
     pub listed: Option<[u32; 2]>,
+    /// The sphere that the user selected; the inner `None` stands for no sphere.
+    pub select: Option<Option<usize>>,
+    /// A change to the spheres.
+    pub edit: Option<Edit>,
     /// The area of the viewport.
     pub room: Option<Rect>,
 }
@@ -60,6 +75,8 @@ pub struct Handle<'a> {
     pub camera: &'a mut Camera,
     /// Position of the wipe's divider, `0..=1` of the picture's width.
     pub divider: &'a mut f32,
+    /// The selected sphere.
+    pub selected: Option<&'a Selected>,
 }
 
 impl Viewport {
@@ -77,7 +94,7 @@ impl Viewport {
         facts: &Facts,
         commands: &mut Vec<Command>,
     ) -> Touch {
-        let Handle { camera, divider } = handle;
+        let Handle { camera, divider, selected } = handle;
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
@@ -90,13 +107,22 @@ impl Viewport {
 
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = facts.model.view.mode() == Some(Mode::Wipe);
-        if !self.handle_divider(ui, &response, is_wipe, divider) {
+        let is_held = self.handle_divider(ui, &response, is_wipe, divider)
+            || self.handle_sphere(ui, &response, selected, facts.document(), &mut touch);
+        if !is_held {
             self.handle_drag(ui, &response, camera, &mut touch);
             self.handle_click(ui, &response, facts.document(), camera, &mut touch);
         }
         let document = Document { camera: *camera, ..facts.document().clone() };
         paint(ui, [room, rect], &self.placement, *divider, pictures, &document, facts);
+        let clip = if is_wipe {
+            Rect { max: pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.max.y), ..rect }
+        } else {
+            rect
+        };
+        self.paint_sphere(ui, room, clip, selected);
         self.mark = self.mark.take().filter(|mark| mark.paint(ui, room, rect));
+        self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         touch.hovered = response.hover_pos().and_then(|at| self.placement.pixel_at(at, pixels));
         if response.secondary_clicked() {
             self.menu_at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
@@ -104,6 +130,12 @@ impl Viewport {
         response.context_menu(|ui| self.context_menu(ui, camera, facts, commands, &mut touch));
         paint_drop(ui, room);
         touch
+    }
+
+    /// Where a new sphere goes: the pointer's place in the picture; without one, the ground before the camera.
+    pub fn aim(&self) -> [f64; 2] {
+        const FOREGROUND: [f64; 2] = [0.5, 0.7];
+        self.pointer.unwrap_or(FOREGROUND)
     }
 
     fn handle_divider(&mut self, ui: &Ui, response: &Response, is_wipe: bool, divider: &mut f32) -> bool {
@@ -175,18 +207,34 @@ impl Viewport {
         let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at)) else { return };
         if response.double_clicked() {
             self.use_at(Spot::Centre, at, document, camera, touch);
-        } else if response.clicked() && (ui.input(|input| input.modifiers.alt) || is_alt_release(ui)) {
-            self.use_at(Spot::Paths, at, document, camera, touch);
         } else if response.clicked() {
-            self.use_at(Spot::Focus, at, document, camera, touch);
+            let is_held = |is_it: fn(&egui::Modifiers) -> bool| {
+                ui.input(|input| is_it(&input.modifiers)) || is_release(ui, is_it)
+            };
+            let spot = if is_held(|modifiers| modifiers.alt) {
+                Spot::Paths
+            } else if is_held(|modifiers| modifiers.command) {
+                Spot::Focus
+            } else {
+                Spot::Select
+            };
+            self.use_at(spot, at, document, camera, touch);
         }
     }
 
     fn use_at(&mut self, spot: Spot, at: Pos2, document: &Document, camera: &mut Camera, touch: &mut Touch) {
-        let rect = self.placement.rect();
-        let along = (at - rect.min) / rect.size();
-        let place = [f64::from(along.x), f64::from(along.y)];
+        let place = place_at(self.placement.rect(), at);
         match spot {
+            Spot::Select => {
+                let sphere = pick(document, camera, place).map(|pick| pick.sphere);
+                touch.select = Some(sphere);
+                if sphere.is_none() {
+                    self.mark = Some(Mark { place, text: "sky".to_owned(), since: Instant::now() });
+                }
+            }
+            Spot::Add => {
+                touch.edit = Some(Edit::Add(new_body(document.scene(), camera, document.aspect(), place)));
+            }
             Spot::Focus => self.focus(document, camera, place),
             Spot::Centre => self.recentre(document, camera, place),
             Spot::Paths => {
@@ -228,14 +276,24 @@ impl Viewport {
     ) {
         ui.set_width(menu::MENU_WIDTH);
         if let Some(at) = self.menu_at {
-            for spot in [Spot::Focus, Spot::Centre, Spot::Paths] {
+            for spot in Spot::ALL {
                 let [name, mouse] = spot.names();
                 let mouse = RichText::new(mouse).color(ui.visuals().weak_text_color());
-                let button = egui::Button::new(name).shortcut_text(mouse);
-                if ui.add(button.min_size(vec2(ui.available_width(), 0.0))).clicked() {
+                let button =
+                    egui::Button::new(name).shortcut_text(mouse).min_size(vec2(ui.available_width(), 0.0));
+                // Every stage has paths.
+                let reason = facts.no_rays().filter(|_| !matches!(spot, Spot::Paths));
+                let response = ui.add_enabled(reason.is_none(), button);
+                if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() {
                     self.use_at(spot, at, facts.document(), camera, touch);
                     ui.close();
                 }
+            }
+            ui.separator();
+        }
+        if facts.model.selected.is_some() {
+            for command in [Command::DuplicateSphere, Command::DeleteSphere] {
+                menu::item(ui, facts, commands, command);
             }
             ui.separator();
         }
@@ -248,25 +306,32 @@ impl Viewport {
 /// An action for a point of the picture.
 #[derive(Clone, Copy)]
 enum Spot {
+    Select,
     Focus,
     Centre,
     Paths,
+    Add,
 }
 
 impl Spot {
+    /// All actions, in the order of the menu.
+    const ALL: [Spot; 5] = [Spot::Select, Spot::Focus, Spot::Centre, Spot::Paths, Spot::Add];
+
     /// Its name in the menu, and its mouse shortcut.
     fn names(self) -> [&'static str; 2] {
         match self {
-            Spot::Focus => ["Focus on this", "Click"],
+            Spot::Select => ["Select this", "Click"],
+            Spot::Focus => ["Focus on this", "Ctrl and click"],
             Spot::Centre => ["Look at this", "Double click"],
             Spot::Paths => ["List the paths of this pixel", "T"],
+            Spot::Add => ["Add a sphere here", ""],
         }
     }
 }
 
-/// Whether Alt was held when a button was released. In a long frame, Alt may have been released since.
-fn is_alt_release(ui: &Ui) -> bool {
-    let is_it = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if modifiers.alt);
+/// Whether a key was held when a button was released. In a long frame, it may have been released since.
+fn is_release(ui: &Ui, is_held: impl Fn(&egui::Modifiers) -> bool) -> bool {
+    let is_it = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if is_held(modifiers));
     ui.input(|input| input.events.iter().any(is_it))
 }
 

@@ -218,7 +218,7 @@ fn words_for_files(files: &[egui::HoveredFile]) -> Option<String> {
 }
 
 /// Text on a background plate, readable on any picture.
-fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, font: &FontId) {
+pub(super) fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, font: &FontId) {
     let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), ui.visuals().strong_text_color());
     let mut rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 6.0));
     let clip = painter.clip_rect();

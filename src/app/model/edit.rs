@@ -1,0 +1,189 @@
+//! Edits of a scene's spheres.
+
+use crate::scene::{Material, NamedMaterial, Scene, Sphere};
+use glam::DVec3;
+
+/// A sphere with its material, as the user edits it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Centre, scene units.
+    pub center: DVec3,
+    /// Radius, scene units.
+    pub radius: f64,
+    /// How its surface scatters.
+    pub material: Material,
+}
+
+impl Body {
+    /// A sphere of the scene; `None` if there is none of this index.
+    pub fn of(scene: &Scene, sphere: usize) -> Option<Self> {
+        let Sphere { center, radius, material } = *scene.spheres.get(sphere)?;
+        Some(Body { center, radius, material: scene.materials.get(material)?.material })
+    }
+}
+
+/// A change to the spheres of a scene. Spheres are given by their index.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edit {
+    /// Gives a sphere this place, size and material. Other spheres keep their material.
+    Change(usize, Body),
+    /// Adds a sphere.
+    Add(Body),
+    /// Adds a copy of a sphere, this far away.
+    Duplicate(usize, DVec3),
+    /// Removes a sphere.
+    Delete(usize),
+}
+
+/// The name of the material of a sphere that was added.
+const ADDED: &str = "added";
+
+impl Edit {
+    /// The edited copy of `scene`, and the sphere that is selected then. An edit of a sphere that does not exist changes
+    /// nothing.
+    pub fn apply(&self, scene: &Scene) -> (Scene, Option<usize>) {
+        let mut scene = scene.clone();
+        let selected = match *self {
+            Edit::Change(index, body) => change(&mut scene, index, body).map(|()| index),
+            Edit::Add(Body { center, radius, material }) => {
+                let name = free_name(&scene, ADDED);
+                let material = scene.add_material(name, material);
+                scene.add_sphere(center, radius, material);
+                Some(scene.spheres.len() - 1)
+            }
+            Edit::Duplicate(index, by) => scene.spheres.get(index).copied().map(|sphere| {
+                scene.add_sphere(sphere.center + by, sphere.radius, sphere.material);
+                scene.spheres.len() - 1
+            }),
+            Edit::Delete(index) => {
+                delete(&mut scene, index);
+                None
+            }
+        };
+        (scene, selected)
+    }
+}
+
+fn change(scene: &mut Scene, index: usize, body: Body) -> Option<()> {
+    let place = scene.spheres.get(index)?.material;
+    let NamedMaterial { name, material } = scene.materials.get(place)?.clone();
+    if material != body.material {
+        // Another kind of material also gets another name: "glass" would be a strange name for a metal.
+        let is_same_kind = material.kind() == body.material.kind();
+        let name = if is_same_kind { name } else { free_name(scene, body.material.kind()) };
+        if is_shared(scene, place) {
+            let name = free_name(scene, &name);
+            scene.spheres[index].material = scene.add_material(name, body.material);
+        } else {
+            scene.materials[place] = NamedMaterial { name, material: body.material };
+        }
+    }
+    let sphere = &mut scene.spheres[index];
+    (sphere.center, sphere.radius) = (body.center, body.radius);
+    Some(())
+}
+
+/// Removes the sphere, and its material if no other sphere has it.
+fn delete(scene: &mut Scene, index: usize) {
+    if index >= scene.spheres.len() {
+        return;
+    }
+    let place = scene.spheres[index].material;
+    let is_shared = is_shared(scene, place);
+    scene.spheres.remove(index);
+    if !is_shared && place < scene.materials.len() {
+        scene.materials.remove(place);
+        for sphere in scene.spheres.iter_mut().filter(|sphere| sphere.material > place) {
+            sphere.material -= 1;
+        }
+    }
+}
+
+/// Whether several spheres have this material.
+fn is_shared(scene: &Scene, material: usize) -> bool {
+    scene.spheres.iter().filter(|sphere| sphere.material == material).nth(1).is_some()
+}
+
+/// `name`, or the first of `name-2`, `name-3` and so on that no material has.
+fn free_name(scene: &Scene, name: &str) -> String {
+    let is_free = |name: &str| scene.materials.iter().all(|named| named.name != name);
+    if is_free(name) {
+        return name.to_owned();
+    }
+    let stem = match name.rsplit_once('-') {
+        Some((stem, number)) if number.parse::<u32>().is_ok() => stem,
+        _ => name,
+    };
+    let numbered = (2_u32..).map(|number| format!("{stem}-{number}"));
+    numbered.into_iter().find(|name| is_free(name)).unwrap_or_default()
+}
+
+/// The first sphere of `after` that is not the same in `before`; `None` if there is none.
+pub fn first_difference(before: &Scene, after: &Scene) -> Option<usize> {
+    let is_same = |index: usize| Body::of(before, index) == Body::of(after, index);
+    (0..after.spheres.len()).find(|index| !is_same(*index))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+
+    fn scene() -> Scene {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        let glass = scene.add_material("glass", Material::Dielectric { refraction_index: 1.5 });
+        scene.add_sphere(DVec3::ZERO, 1.0, grey);
+        scene.add_sphere(DVec3::X, 1.0, glass);
+        scene.add_sphere(DVec3::Y, 1.0, glass);
+        scene
+    }
+
+    const METAL: Material = Material::Metal { albedo: DVec3::ONE, fuzz: 0.5 };
+
+    #[test]
+    fn a_change_concerns_one_sphere() {
+        let before = scene();
+        let denser = Material::Dielectric { refraction_index: 2.4 };
+        let body = Body { material: denser, ..Body::of(&before, 1).unwrap() };
+        let (after, selected) = Edit::Change(1, body).apply(&before);
+        after.validate().unwrap();
+        assert_eq!((selected, Body::of(&after, 1)), (Some(1), Some(body)));
+        assert_eq!(Body::of(&after, 2), Body::of(&before, 2), "shares its material with the other");
+        assert_eq!(after.materials[2].name, "glass-2");
+        // Now the sphere has its own material, so no more are added.
+        let (again, _) = Edit::Change(1, Body { material: METAL, ..body }).apply(&after);
+        assert_eq!((again.materials.len(), again.materials[2].name.as_str()), (3, "metal"));
+        assert_eq!(first_difference(&before, &again), Some(1));
+        assert_eq!(first_difference(&before, &before.clone()), None);
+    }
+
+    #[test]
+    fn spheres_are_added_copied_and_deleted() {
+        let before = scene();
+        let body = Body { center: DVec3::Z, radius: 0.25, material: METAL };
+        let (more, selected) = Edit::Add(body).apply(&before);
+        assert_eq!((selected, Body::of(&more, 3)), (Some(3), Some(body)));
+        let (twice, _) = Edit::Add(body).apply(&more);
+        twice.validate().unwrap();
+        let (copied, selected) = Edit::Duplicate(0, DVec3::X).apply(&before);
+        assert_eq!((selected, copied.materials.len()), (Some(3), 2));
+        assert_eq!(Body::of(&copied, 3).unwrap().center, DVec3::X);
+        let (fewer, selected) = Edit::Delete(0).apply(&before);
+        fewer.validate().unwrap();
+        assert_eq!((selected, fewer.materials.len()), (None, 1));
+        assert_eq!(Body::of(&fewer, 0), Body::of(&before, 1));
+        assert_eq!(Edit::Delete(9).apply(&before), (before.clone(), None));
+        assert_eq!(Edit::Change(9, body).apply(&before), (before, None));
+    }
+
+    #[test]
+    fn every_sphere_of_a_built_in_scene_can_be_deleted() {
+        let mut scene = (*Recipe::builtin("book").unwrap().scene).clone();
+        while !scene.spheres.is_empty() {
+            scene = Edit::Delete(scene.spheres.len() / 2).apply(&scene).0;
+            scene.validate().unwrap();
+        }
+        assert!(scene.materials.is_empty());
+    }
+}

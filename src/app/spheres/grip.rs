@@ -1,0 +1,221 @@
+//! What a drag does to a sphere, and where a new sphere goes.
+
+use crate::app::model::edit::Body;
+use crate::scene::{Camera, Material, Scene, Sphere};
+use glam::DVec3;
+
+/// A sphere never becomes larger than this share of the distance from the eye to its centre, so that the eye stays
+/// outside.
+const RADIUS_SHARE_LIMIT: f64 = 0.95;
+
+/// A sphere never becomes smaller than this share of that distance.
+const RADIUS_SHARE_LEAST: f64 = 1e-4;
+
+/// A drag moves a sphere at most to so many times its distance from the eye.
+const FAR: f64 = 8.0;
+
+/// The radius of a new sphere as a share of the picture's height at its distance.
+const NEW_SHARE: f64 = 0.09;
+
+/// How far from its original a copy of a sphere is, in radii.
+const COPY_RADII: f64 = 2.2;
+
+/// Spheres that overlap by no more than this share of the radius merely touch.
+const OVERLAP: f64 = 0.05;
+
+/// What a drag changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grip {
+    /// Its place, on the plane through the centre that is parallel to the picture.
+    Centre,
+    /// Its place, on the level plane through the centre.
+    Level,
+    /// Its radius.
+    Radius,
+}
+
+/// A sphere that the user holds.
+#[derive(Clone, Copy, Debug)]
+pub struct Held {
+    /// What the drag changes.
+    pub grip: Grip,
+    /// The sphere.
+    pub sphere: usize,
+    /// Its values when the drag began.
+    pub before: Body,
+    /// Where the drag began, in the picture.
+    pub start: [f64; 2],
+    /// The offset from the pointer to the point that follows it, because a handle may be beside the outline.
+    pub offset: [f64; 2],
+}
+
+impl Held {
+    /// The sphere after a drag to the point `to` of the picture. Where no place or radius follows, it is as before.
+    pub fn dragged(&self, camera: &Camera, aspect: f64, to: [f64; 2]) -> Body {
+        let ray = |place| camera.direction_through(place, aspect);
+        let to = [0, 1].map(|axis| to[axis] + self.offset[axis]);
+        let Body { center, radius, .. } = self.before;
+        let eye = camera.look_from;
+        match self.grip {
+            Grip::Radius => {
+                let distance = eye.distance(center);
+                let angle = ray(to).angle_between(center - eye).min(std::f64::consts::FRAC_PI_2);
+                let limits = [RADIUS_SHARE_LEAST * distance, RADIUS_SHARE_LIMIT * distance];
+                let radius = (distance * angle.sin()).clamp(limits[0], limits[1]);
+                Body { radius, ..self.before }
+            }
+            Grip::Centre | Grip::Level => {
+                let normal = match self.grip {
+                    Grip::Level => camera.vup.try_normalize().unwrap_or(DVec3::Y),
+                    _ => camera.basis().w,
+                };
+                let on_plane = |place| {
+                    let direction = ray(place);
+                    let along = (center - eye).dot(normal) / direction.dot(normal);
+                    let limit = FAR * (eye.distance(center) + radius);
+                    (along > 0.0 && along < limit).then(|| eye + along * direction)
+                };
+                match (on_plane(self.start), on_plane(to)) {
+                    (Some(from), Some(to)) => Body { center: center + (to - from), ..self.before },
+                    _ => self.before,
+                }
+            }
+        }
+    }
+}
+
+/// A new sphere at a point of the picture: it lies on what is there, or is as far away as the point looked at.
+pub fn new_body(scene: &Scene, camera: &Camera, aspect: f64, place: [f64; 2]) -> Body {
+    let direction = camera.direction_through(place, aspect);
+    let height = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan();
+    let radius_at = |distance: f64| two_digits(NEW_SHARE * height * distance);
+    let material = Material::Lambertian { albedo: DVec3::new(0.7, 0.3, 0.3) };
+    match scene.pick(camera.look_from, direction) {
+        Some(pick) => {
+            let radius = radius_at(pick.distance);
+            Body { center: pick.point + radius * pick.normal, radius, material }
+        }
+        None => {
+            let distance = camera.look_from.distance(camera.look_at);
+            let center = camera.look_from + distance * direction;
+            Body { center, radius: radius_at(distance), material }
+        }
+    }
+}
+
+/// From a sphere to a place for its copy: beside it, where the copy is in sight and in no other sphere; above it if there
+/// is no such place.
+pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DVec3 {
+    let Some(original) = scene.spheres.get(sphere) else { return DVec3::ZERO };
+    let radius = original.radius;
+    let overlaps = |center: DVec3, other: &Sphere| {
+        center.distance(other.center) < other.radius + radius * (1.0 - OVERLAP)
+    };
+    let basis = camera.basis();
+    let is_free = |by: &DVec3| {
+        let center = original.center + *by;
+        let is_in_sight = camera.place_of(center, aspect).is_some_and(|place| {
+            place.iter().all(|along| (0.0..1.0).contains(along))
+                && camera.look_from.distance(center) > 2.0 * radius
+        });
+        // What the original overlaps too, such as the ground or a glass around it, is no obstacle.
+        let is_obstacle = |other: &&Sphere| overlaps(center, other) && !overlaps(original.center, other);
+        is_in_sight && scene.spheres.iter().find(is_obstacle).is_none()
+    };
+    let directions = [basis.u, -basis.u, basis.v, basis.w, -basis.w];
+    let places = directions.map(|direction| COPY_RADII * radius * direction);
+    places.into_iter().find(is_free).unwrap_or(COPY_RADII * radius * basis.v)
+}
+
+/// Rounds a positive number to two digits.
+fn two_digits(value: f64) -> f64 {
+    let unit = 10.0_f64.powf(value.log10().floor() - 1.0);
+    (value / unit).round() * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    const BODY: Body = Body {
+        center: DVec3::new(0.4, -0.2, -3.0),
+        radius: 0.5,
+        material: Material::Lambertian { albedo: DVec3::ONE },
+    };
+
+    fn held(grip: Grip, start: [f64; 2]) -> Held {
+        Held { grip, sphere: 0, before: BODY, start, offset: [0.0; 2] }
+    }
+
+    proptest! {
+        /// The point of the sphere's plane that was grasped stays under the pointer.
+        #[test]
+        fn a_sphere_follows_the_pointer(x in 0.2..0.8f64, y in 0.55..0.9f64, yaw in -0.4..0.4f64) {
+            let camera = Camera { look_at: DVec3::new(yaw, -0.3, -1.0), ..Camera::BOOK };
+            let start = camera.place_of(BODY.center, 1.5).unwrap();
+            for (grip, normal) in [(Grip::Centre, camera.basis().w), (Grip::Level, DVec3::Y)] {
+                let moved = held(grip, start).dragged(&camera, 1.5, [x, y]);
+                let off = moved.center - BODY.center;
+                if off == DVec3::ZERO {
+                    prop_assert_eq!(grip, Grip::Level, "only a level drag can lead nowhere");
+                    continue;
+                }
+                prop_assert!(off.dot(normal).abs() < 1e-9);
+                prop_assert_eq!(moved.radius, BODY.radius);
+                let place = camera.place_of(moved.center, 1.5).unwrap();
+                prop_assert!((place[0] - x).abs() < 1e-9 && (place[1] - y).abs() < 1e-9, "{:?}", place);
+            }
+        }
+
+        /// After a drag of the handle, the outline goes through the pointer.
+        #[test]
+        fn an_outline_follows_the_pointer(x in 0.0..1.0f64, y in 0.0..1.0f64) {
+            let dragged = held(Grip::Radius, [0.5, 0.5]).dragged(&Camera::BOOK, 1.5, [x, y]);
+            let mut scene = Scene::default();
+            scene.add_sphere(dragged.center, dragged.radius, 0);
+            prop_assert_eq!(dragged.center, BODY.center);
+            let distance = BODY.center.length();
+            let towards = Camera::BOOK.direction_through([x, y], 1.5);
+            let sine = BODY.center.cross(towards).length() / distance;
+            prop_assert!((dragged.radius / distance - sine.clamp(RADIUS_SHARE_LEAST, RADIUS_SHARE_LIMIT)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_copy_is_where_it_can_be_seen() {
+        let mut scene = Scene::default();
+        scene.add_sphere(DVec3::new(0.0, -100.5, -3.0), 100.0, 0);
+        scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, 0);
+        let to_copy = |scene: &Scene| to_copy(scene, &Camera::BOOK, 1.5, 1) / (0.5 * COPY_RADII);
+        for (direction, obstacle) in
+            [(DVec3::X, DVec3::X), (DVec3::NEG_X, DVec3::NEG_X), (DVec3::Y, DVec3::Y)]
+        {
+            assert!(to_copy(&scene).distance(direction) < 1e-12, "{direction}");
+            scene.add_sphere(scene.spheres[1].center + obstacle, 0.5, 0);
+        }
+        assert!(to_copy(&scene).distance(DVec3::Z) < 1e-12, "towards the eye");
+        // Nothing else is in sight of a narrow lens.
+        let narrow = Camera { vfov_degrees: 1.0, ..Camera::BOOK };
+        assert_eq!(super::to_copy(&scene, &narrow, 1.5, 1).normalize(), DVec3::Z);
+        assert_eq!(super::to_copy(&scene, &narrow, 1.5, 99), DVec3::ZERO);
+    }
+
+    #[test]
+    fn a_level_drag_ends_at_the_horizon() {
+        let above = held(Grip::Level, [0.5, 0.6]).dragged(&Camera::BOOK, 1.0, [0.5, 0.1]);
+        assert_eq!(above, BODY);
+    }
+
+    #[test]
+    fn a_new_sphere_lies_on_what_is_there() {
+        let mut scene = Scene::default();
+        scene.add_sphere(DVec3::new(0.0, -100.5, -1.0), 100.0, 0);
+        let lying = new_body(&scene, &Camera::BOOK, 1.5, [0.5, 0.8]);
+        let gap = lying.center.distance(scene.spheres[0].center) - 100.0 - lying.radius;
+        assert!(gap.abs() < 1e-9 && lying.radius > 0.01, "{lying:?}");
+        let floating = new_body(&scene, &Camera::BOOK, 1.5, [0.5, 0.1]);
+        assert!((floating.center.length() - 1.0).abs() < 1e-12);
+        assert_eq!((two_digits(0.012345), two_digits(6789.0)), (0.012, 6800.0));
+    }
+}

@@ -1,0 +1,250 @@
+//! The selected sphere in the picture: its outline, its handle, and drags of either.
+
+use super::paint::badge;
+use super::{Touch, Viewport, pick};
+use crate::app::model::document::Document;
+use crate::app::model::edit::{Body, Edit};
+use crate::app::spheres::grip::{Grip, Held};
+use crate::app::spheres::silhouette::{Outline, OutlinePoint};
+use crate::app::spheres::{LARGE, Selected};
+use crate::app::theme;
+use crate::app::widgets::compact;
+use crate::scene::{Camera, Scene};
+use eframe::egui::{
+    Align2, Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Shape, Stroke, TextStyle, Ui,
+    Vec2, pos2, vec2,
+};
+
+/// How close the pointer must be to the handle to grab it, in points.
+const GRIP: f32 = 9.0;
+
+/// The handle of a sphere that looks smaller than this is beside its outline, in points.
+const SMALL: f32 = 16.0;
+
+/// A sphere that looks larger than this many pictures is not dragged: drags on the ground turn the camera.
+const LARGEST: f64 = 1.5;
+
+/// The outline of the selected sphere, and what it was made for.
+pub(super) struct Drawn {
+    /// The scene's address: an edited scene has another one.
+    scene: *const Scene,
+    camera: Camera,
+    aspect: f64,
+    body: Body,
+    outline: Outline,
+}
+
+impl Viewport {
+    /// Handles drags of the selected sphere. Returns whether the user holds it.
+    pub(super) fn handle_sphere(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        selected: Option<&Selected>,
+        document: &Document,
+        touch: &mut Touch,
+    ) -> bool {
+        let Some(selected) = selected else {
+            (self.held, self.drawn) = (None, None);
+            return false;
+        };
+        self.draw(selected, document);
+        let rect = self.placement.rect();
+        let (modifiers, origin) = ui.input(|input| (input.modifiers, input.pointer.press_origin()));
+        if response.drag_started_by(PointerButton::Primary)
+            && !modifiers.shift
+            && let Some(at) = origin
+        {
+            self.held = self.grasped(selected, document, at, modifiers.command);
+        }
+        match &self.held {
+            Some(held) if response.dragged_by(PointerButton::Primary) && held.sphere == selected.sphere => {
+                if let Some(at) = response.interact_pointer_pos() {
+                    let body = held.dragged(&document.camera, document.aspect(), place_at(rect, at));
+                    touch.edit = (body != selected.body).then_some(Edit::Change(selected.sphere, body));
+                }
+                ui.ctx().set_cursor_icon(cursor(held.grip, true));
+                true
+            }
+            _ => {
+                self.held = None;
+                let hovered = response.hover_pos().filter(|_| !response.dragged() && !modifiers.shift);
+                if let Some(held) =
+                    hovered.and_then(|at| self.grasped(selected, document, at, modifiers.command))
+                {
+                    ui.ctx().set_cursor_icon(cursor(held.grip, false));
+                }
+                false
+            }
+        }
+    }
+
+    /// What a drag that begins at this point of the screen would hold.
+    fn grasped(&self, selected: &Selected, document: &Document, at: Pos2, is_level: bool) -> Option<Held> {
+        let rect = self.placement.rect();
+        self.extent()?;
+        let start = place_at(rect, at);
+        let held = Held {
+            grip: if is_level { Grip::Level } else { Grip::Centre },
+            sphere: selected.sphere,
+            before: selected.body,
+            start,
+            offset: [0.0; 2],
+        };
+        if let Some((handle, place)) = self.handle()
+            && handle.distance(at) < GRIP
+        {
+            let offset = [0, 1].map(|axis| place[axis] - start[axis]);
+            return Some(Held { grip: Grip::Radius, offset, ..held });
+        }
+        is_on(selected, document, start).then_some(held)
+    }
+
+    /// The lower and upper corner of the outline in the picture, if the sphere is small enough to be dragged.
+    fn extent(&self) -> Option<[[f64; 2]; 2]> {
+        let [low, high] = self.drawn.as_ref()?.outline.bounds()?;
+        (0..2).all(|axis| high[axis] - low[axis] < LARGEST).then_some([low, high])
+    }
+
+    /// The handle of the radius: its point on the screen, and the point of the outline that it moves.
+    fn handle(&self) -> Option<(Pos2, [f64; 2])> {
+        let [low, high] = self.extent()?;
+        let outline = &self.drawn.as_ref()?.outline;
+        let rect = self.placement.rect();
+        let is_in_sight = |place: &[f64; 2]| place.iter().all(|along| (0.01..0.99).contains(along));
+        let place = outline.quarters().find(is_in_sight)?;
+        let middle = point_at(rect, [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])));
+        let at = point_at(rect, place);
+        let outwards = (at - middle).normalized();
+        let beside = (SMALL - (at - middle).length()).max(0.0);
+        Some((at + outwards * beside, place))
+    }
+
+    /// Makes the outline, unless the last one still holds.
+    fn draw(&mut self, selected: &Selected, document: &Document) {
+        let (scene, camera, aspect, body) =
+            (document.scene(), document.camera, document.aspect(), selected.body);
+        let is_it = |drawn: &Drawn| {
+            (drawn.scene, drawn.camera, drawn.aspect, drawn.body)
+                == (std::ptr::from_ref(scene), camera, aspect, body)
+        };
+        if !self.drawn.as_ref().is_some_and(is_it) {
+            let hiding = Some(scene).filter(|scene| scene.spheres.len() <= LARGE);
+            let outline = Outline::new(&camera, aspect, body.center, body.radius, hiding);
+            self.drawn = Some(Drawn { scene, camera, aspect, body, outline });
+        }
+    }
+
+    /// Draws the outline, the handle and the name of the selected sphere.
+    pub(super) fn paint_sphere(&self, ui: &Ui, room: Rect, clip: Rect, selected: Option<&Selected>) {
+        let (Some(selected), Some(drawn)) = (selected, &self.drawn) else { return };
+        let rect = self.placement.rect();
+        let painter = &ui.painter().with_clip_rect(clip.intersect(room));
+        paint_outline(&drawn.outline.points, painter, rect);
+        let mut top = rect.intersect(clip).center_top() + vec2(0.0, 40.0);
+        let in_sight = drawn.outline.points.iter().filter_map(|point| point.place);
+        let in_sight =
+            in_sight.map(|place| point_at(rect, place)).filter(|at| painter.clip_rect().contains(*at));
+        let around = Rect::from_points(&in_sight.collect::<Vec<_>>());
+        if around.is_finite() {
+            top = around.center_top();
+        }
+        if let Some((at, _)) = self.handle() {
+            let pointer = ui.input(|input| input.pointer.hover_pos());
+            let is_held = self.held.is_some_and(|held| held.grip == Grip::Radius);
+            let is_hot = is_held || (self.held.is_none() && pointer.is_some_and(|to| to.distance(at) < GRIP));
+            let fill = if is_hot { theme::accent(ui) } else { Color32::WHITE };
+            painter.circle(at, 5.0, fill, Stroke::new(1.5, Color32::from_black_alpha(190)));
+        }
+        let Body { center, radius, .. } = selected.body;
+        let text = match self.held.map(|held| held.grip) {
+            Some(Grip::Radius) => format!("radius {}", compact(radius)),
+            Some(_) => format!("centre {}", center.to_array().map(compact).join(", ")),
+            None => selected.name(),
+        };
+        let font = TextStyle::Body.resolve(ui.style());
+        // Above the outline if there is room.
+        let at = pos2(top.x, (top.y - 8.0).max(painter.clip_rect().top() + 34.0));
+        badge(ui, painter, at, Align2::CENTER_BOTTOM, &text, &font);
+    }
+}
+
+/// Whether the selected sphere is what is seen at a point of the picture. Among very many spheres, whether it is behind
+/// that point.
+fn is_on(selected: &Selected, document: &Document, place: [f64; 2]) -> bool {
+    let camera = &document.camera;
+    if document.scene().spheres.len() <= LARGE {
+        return pick(document, camera, place).is_some_and(|pick| pick.sphere == selected.sphere);
+    }
+    let mut alone = Scene::default();
+    alone.add_sphere(selected.body.center, selected.body.radius, 0);
+    alone.pick(camera.look_from, camera.direction_through(place, document.aspect())).is_some()
+}
+
+fn cursor(grip: Grip, is_held: bool) -> CursorIcon {
+    match grip {
+        Grip::Radius => CursorIcon::ResizeHorizontal,
+        Grip::Level => CursorIcon::Move,
+        Grip::Centre if is_held => CursorIcon::Grabbing,
+        Grip::Centre => CursorIcon::Grab,
+    }
+}
+
+/// The position in the picture of a point of the screen, 0 to 1 from the upper left.
+pub(super) fn place_at(rect: Rect, at: Pos2) -> [f64; 2] {
+    let along = (at - rect.min) / rect.size();
+    [f64::from(along.x), f64::from(along.y)]
+}
+
+fn point_at(rect: Rect, place: [f64; 2]) -> Pos2 {
+    rect.min + Vec2::new(place[0] as f32, place[1] as f32) * rect.size()
+}
+
+/// Draws what is visible as a line, and what is hidden as dashes.
+fn paint_outline(points: &[OutlinePoint], painter: &Painter, rect: Rect) {
+    // Points far outside are left out: their lines would not be seen, and their coordinates have no precision.
+    let near = |place: &[f64; 2]| place.iter().all(|along| along.abs() < 30.0);
+    let at = |point: &OutlinePoint| point.place.filter(near).map(|place| point_at(rect, place));
+    let Some(last) = points.last() else { return };
+    let mut before = last;
+    let (mut lines, mut dashes) = (Vec::new(), Vec::new());
+    for point in points {
+        if let (Some(from), Some(to)) = (at(before), at(point)) {
+            let runs = if before.is_visible && point.is_visible { &mut lines } else { &mut dashes };
+            join(runs, from, to);
+        }
+        before = point;
+    }
+    close(&mut lines);
+    let [shade, light] = [Color32::from_black_alpha(150), Color32::WHITE];
+    for (width, colour) in [(4.0, shade), (1.75, light)] {
+        for run in &lines {
+            painter.add(Shape::line(run.clone(), Stroke::new(width, colour)));
+        }
+    }
+    for (width, colour) in [(2.5, shade.gamma_multiply(0.7)), (1.25, light.gamma_multiply(0.7))] {
+        for run in &dashes {
+            painter.extend(Shape::dashed_line(run, Stroke::new(width, colour), 4.0, 5.0));
+        }
+    }
+}
+
+/// Adds a segment to the last run if it goes on from there.
+fn join(runs: &mut Vec<Vec<Pos2>>, from: Pos2, to: Pos2) {
+    match runs.last_mut().filter(|run| run.last() == Some(&from)) {
+        Some(run) => run.push(to),
+        None => runs.push(vec![from, to]),
+    }
+}
+
+/// Joins the last run with the first if it ends where that one begins.
+fn close(runs: &mut Vec<Vec<Pos2>>) {
+    let Some(last) = runs.pop() else { return };
+    match runs.first_mut().filter(|first| first.first() == last.last()) {
+        Some(first) => {
+            let rest = std::mem::replace(first, last);
+            first.extend(rest.into_iter().skip(1));
+        }
+        None => runs.push(last),
+    }
+}

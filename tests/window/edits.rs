@@ -1,0 +1,306 @@
+//! The spheres of the scene: editing them, and what becomes of a changed scene.
+
+use crate::common::{control, drag_from, has_samples, open, send, until};
+use crate::objects::{
+    click, has_label, material, metal_sphere, middle_sphere, on_screen, opened, select, spheres,
+};
+use eframe::egui::{self, Key, Modifiers, PointerButton};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use glam::DVec3;
+use weekender::app::{Command, Document, Window};
+use weekender::cli::{self, Request};
+use weekender::scene::Material;
+use weekender::stages::Stage;
+
+#[test]
+fn numbers_of_the_panel_change_the_sphere_one_undo_step_each() {
+    let mut harness = opened();
+    let metal = metal_sphere(&harness);
+    let first = spheres(&harness);
+    let Material::Metal { albedo, fuzz } = material(&harness, metal) else { panic!("no metal") };
+    select(&mut harness, metal);
+    let set = |harness: &mut Harness<'_, Window>, name: &str, value: f64| {
+        harness.run_steps(90);
+        control(harness, name).set_value_accesskit(value);
+        harness.run_steps(3);
+    };
+    set(&mut harness, "Fuzz", 0.5);
+    assert_eq!(material(&harness, metal), Material::Metal { albedo, fuzz: 0.5 });
+    assert_eq!(spheres(&harness), first, "only the material has changed");
+    set(&mut harness, "Radius", 0.25);
+    set(&mut harness, "Centre y", 0.125);
+    set(&mut harness, "Albedo green", 0.0625);
+    let sphere = spheres(&harness)[metal];
+    assert_eq!((sphere.radius, sphere.center.y), (0.25, 0.125));
+    assert_eq!(material(&harness, metal).albedo().unwrap().y, 0.0625);
+    harness.state().document().job(1).unwrap();
+    let undo = |harness: &mut Harness<'_, Window>| send(harness, Command::Undo);
+    undo(&mut harness);
+    assert_eq!(material(&harness, metal), Material::Metal { albedo, fuzz: 0.5 });
+    undo(&mut harness);
+    undo(&mut harness);
+    assert_eq!(spheres(&harness), first);
+    undo(&mut harness);
+    assert_eq!(material(&harness, metal), Material::Metal { albedo, fuzz });
+    assert!(!harness.state().document().has_changed_scene());
+    assert_eq!(harness.state().selected(), Some(metal));
+}
+
+#[test]
+fn a_slider_drag_is_one_undo_step() {
+    let mut harness = opened();
+    let metal = metal_sphere(&harness);
+    select(&mut harness, metal);
+    harness.run_steps(90);
+    let before = material(&harness, metal);
+    let slider = control(&harness, "Fuzz").rect();
+    drag_from(&mut harness, slider.left_center() + egui::vec2(4.0, 0.0), egui::vec2(80.0, 0.0));
+    let after = material(&harness, metal);
+    assert!(after.effective_fuzz() > 0.2, "{after:?}");
+    send(&mut harness, Command::Undo);
+    assert_eq!(material(&harness, metal), before);
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_the_reason() {
+    let mut harness = opened();
+    let metal = metal_sphere(&harness);
+    select(&mut harness, metal);
+    let (before, of_metal) = (spheres(&harness), material(&harness, metal));
+    for (name, value, reason) in [
+        ("Radius", -1.0, "radius is -1, but must be within 1e-18 and 1e18"),
+        ("Fuzz", -0.5, "fuzz is -0.5, but must be 0 or more"),
+        ("Albedo red", 1.5, "each component must be within 0 and 1"),
+    ] {
+        control(&harness, name).set_value_accesskit(value);
+        harness.run_steps(3);
+        let told = harness.state().messages();
+        assert!(told.iter().any(|text| text.contains(reason)), "{name}: {told:?}");
+        assert_eq!((spheres(&harness), material(&harness, metal)), (before.clone(), of_metal), "{name}");
+    }
+}
+
+#[test]
+fn the_material_of_one_sphere_changes() {
+    let mut harness = opened();
+    let middle = middle_sphere(&harness);
+    select(&mut harness, middle);
+    let albedo = material(&harness, middle).albedo().unwrap();
+    let others: Vec<Material> = (0..spheres(&harness).len())
+        .filter(|other| *other != middle)
+        .map(|other| material(&harness, other))
+        .collect();
+    for (kind, expected) in [
+        ("metal", Material::Metal { albedo, fuzz: 0.0 }),
+        ("dielectric", Material::Dielectric { refraction_index: 1.5 }),
+    ] {
+        control(&harness, "Material").click();
+        harness.run_steps(3);
+        harness.get_all_by_label(kind).last().unwrap().click();
+        harness.run_steps(3);
+        assert_eq!(material(&harness, middle), expected);
+    }
+    control(&harness, "Refraction index").set_value_accesskit(2.4);
+    harness.run_steps(3);
+    assert_eq!(material(&harness, middle), Material::Dielectric { refraction_index: 2.4 });
+    let after: Vec<Material> = (0..spheres(&harness).len())
+        .filter(|other| *other != middle)
+        .map(|other| material(&harness, other))
+        .collect();
+    assert_eq!(after, others);
+    until(&mut harness, "its picture", has_samples(1));
+}
+
+#[test]
+fn spheres_are_added_copied_deleted_and_brought_back() {
+    let mut harness = opened();
+    let first = spheres(&harness);
+    // On the sphere under the pointer.
+    let metal = metal_sphere(&harness);
+    let at = on_screen(&harness, first[metal].center);
+    harness.event(egui::Event::PointerMoved(at));
+    harness.run_steps(2);
+    harness.key_press(Key::Insert);
+    harness.run_steps(3);
+    let added = *spheres(&harness).last().unwrap();
+    assert_eq!((spheres(&harness).len(), harness.state().selected()), (first.len() + 1, Some(first.len())));
+    let gap = added.center.distance(first[metal].center) - first[metal].radius - added.radius;
+    assert!(gap.abs() < 1e-9, "it touches the sphere under the pointer: {gap}");
+
+    harness.run_steps(90);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::D);
+    harness.run_steps(3);
+    let copied = *spheres(&harness).last().unwrap();
+    assert_eq!(
+        (spheres(&harness).len(), harness.state().selected()),
+        (first.len() + 2, Some(first.len() + 1))
+    );
+    assert_eq!((copied.radius, copied.material), (added.radius, added.material));
+    assert!(copied.center.distance(added.center) > 2.0 * added.radius, "beside it");
+
+    harness.run_steps(90);
+    let middle = middle_sphere(&harness);
+    select(&mut harness, middle);
+    harness.key_press(Key::Delete);
+    harness.run_steps(3);
+    assert_eq!((spheres(&harness).len(), harness.state().selected()), (first.len() + 1, None));
+    until(&mut harness, "its picture", has_samples(1));
+    send(&mut harness, Command::Undo);
+    assert_eq!(harness.state().selected(), Some(middle), "what comes back is selected");
+    send(&mut harness, Command::Undo);
+    send(&mut harness, Command::Undo);
+    assert_eq!(spheres(&harness), first);
+    assert!(!harness.state().document().has_changed_scene());
+}
+
+#[test]
+fn the_menu_of_a_right_click_adds_a_sphere() {
+    let mut harness = opened();
+    let count = spheres(&harness).len();
+    let at = on_screen(&harness, DVec3::new(0.0, 0.0, -1.0));
+    harness.event(egui::Event::PointerMoved(at));
+    for pressed in [true, false] {
+        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+        harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+        harness.step();
+    }
+    harness.run_steps(5);
+    harness.get_by_label_contains("Add a sphere here").click();
+    harness.run_steps(5);
+    assert_eq!((spheres(&harness).len(), harness.state().selected()), (count + 1, Some(count)));
+}
+
+#[test]
+fn a_changed_stage_says_so_and_reset_returns_its_bits() {
+    let stage = Stage::find("glass-schlick").unwrap();
+    let mut harness = opened();
+    let before = harness.state().document().job(1).unwrap();
+    assert!(harness.state().disabled_reason(Command::ResetSpheres).is_some());
+    for reset in ["the button of the panel", "the button of the stage", "the command", "all"] {
+        let metal = metal_sphere(&harness);
+        select(&mut harness, metal);
+        control(&harness, "Fuzz").set_value_accesskit(0.5);
+        harness.run_steps(3);
+        assert!(has_label(&harness, "changed"), "{reset}");
+        assert_eq!(harness.state().document().title(), "11.4 Windows at a slant (changed)");
+        assert_eq!(harness.state().document().stage(), Some(stage));
+        assert_ne!(harness.state().document().job(1).unwrap(), before);
+        match reset {
+            "the button of the panel" => harness.get_by_label("Reset spheres").click(),
+            "the button of the stage" => harness.get_by_label("Reset the scene").click(),
+            "all" => harness.state_mut().send(Command::ResetAll),
+            _ => harness.state_mut().send(Command::ResetSpheres),
+        }
+        harness.run_steps(3);
+        let after = harness.state().document().job(1).unwrap();
+        assert_eq!(after.scene(), before.scene(), "{reset}");
+        // Everything is also the size, which the flags have changed.
+        assert!(after == before || reset == "all", "{reset}");
+        assert!(!harness.state().document().has_changed_scene());
+        assert!(!has_label(&harness, "(changed)"));
+        assert_eq!(before.scene(), &*stage.recipe().scene);
+    }
+    // A value that is typed back is no change.
+    let metal = metal_sphere(&harness);
+    select(&mut harness, metal);
+    for fuzz in [0.5, material(&harness, metal).effective_fuzz()] {
+        control(&harness, "Fuzz").set_value_accesskit(fuzz);
+        harness.run_steps(3);
+    }
+    assert!(!harness.state().document().has_changed_scene());
+}
+
+/// The text that the last frame copied.
+fn copied(harness: &Harness<'_, Window>) -> Option<String> {
+    harness.output().platform_output.commands.iter().find_map(|output| match output {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    })
+}
+
+fn same_picture(a: &Document, b: &Document) -> bool {
+    a.job(1).unwrap() == b.job(1).unwrap()
+}
+
+#[test]
+fn a_changed_scene_is_saved_opened_and_copied_as_a_command() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("mine.toml");
+    let mut harness = open("--stage defocus --size 64x36");
+    until(&mut harness, "a picture", has_samples(1));
+    let metal = metal_sphere(&harness);
+    send(&mut harness, Command::NextSphere);
+    while harness.state().selected() != Some(metal) {
+        send(&mut harness, Command::NextSphere);
+    }
+    control(&harness, "Fuzz").set_value_accesskit(0.53);
+    control(&harness, "Centre y").set_value_accesskit(0.1 + 0.2);
+    harness.run_steps(3);
+    send(&mut harness, Command::DuplicateSphere);
+    send(&mut harness, Command::SaveScene);
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.step();
+    harness.get_by_label("File name").type_text(path.to_str().unwrap());
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    let saved = format!("Saved {}", path.display());
+    until(&mut harness, &saved, |window| window.messages().contains(&saved));
+    let mine = harness.state().document().clone();
+
+    // The file gives the same picture, and so does the command, even after the camera was moved.
+    let other = open(path.to_str().map(|path| format!("--scene {path}")).unwrap().as_str());
+    assert!(same_picture(other.state().document(), &mine));
+    for vfov in [mine.camera.vfov_degrees, 41.0] {
+        harness.state_mut().document_mut().camera.vfov_degrees = vfov;
+        harness.run_steps(2);
+        harness.state_mut().send(Command::CopyCommand);
+        harness.step();
+        let line = copied(&harness).unwrap();
+        assert!(line.contains(path.to_str().unwrap()), "{line}");
+        let Request::Batch(options) = cli::parse(line.split_whitespace().map(Into::into)).unwrap() else {
+            panic!("{line}")
+        };
+        assert_eq!(options.renders[0].job, harness.state().document().job(1).unwrap(), "{line}");
+    }
+    // Changed again, it is in no file.
+    send(&mut harness, Command::DuplicateSphere);
+    harness.state_mut().send(Command::CopyCommand);
+    harness.step();
+    assert!(copied(&harness).unwrap().contains("--scene=defocus-changed.toml"));
+    assert!(harness.state().messages().iter().any(|text| text.contains("save the scene file")));
+}
+
+/// A large scene is edited on a thread: the window goes on, one edit is one undo step, and its time is told.
+#[test]
+fn a_sphere_among_very_many_is_edited() {
+    let mut harness = open("--scene field:60000 --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    let before = harness.state().document().job(1).unwrap();
+    harness.run_steps(90);
+    let at = harness.state().picture_rect().lerp_inside(egui::vec2(0.5, 0.85));
+    click(&mut harness, at, Modifiers::NONE);
+    let sphere = harness.state().selected().expect("the field fills the picture");
+    let sphere = if sphere == 0 {
+        send(&mut harness, Command::NextSphere);
+        1
+    } else {
+        sphere
+    };
+    for radius in [0.125, 0.25] {
+        control(&harness, "Radius").set_value_accesskit(radius);
+        harness.step();
+    }
+    let shown = control(&harness, "Radius").accesskit_node().numeric_value();
+    assert_eq!(shown, Some(0.25), "the panel does not wait");
+    let radius = |window: &Window| window.document().scene().spheres[sphere].radius;
+    until(&mut harness, "the edit", |window| radius(window) == 0.25);
+    until(&mut harness, "its time", |window| {
+        window.messages().iter().any(|text| text.starts_with("Changed 1 of 60001 spheres"))
+    });
+    while harness.state().document().has_changed_scene() {
+        send(&mut harness, Command::Undo);
+    }
+    assert_eq!(harness.state().document().job(1).unwrap(), before);
+}
