@@ -226,7 +226,6 @@ mod tests {
             std::thread::sleep(Duration::from_millis(5));
             surfaces.follow(&document, true, &context);
         }
-        println!("{name}: {:.2} s to build", begin.elapsed().as_secs_f64());
         (document, surfaces)
     }
 
@@ -355,12 +354,6 @@ mod tests {
             camera = surfaces.stop(&document, &camera, &wanted);
             slowest = slowest.max(begin.elapsed());
         }
-        println!("the slowest of 300 moves: {:.3} ms", slowest.as_secs_f64() * 1e3);
-        let scan = Near { scene: document.scene(), tree: None };
-        let to = camera.look_from.lerp(camera.look_at, 0.03);
-        let begin = Instant::now();
-        scan.slide(camera.look_from, to, 0.01);
-        println!("with a scan: {:.3} ms", begin.elapsed().as_secs_f64() * 1e3);
         assert!(slowest < Duration::from_millis(8), "{slowest:?}");
     }
 }

@@ -250,7 +250,7 @@ fn f6_goes_through_the_panels() {
     use egui_kittest::kittest::NodeT;
     let mut harness = open(SMALL);
     let focused = |harness: &Harness<'_, Window>| {
-        let mut nodes = harness.root().children_recursive().into_iter();
+        let mut nodes = harness.root().children_recursive();
         let found = nodes.find(|node| node.accesskit_node().is_focused());
         found.map(|node| (node.accesskit_node().label().unwrap_or_default(), node.rect()))
     };

@@ -140,7 +140,7 @@ fn state_of(harness: &mut Harness<'_, Window>) -> String {
         document.camera,
         document.settings,
         document.stop,
-        window.show(),
+        (window.show(), window.disabled_reason(Command::NoExposure)),
         window.is_comparing(),
         window.is_paused(),
         window.has_dialog(),
