@@ -289,7 +289,8 @@ impl Manifest {
         if next != self.samples[1] || self.parts.is_empty() {
             return Err(format!("its parts end at sample {next}, but it has {}", self.samples[1]));
         }
-        SampleRanges::from_ranges([self.samples[0]..self.samples[1]]).map_err(|error| error.to_string())?;
+        let all = self.samples[0]..self.samples[1];
+        SampleRanges::default().insert(all).map_err(|error| error.to_string())?;
         let files = self.parts.iter().map(|part| &part.file).chain([&self.scene_file, &self.result]);
         for name in files {
             let path = Path::new(name);
