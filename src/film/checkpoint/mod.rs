@@ -4,7 +4,7 @@
 //! The file has one part, scan lines and lossless compression. Channels `R`, `G`, `B` (float) are the mean. Channels
 //! `sum.a.R.lo`, `sum.a.R.hi` and so on (32-bit unsigned) are the low and high words of each half's sums. Three text
 //! attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
-//! `weekenderFilm` the [`Head`].
+//! `weekenderFilm` the `Head`.
 //!
 //! No data that is read can change unnoticed: one checksum covers the texts and all numbers of the head, another covers
 //! these and the sums, and the mean is compared with the sums. A flipped bit can go unnoticed only where it does not
