@@ -48,10 +48,10 @@ pub fn print(text: &str) -> io::Result<()> {
     write_out(&text.split_inclusive('\n').map(presentable).collect::<String>())
 }
 
-/// As [`print`], for a text with the program's own colours. Names from outside must have gone through [`printable`].
+/// As [`print()`], for a text with the program's own colours. Names from outside must have gone through [`printable`].
 ///
 /// # Errors
-/// As for [`print`].
+/// As for [`print()`].
 pub fn print_painted(text: &str) -> io::Result<()> {
     write_out(&painted(text))
 }
@@ -59,7 +59,7 @@ pub fn print_painted(text: &str) -> io::Result<()> {
 /// Prints a result for another program to standard output, unchanged.
 ///
 /// # Errors
-/// As for [`print`].
+/// As for [`print()`].
 pub fn write_out(text: &str) -> io::Result<()> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(text.as_bytes())?;

@@ -147,7 +147,7 @@ impl Library {
         Ok(chapters)
     }
 
-    /// The paths of [`FILES`].
+    /// The paths of `FILES`.
     pub fn embedded() -> impl Iterator<Item = &'static str> {
         FILES.iter().map(|(path, _)| *path)
     }

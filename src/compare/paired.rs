@@ -17,7 +17,7 @@ pub const PARTED_SHARE: f64 = 1e-3;
 pub struct PairedSamples {
     /// Samples over all pixels.
     pub count: u64,
-    /// Samples with a channel that differs by more than [`PARTED`].
+    /// Samples with a channel that differs by more than `PARTED`.
     pub parted: u64,
     /// Root mean square difference of the other samples.
     pub rms: f64,

@@ -10,7 +10,7 @@ pub trait Shared: Copy {
     fn write(&self, words: &mut Vec<u32>);
 }
 
-/// A struct that host and shaders share, declared by [`record!`].
+/// A struct that host and shaders share, declared by `record!`.
 pub trait Record: Shared {
     /// The record's fields, in order.
     fn fields() -> Vec<Field>;

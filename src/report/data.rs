@@ -8,7 +8,7 @@ pub const SCHEMA: u32 = 1;
 /// Everything that was measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Data {
-    /// See [`SCHEMA`].
+    /// See `SCHEMA`.
     pub schema: u32,
     /// Settings on which the figures depend; runs with different settings are not mixed.
     pub settings: Settings,

@@ -10,7 +10,7 @@ pub const SCHEMA: u32 = 1;
 /// The results of a run.
 #[derive(Debug, Serialize)]
 pub struct StressReport {
-    /// See [`SCHEMA`].
+    /// See `SCHEMA`.
     pub schema: u32,
     /// Version of the program.
     pub version: &'static str,

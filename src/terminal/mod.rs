@@ -23,7 +23,7 @@ pub fn print(text: &str) -> Result<()> {
 /// Prints text to standard output, or to standard error if JSON goes to standard output.
 ///
 /// # Errors
-/// As for [`print`]. Standard error never fails.
+/// As for [`print()`]. Standard error never fails.
 pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
     if is_taken(json) {
         console::note_painted(text);
@@ -35,7 +35,7 @@ pub fn print_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
 /// As [`print_beside`], for text with colours: see [`console::print_painted`].
 ///
 /// # Errors
-/// As for [`print`].
+/// As for [`print()`].
 pub fn print_painted_beside(json: Option<&JsonTarget>, text: &str) -> Result<()> {
     if is_taken(json) {
         console::note_painted(text);

@@ -6,7 +6,7 @@
 //! loses: mean times samples times 2^24, rounded, plus the rest is the exact sum. The rest is small, so it takes little
 //! space. If there are two halves, `sum.a.R.lo` and so on are the sums of the first; the second's is the difference.
 //! Three text attributes go with them: `comments` has the description's lines, `weekenderRecipe` the recipe, and
-//! `weekenderFilm` the [`Head`].
+//! `weekenderFilm` the `Head`.
 //!
 //! No data that is read can change unnoticed: one checksum covers the texts and all numbers of the head, each band of 16
 //! rows has one of its sums, and the mean is compared with the sums. A flipped bit can go unnoticed only where it does not

@@ -1,4 +1,4 @@
-//! The scene file: a [`Recipe`] as TOML.
+//! The scene file: a [`Recipe`](super::Recipe) as TOML.
 //!
 //! ```toml
 //! [camera]
