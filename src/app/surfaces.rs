@@ -43,9 +43,7 @@ impl Surfaces {
     /// Takes the hierarchy of the document's scene once it has been built. `has_picture` says that the tracer has
     /// prepared the scene: before, both would compete for the processor.
     pub fn follow(&mut self, document: &Document, has_picture: bool, context: &Context) {
-        let is_other =
-            |of: &Option<Arc<CheckedScene>>| of.as_ref().is_none_or(|of| !Arc::ptr_eq(of, &document.checked));
-        if is_other(&self.of) {
+        if !self.is_of(document) {
             *self = Surfaces { answers: std::mem::take(&mut self.answers), ..Surfaces::default() };
             self.of = Some(Arc::clone(&document.checked));
         }
@@ -75,7 +73,7 @@ impl Surfaces {
 
     /// The sphere that the camera is inside of, in words, if the document's rays can see it.
     pub fn inside(&self, document: &Document) -> Option<String> {
-        let (_, sphere) = self.around?;
+        let (_, sphere) = self.around.filter(|_| self.is_of(document))?;
         let sphere = sphere.filter(|_| document.rules().shading != Shading::ImageGradient)?;
         let scene = document.scene();
         let material = &scene.materials[scene.spheres[sphere].material].name;
@@ -105,8 +103,13 @@ impl Surfaces {
         if stopped.validate().is_ok() { stopped } else { *before }
     }
 
+    /// Whether what is known is about the document's scene, which may have been edited in this frame.
+    fn is_of(&self, document: &Document) -> bool {
+        self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, &document.checked))
+    }
+
     fn near<'a>(&'a self, document: &'a Document) -> Near<'a> {
-        Near { scene: document.scene(), tree: self.tree.as_ref() }
+        Near { scene: document.scene(), tree: self.tree.as_ref().filter(|_| self.is_of(document)) }
     }
 }
 
