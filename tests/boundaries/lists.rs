@@ -350,11 +350,24 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("menu", &["model", "command", "facts", "theme"]),
     ("status_bar", &["model", "facts", "theme", "prediction"]),
     ("plot", &["command", "facts", "theme", "widgets", "prediction"]),
-    ("panels", &["model", "command", "facts", "widgets"]),
+    ("spheres", &["model", "answers", "tracer"]),
+    ("panels", &["model", "command", "facts", "widgets", "spheres"]),
     ("info", &["model", "command", "facts", "widgets", "menu"]),
     (
         "viewport",
-        &["model", "command", "facts", "theme", "texture", "navigation", "paths", "pixel_values", "menu"],
+        &[
+            "model",
+            "command",
+            "facts",
+            "theme",
+            "texture",
+            "navigation",
+            "paths",
+            "pixel_values",
+            "menu",
+            "spheres",
+            "widgets",
+        ],
     ),
     ("dialogs", &["command", "facts", "answers", "menu"]),
     (
@@ -382,10 +395,12 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "paths",
             "places",
             "viewport",
+            "spheres",
             "dialogs",
         ],
     ),
     ("perform", &["model", "command", "facts", "theme", "places", "plot", "dialogs", "window"]),
+    ("perform_spheres", &["model", "command", "navigation", "spheres", "window"]),
     ("receive", &["model", "command", "files", "window"]),
     ("rescue", &["window"]),
     (
@@ -411,4 +426,4 @@ pub const WINDOW: &[(&str, &[&str])] = &[
 ];
 
 /// Files that may use the whole window.
-pub const TOP: &[&str] = &["window", "perform", "receive", "rescue", "frame", "mod"];
+pub const TOP: &[&str] = &["window", "perform", "perform_spheres", "receive", "rescue", "frame", "mod"];

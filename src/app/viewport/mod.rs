@@ -15,13 +15,13 @@ use super::model::edit::Edit;
 use super::model::view::Mode;
 use super::navigation;
 use super::spheres::Selected;
-use super::spheres::grip::{Held, new_body};
-use crate::scene::{Camera, Pick};
+use super::spheres::grip::new_body;
+use crate::scene::Camera;
 use eframe::egui::{
     self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
 };
 use paint::{Mark, paint, paint_drop};
-use selection::{Drawn, place_at};
+use selection::{Selection, pick, place_at};
 use std::time::Instant;
 
 /// Radians of rotation per point of dragging.
@@ -44,10 +44,8 @@ pub struct Viewport {
     menu_at: Option<Pos2>,
     /// The area of the viewport when it was last drawn.
     room: Option<Rect>,
-    /// The sphere that the user drags.
-    held: Option<Held>,
-    /// The outline of the selected sphere.
-    drawn: Option<Drawn>,
+    /// The selected sphere in the picture.
+    selection: Selection,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
 }
@@ -107,8 +105,10 @@ impl Viewport {
 
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = facts.model.view.mode() == Some(Mode::Wipe);
-        let is_held = self.handle_divider(ui, &response, is_wipe, divider)
-            || self.handle_sphere(ui, &response, selected, facts.document(), &mut touch);
+        let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
+        if !is_held {
+            (is_held, touch.edit) = self.selection.handle(ui, &response, rect, selected, facts.document());
+        }
         if !is_held {
             self.handle_drag(ui, &response, camera, &mut touch);
             self.handle_click(ui, &response, facts.document(), camera, &mut touch);
@@ -120,7 +120,7 @@ impl Viewport {
         } else {
             rect
         };
-        self.paint_sphere(ui, room, clip, selected);
+        self.selection.paint(ui, rect, clip.intersect(room), selected);
         self.mark = self.mark.take().filter(|mark| mark.paint(ui, room, rect));
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         touch.hovered = response.hover_pos().and_then(|at| self.placement.pixel_at(at, pixels));
@@ -333,10 +333,4 @@ impl Spot {
 fn is_release(ui: &Ui, is_held: impl Fn(&egui::Modifiers) -> bool) -> bool {
     let is_it = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if is_held(modifiers));
     ui.input(|input| input.events.iter().any(is_it))
-}
-
-/// Where the ray through a point of the picture hits the scene.
-fn pick(document: &Document, camera: &Camera, place: [f64; 2]) -> Option<Pick> {
-    let direction = camera.direction_through(place, document.aspect());
-    document.scene().pick(camera.look_from, direction)
 }

@@ -1,7 +1,6 @@
 //! The selected sphere in the picture: its outline, its handle, and drags of either.
 
 use super::paint::badge;
-use super::{Touch, Viewport, pick};
 use crate::app::model::document::Document;
 use crate::app::model::edit::{Body, Edit};
 use crate::app::spheres::grip::{Grip, Held};
@@ -9,7 +8,7 @@ use crate::app::spheres::silhouette::{Outline, OutlinePoint};
 use crate::app::spheres::{LARGE, Selected};
 use crate::app::theme;
 use crate::app::widgets::compact;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Pick, Scene};
 use eframe::egui::{
     Align2, Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Shape, Stroke, TextStyle, Ui,
     Vec2, pos2, vec2,
@@ -24,8 +23,17 @@ const SMALL: f32 = 16.0;
 /// A sphere that looks larger than this many pictures is not dragged: drags on the ground turn the camera.
 const LARGEST: f64 = 1.5;
 
+/// What is known about the selected sphere in the picture.
+#[derive(Default)]
+pub(super) struct Selection {
+    /// The sphere that the user drags.
+    held: Option<Held>,
+    /// The outline of the selected sphere.
+    drawn: Option<Drawn>,
+}
+
 /// The outline of the selected sphere, and what it was made for.
-pub(super) struct Drawn {
+struct Drawn {
     /// The scene's address: an edited scene has another one.
     scene: *const Scene,
     camera: Camera,
@@ -34,54 +42,60 @@ pub(super) struct Drawn {
     outline: Outline,
 }
 
-impl Viewport {
-    /// Handles drags of the selected sphere. Returns whether the user holds it.
-    pub(super) fn handle_sphere(
+impl Selection {
+    /// Handles drags of the selected sphere in the picture at `rect`. Returns whether the user holds it, and the change
+    /// that the drag makes.
+    pub(super) fn handle(
         &mut self,
         ui: &Ui,
         response: &Response,
+        rect: Rect,
         selected: Option<&Selected>,
         document: &Document,
-        touch: &mut Touch,
-    ) -> bool {
+    ) -> (bool, Option<Edit>) {
         let Some(selected) = selected else {
-            (self.held, self.drawn) = (None, None);
-            return false;
+            *self = Selection::default();
+            return (false, None);
         };
         self.draw(selected, document);
-        let rect = self.placement.rect();
         let (modifiers, origin) = ui.input(|input| (input.modifiers, input.pointer.press_origin()));
         if response.drag_started_by(PointerButton::Primary)
             && !modifiers.shift
             && let Some(at) = origin
         {
-            self.held = self.grasped(selected, document, at, modifiers.command);
+            self.held = self.grasped(rect, selected, document, at, modifiers.command);
         }
         match &self.held {
             Some(held) if response.dragged_by(PointerButton::Primary) && held.sphere == selected.sphere => {
-                if let Some(at) = response.interact_pointer_pos() {
+                let edit = response.interact_pointer_pos().and_then(|at| {
                     let body = held.dragged(&document.camera, document.aspect(), place_at(rect, at));
-                    touch.edit = (body != selected.body).then_some(Edit::Change(selected.sphere, body));
-                }
+                    (body != selected.body).then_some(Edit::Change(selected.sphere, body))
+                });
                 ui.ctx().set_cursor_icon(cursor(held.grip, true));
-                true
+                (true, edit)
             }
             _ => {
                 self.held = None;
                 let hovered = response.hover_pos().filter(|_| !response.dragged() && !modifiers.shift);
                 if let Some(held) =
-                    hovered.and_then(|at| self.grasped(selected, document, at, modifiers.command))
+                    hovered.and_then(|at| self.grasped(rect, selected, document, at, modifiers.command))
                 {
                     ui.ctx().set_cursor_icon(cursor(held.grip, false));
                 }
-                false
+                (false, None)
             }
         }
     }
 
     /// What a drag that begins at this point of the screen would hold.
-    fn grasped(&self, selected: &Selected, document: &Document, at: Pos2, is_level: bool) -> Option<Held> {
-        let rect = self.placement.rect();
+    fn grasped(
+        &self,
+        rect: Rect,
+        selected: &Selected,
+        document: &Document,
+        at: Pos2,
+        is_level: bool,
+    ) -> Option<Held> {
         self.extent()?;
         let start = place_at(rect, at);
         let held = Held {
@@ -91,7 +105,7 @@ impl Viewport {
             start,
             offset: [0.0; 2],
         };
-        if let Some((handle, place)) = self.handle()
+        if let Some((handle, place)) = self.handle_at(rect)
             && handle.distance(at) < GRIP
         {
             let offset = [0, 1].map(|axis| place[axis] - start[axis]);
@@ -107,10 +121,9 @@ impl Viewport {
     }
 
     /// The handle of the radius: its point on the screen, and the point of the outline that it moves.
-    fn handle(&self) -> Option<(Pos2, [f64; 2])> {
+    fn handle_at(&self, rect: Rect) -> Option<(Pos2, [f64; 2])> {
         let [low, high] = self.extent()?;
         let outline = &self.drawn.as_ref()?.outline;
-        let rect = self.placement.rect();
         let is_in_sight = |place: &[f64; 2]| place.iter().all(|along| (0.01..0.99).contains(along));
         let place = outline.quarters().find(is_in_sight)?;
         let middle = point_at(rect, [0, 1].map(|axis| 0.5 * (low[axis] + high[axis])));
@@ -136,10 +149,9 @@ impl Viewport {
     }
 
     /// Draws the outline, the handle and the name of the selected sphere.
-    pub(super) fn paint_sphere(&self, ui: &Ui, room: Rect, clip: Rect, selected: Option<&Selected>) {
+    pub(super) fn paint(&self, ui: &Ui, rect: Rect, clip: Rect, selected: Option<&Selected>) {
         let (Some(selected), Some(drawn)) = (selected, &self.drawn) else { return };
-        let rect = self.placement.rect();
-        let painter = &ui.painter().with_clip_rect(clip.intersect(room));
+        let painter = &ui.painter().with_clip_rect(clip);
         paint_outline(&drawn.outline.points, painter, rect);
         let mut top = rect.intersect(clip).center_top() + vec2(0.0, 40.0);
         let in_sight = drawn.outline.points.iter().filter_map(|point| point.place);
@@ -149,7 +161,7 @@ impl Viewport {
         if around.is_finite() {
             top = around.center_top();
         }
-        if let Some((at, _)) = self.handle() {
+        if let Some((at, _)) = self.handle_at(rect) {
             let pointer = ui.input(|input| input.pointer.hover_pos());
             let is_held = self.held.is_some_and(|held| held.grip == Grip::Radius);
             let is_hot = is_held || (self.held.is_none() && pointer.is_some_and(|to| to.distance(at) < GRIP));
@@ -188,6 +200,12 @@ fn cursor(grip: Grip, is_held: bool) -> CursorIcon {
         Grip::Centre if is_held => CursorIcon::Grabbing,
         Grip::Centre => CursorIcon::Grab,
     }
+}
+
+/// Where the ray through a point of the picture hits the scene.
+pub(super) fn pick(document: &Document, camera: &Camera, place: [f64; 2]) -> Option<Pick> {
+    let direction = camera.direction_through(place, document.aspect());
+    document.scene().pick(camera.look_from, direction)
 }
 
 /// The position in the picture of a point of the screen, 0 to 1 from the upper left.
