@@ -167,7 +167,8 @@ impl Plan {
 
     /// Whether `path` names a plan rather than a film.
     pub fn is_at(path: &Path) -> bool {
-        path.is_dir() || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+        path.join(MANIFEST).exists()
+            || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
     }
 
     /// Reads a plan and its scene.

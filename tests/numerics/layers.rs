@@ -53,7 +53,8 @@ fn crossing_balls_around_the_eye_are_told() {
         |by: f64| [(DVec3::ZERO, 1.0, lambertian(1.0)), (DVec3::new(by, 0.0, 0.0), 1.0, lambertian(1.0))];
     let is_told = |height: f64, defocus_angle_degrees: f64| {
         let look_from = DVec3::Y * (1.0 + height);
-        let camera = Camera { look_from, look_at: DVec3::ZERO, defocus_angle_degrees, ..Camera::BOOK };
+        let camera =
+            Camera { look_from, look_at: DVec3::ZERO, vup: DVec3::Z, defocus_angle_degrees, ..Camera::BOOK };
         !PreparedScene::<f32>::new(&job(&under_white_sky(&balls(4.5e-3)), camera, size(2, 2)))
             .warnings()
             .is_empty()
