@@ -7,7 +7,6 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use weekender::app::{Command, Window};
 use weekender::cli::{self, Request};
-use weekender::output::OutputFormat;
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
@@ -84,17 +83,35 @@ pub fn hold(harness: &mut Harness<'_, Window>, pos: Pos2, pressed: bool) {
     harness.step();
 }
 
-/// Saves through the path box and waits for the file.
-pub fn save(harness: &mut Harness<'_, Window>, format: OutputFormat, path: &Path) {
-    send(harness, Command::Save(format));
+/// Gives a command that asks for a file, and names the file in the path box.
+pub fn name_file(harness: &mut Harness<'_, Window>, command: Command, path: &Path) {
+    send(harness, command);
     harness.run_steps(2);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
     harness.step();
     harness.get_by_label("File name").type_text(path.to_str().unwrap());
     harness.run_steps(2);
     harness.key_press(Key::Enter);
+}
+
+/// Saves through the path box and waits for the file.
+pub fn save(harness: &mut Harness<'_, Window>, command: Command, path: &Path) {
+    name_file(harness, command, path);
     let saved = format!("Saved {}", path.display());
     until(harness, &saved, |window| window.messages().contains(&saved));
+}
+
+/// Chooses an entry of the menu of a right click at this point.
+pub fn choose_from_menu(harness: &mut Harness<'_, Window>, at: Pos2, name: &str) {
+    harness.event(egui::Event::PointerMoved(at));
+    for pressed in [true, false] {
+        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+        harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
+        harness.step();
+    }
+    harness.run_steps(5);
+    harness.get_by_label_contains(name).click();
+    harness.run_steps(5);
 }
 
 pub fn send(harness: &mut Harness<'_, Window>, command: Command) {

@@ -1,10 +1,10 @@
 //! The spheres of the scene: editing them, and what becomes of a changed scene.
 
-use crate::common::{control, drag_from, has_samples, open, send, until};
+use crate::common::{choose_from_menu, control, drag_from, has_samples, open, save, send, until};
 use crate::objects::{
     click, has_label, material, metal_sphere, middle_sphere, on_screen, opened, select, spheres,
 };
-use eframe::egui::{self, Key, Modifiers, PointerButton};
+use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
@@ -184,15 +184,7 @@ fn the_menu_of_a_right_click_adds_a_sphere() {
     let mut harness = opened();
     let count = spheres(&harness).len();
     let at = on_screen(&harness, DVec3::new(0.0, 0.0, -1.0));
-    harness.event(egui::Event::PointerMoved(at));
-    for pressed in [true, false] {
-        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
-        harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
-        harness.step();
-    }
-    harness.run_steps(5);
-    harness.get_by_label_contains("Add a sphere here").click();
-    harness.run_steps(5);
+    choose_from_menu(&mut harness, at, "Add a sphere here");
     assert_eq!((spheres(&harness).len(), harness.state().selected()), (count + 1, Some(count)));
 }
 
@@ -263,15 +255,7 @@ fn a_changed_scene_is_saved_opened_and_copied_as_a_command() {
     control(&harness, "Centre y").set_value_accesskit(0.1 + 0.2);
     harness.run_steps(3);
     send(&mut harness, Command::DuplicateSphere);
-    send(&mut harness, Command::SaveScene);
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    harness.get_by_label("File name").type_text(path.to_str().unwrap());
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    let saved = format!("Saved {}", path.display());
-    until(&mut harness, &saved, |window| window.messages().contains(&saved));
+    save(&mut harness, Command::SaveScene, &path);
     let mine = harness.state().document().clone();
 
     // The file gives the same picture, and so does the command, even after the camera was moved.

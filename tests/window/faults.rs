@@ -1,6 +1,7 @@
 //! Faults in the tracer while the window shows its picture.
 
 use crate::common::{has_samples, open, save, until};
+use weekender::app::Command;
 use weekender::film::{Film, checkpoint};
 use weekender::output::OutputFormat;
 
@@ -15,7 +16,7 @@ fn film_of(flags: &str, message: Option<&str>) -> Film {
         until(&mut harness, message, |window| window.messages().iter().any(|said| said.contains(message)));
     }
     until(&mut harness, "the end", |window| has_samples(40)(window) && window.status().phase.is_over());
-    save(&mut harness, OutputFormat::Exr, &path);
+    save(&mut harness, Command::Save(OutputFormat::Exr), &path);
     checkpoint::load(&path).unwrap().film
 }
 

@@ -1,6 +1,6 @@
 //! Saving, opening, dropping and copying.
 
-use crate::common::{SMALL, has_samples, open, save, send, until};
+use crate::common::{SMALL, has_samples, name_file, open, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ fn what_is_saved_is_the_film_and_can_be_opened_again() {
     let shown = harness.state().document().clone();
     for format in OutputFormat::ALL {
         let path = directory.path().join(format!("saved{}", format.ending()));
-        save(&mut harness, format, &path);
+        save(&mut harness, Command::Save(format), &path);
         if format != OutputFormat::Exr {
             let pixels = image::open(&path).unwrap().to_rgb8().into_raw();
             assert!(pixels == rendered_again(&path), "{format:?} differs from a render of its recipe");
@@ -180,19 +180,13 @@ fn an_identical_film_is_said_to_be_identical() {
     let mut harness = open("--stage defocus --size 48x27 --samples 40");
     until(&mut harness, "the end", has_samples(40));
     let path = directory.path().join("same.exr");
-    save(&mut harness, OutputFormat::Exr, &path);
+    save(&mut harness, Command::Save(OutputFormat::Exr), &path);
     let painted = |harness: &egui_kittest::Harness<'_, weekender::app::Window>, text: &str| {
         harness.output().shapes.iter().any(|clipped| {
             matches!(&clipped.shape, egui::Shape::Text(painted) if painted.galley.text().contains(text))
         })
     };
-    send(&mut harness, Command::LoadReference);
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.step();
-    harness.get_by_label("File name").type_text(path.to_str().unwrap());
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
+    name_file(&mut harness, Command::LoadReference, &path);
     until(&mut harness, "the difference", |window| window.show() == weekender::app::Show::Difference);
     for _ in 0..200 {
         harness.step();

@@ -14,7 +14,7 @@ const PICTURE: &str = "--stage defocus --size 48x27 --vfov 31 --device cpu";
 fn save_film(path: &std::path::Path, more: &str) {
     let mut harness = open(&format!("{PICTURE} {more} --samples 40"));
     until(&mut harness, "the end", has_samples(40));
-    save(&mut harness, OutputFormat::Exr, path);
+    save(&mut harness, Command::Save(OutputFormat::Exr), path);
 }
 
 #[test]
@@ -43,10 +43,10 @@ fn a_resumed_film_goes_on_as_the_flags_say() {
         assert_eq!((document.camera.vfov_degrees, document.settings.width), (31.0, 48));
         // Its samples are those of an uninterrupted render.
         let [resumed, whole] = ["resumed.exr", "whole.exr"].map(|name| directory.path().join(name));
-        save(&mut harness, OutputFormat::Exr, &resumed);
+        save(&mut harness, Command::Save(OutputFormat::Exr), &resumed);
         let mut harness = open(&format!("{PICTURE} --samples 90"));
         until(&mut harness, "the end", has_samples(90));
-        save(&mut harness, OutputFormat::Exr, &whole);
+        save(&mut harness, Command::Save(OutputFormat::Exr), &whole);
         let [resumed, whole] = [resumed, whole].map(|path| checkpoint::load(&path).unwrap().film);
         assert!(resumed == whole, "{flags}");
     }
@@ -91,7 +91,7 @@ fn a_new_start_forgets_the_seconds_of_the_film() {
     checkpoint::save(&path, &file.film, &file.description).unwrap();
     let seconds = |harness: &mut Harness<'_, Window>, name: &str| -> f64 {
         let path = directory.path().join(name);
-        save(harness, OutputFormat::Exr, &path);
+        save(harness, Command::Save(OutputFormat::Exr), &path);
         checkpoint::load(&path).unwrap().description.get(key::SECONDS).unwrap().parse().unwrap()
     };
     let has_traced = |samples: u64| {

@@ -44,7 +44,7 @@ fn exposure_is_seen_but_not_saved() {
     assert!(seen(-1.5)[2] < seen(0.0)[2]);
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("saved.png");
-    save(&mut harness, OutputFormat::Png, &path);
+    save(&mut harness, Command::Save(OutputFormat::Png), &path);
     let saved = image::open(&path).unwrap().to_rgb8();
     assert_eq!(saved.get_pixel(AT[0], AT[1]).0, seen(0.0), "files are saved without the exposure");
     send(&mut harness, Command::NoExposure);

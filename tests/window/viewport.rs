@@ -1,6 +1,6 @@
 //! The mouse on the picture, and what the picture shows.
 
-use crate::common::{SMALL, control, drag, has_samples, middle, open, send, until};
+use crate::common::{SMALL, choose_from_menu, control, drag, has_samples, middle, open, send, until};
 use eframe::egui::{self, Key, Modifiers, PointerButton};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -276,17 +276,7 @@ fn the_menu_of_a_right_click_is_about_what_is_there() {
     let mut harness = open("--stage defocus");
     until(&mut harness, "a picture", has_samples(1));
     let at = middle(&harness) + egui::vec2(40.0, -20.0);
-    let choose = |harness: &mut Harness<'_, Window>, name: &str| {
-        harness.event(egui::Event::PointerMoved(at));
-        for pressed in [true, false] {
-            let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
-            harness.event(egui::Event::PointerButton { pos: at, button, pressed, modifiers });
-            harness.step();
-        }
-        harness.run_steps(5);
-        harness.get_by_label_contains(name).click();
-        harness.run_steps(5);
-    };
+    let choose = |harness: &mut Harness<'_, Window>, name: &str| choose_from_menu(harness, at, name);
     let before = harness.state().document().camera;
     choose(&mut harness, "Focus on this");
     let focused = harness.state().document().camera;
