@@ -53,6 +53,8 @@ fn encode(
     let mut encoder = ::png::Encoder::new(writer, film.width(), film.height());
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_depth(::png::BitDepth::Eight);
+    // A seventh larger than with the default, in a fifth of the time.
+    encoder.set_compression(::png::Compression::Fast);
     // Readers keep the two kinds of text chunks apart, so all chunks are of one kind; otherwise their order would be
     // lost.
     let latin_1 = description.entries().all(|(_, value)| value.chars().all(|c| c <= 'ÿ'));
