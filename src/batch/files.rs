@@ -4,7 +4,7 @@ use crate::cli::RenderOptions;
 use crate::describe::describe;
 use crate::files::FileIdentity;
 use crate::film::{Description, Film, SaveOutcome, SharedFile, key};
-use crate::output::{OutputFormat, write_image_as};
+use crate::output::{Forms, OutputFormat, write_image_as};
 use crate::progressive::Status;
 use crate::saved::{rescue, same_job};
 use anyhow::anyhow;
@@ -116,7 +116,8 @@ pub(super) fn write(
     if matches!(places.out, Out::Picture) {
         say(&render.out);
         let transfer = render.job.rules().transfer;
-        match write_image_as(&render.out, film, transfer, &description, render.ppm) {
+        let forms = Forms { ppm: render.ppm, ..Forms::default() };
+        match write_image_as(&render.out, film, transfer, &description, forms) {
             Ok(()) => written.files.push(render.out.clone()),
             Err(error) => failures.push(error.to_string()),
         }

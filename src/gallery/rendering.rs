@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::files::check_writable;
 use crate::film::key;
 use crate::interrupt::Interrupt;
-use crate::output::write_image;
+use crate::output::{Forms, PngForm, write_image_as};
 use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
 use crate::recipe::Recipe;
 use crate::render::Renderer;
@@ -227,7 +227,8 @@ impl<'a> Studio<'a> {
         let path = directory.join(Still::file_name(task.stage));
         let _writing = interrupt.while_writing(path.display().to_string());
         let description = describe(recipe, Some(task.stage), &film, &status, Some(0.0));
-        write_image(&path, &film, recipe.rules.transfer, &description)?;
+        let forms = Forms { png: PngForm::Small, ..Forms::default() };
+        write_image_as(&path, &film, recipe.rules.transfer, &description, forms)?;
         let error = film.error();
         Ok(Some(Still {
             trace_seconds: status.trace.as_secs_f64(),

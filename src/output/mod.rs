@@ -104,6 +104,25 @@ pub enum PpmForm {
     Ascii,
 }
 
+/// How hard a PNG is compressed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PngForm {
+    /// In little time.
+    #[default]
+    Fast,
+    /// For pages that are to load quickly: a seventh smaller, in five times the time.
+    Small,
+}
+
+/// The forms of the formats that have several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Forms {
+    /// The form of a PPM.
+    pub ppm: PpmForm,
+    /// The form of a PNG.
+    pub png: PngForm,
+}
+
 /// Writes a picture to `path`, replacing an existing file, in the format of its extension. `transfer` only matters
 /// for 8-bit formats; an EXR file is linear and holds the film.
 ///
@@ -115,10 +134,10 @@ pub fn write_image(
     transfer: Transfer,
     description: &Description,
 ) -> Result<(), OutputError> {
-    write_image_as(path, film, transfer, description, PpmForm::Binary)
+    write_image_as(path, film, transfer, description, Forms::default())
 }
 
-/// As [`write_image`]; a PPM has the form `ppm`.
+/// As [`write_image`], in one of several `forms`.
 ///
 /// # Errors
 /// As for [`write_image`].
@@ -127,12 +146,12 @@ pub fn write_image_as(
     film: &Film,
     transfer: Transfer,
     description: &Description,
-    ppm: PpmForm,
+    forms: Forms,
 ) -> Result<(), OutputError> {
     let format = OutputFormat::from_path(path)?;
     replace_file(path, |writer| match format {
-        OutputFormat::Png => png::write(film, transfer, description, writer),
-        OutputFormat::P6 => ppm::write(film, transfer, description, ppm, writer),
+        OutputFormat::Png => png::write(film, transfer, description, forms.png, writer),
+        OutputFormat::P6 => ppm::write(film, transfer, description, forms.ppm, writer),
         OutputFormat::Exr => checkpoint::write(film, description, writer),
     })?;
     Ok(())
