@@ -60,6 +60,7 @@ pub fn spiral() -> Recipe {
             ..Camera::default()
         },
         settings: RenderSettings { width: 400, height: 225, ..RenderSettings::default() },
+        keyframes: Vec::new(),
         rules: Rules::FINISHED,
         samples_per_pixel: 64,
     }

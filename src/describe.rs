@@ -7,6 +7,9 @@ use crate::render::BackendInfo;
 use crate::scene::Camera;
 use crate::stages::Stage;
 
+/// The program and its version, as descriptions name them.
+pub const SOFTWARE: &str = concat!("Weekender ", env!("CARGO_PKG_VERSION"));
+
 /// The description of a film rendered from `recipe`. `seconds_before` is the time that the film's earlier samples
 /// took, if known.
 pub fn describe(
@@ -18,7 +21,7 @@ pub fn describe(
 ) -> Description {
     let settings = &recipe.settings;
     let mut description = Description::new(&file::to_picture_toml(recipe));
-    description.set(key::SOFTWARE, concat!("Weekender ", env!("CARGO_PKG_VERSION")));
+    description.set(key::SOFTWARE, SOFTWARE);
     description.set(key::SCENE, &recipe.name);
     if let Some(stage) = stage {
         description.set(key::STAGE, stage.id);

@@ -4,6 +4,7 @@
 #![warn(clippy::disallowed_macros)]
 
 pub mod about;
+pub mod animation;
 #[cfg(feature = "window")]
 pub mod app;
 pub mod backends;

@@ -53,6 +53,7 @@ fn run() -> Result<ExitCode, Failure> {
         Request::Companion(options) => companion::run(&options),
         Request::Gallery(options) => gallery::run(&options),
         Request::Check(options) => check::run(&options),
+        Request::Frames(options) => batch::render_frames(*options),
         Request::Batch(options) => batch::run(*options),
     }
 }

@@ -1,6 +1,7 @@
 //! Rendering without a window: pictures go to files, progress goes to standard error, and figures come at the end.
 
 mod files;
+mod frames;
 mod keeping;
 mod listing;
 mod part;
@@ -8,6 +9,7 @@ mod planning;
 mod progress;
 mod summary;
 
+pub use frames::render_frames;
 pub use listing::list;
 pub use part::render_part;
 pub use planning::plan;

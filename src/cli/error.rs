@@ -112,6 +112,22 @@ pub enum CliError {
         /// The required extension, with the dot.
         ending: &'static str,
     },
+    /// The camera of a frame is not valid.
+    #[error("frame {frame}: {reason}")]
+    Frame {
+        /// The frame.
+        frame: u32,
+        /// What is wrong with its camera.
+        reason: Box<JobError>,
+    },
+    /// An animation cannot be written there.
+    #[error("--out is {}, {reason}", path.display())]
+    FramesOut {
+        /// The path.
+        path: PathBuf,
+        /// Why, and what to do.
+        reason: &'static str,
+    },
     /// There are more parts than samples.
     #[error(
         "--parts is {parts}, but there are {samples} samples per pixel to divide; each part needs one at least"

@@ -7,6 +7,7 @@ mod companion;
 mod compare;
 mod diff;
 mod error;
+mod frames;
 mod gallery;
 mod merge;
 mod paths;
@@ -25,6 +26,7 @@ pub use companion::CompanionOptions;
 pub use compare::{CompareOptions, CompareSide};
 pub use diff::{DiffOptions, PathChoice, SideChoice};
 pub use error::CliError;
+pub use frames::FramesOptions;
 pub use gallery::GalleryOptions;
 pub use merge::{InfoOptions, MergeOptions, MergeSource};
 pub use plan::{PartOptions, PlanFormat, PlanOptions};
@@ -79,6 +81,8 @@ pub enum Request {
     Gallery(Box<GalleryOptions>),
     /// Find the mistake in a picture.
     Check(Box<CheckOptions>),
+    /// Render the frames of an animation.
+    Frames(Box<FramesOptions>),
     /// Render to files.
     Batch(Box<BatchOptions>),
 }

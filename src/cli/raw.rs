@@ -1,6 +1,7 @@
 //! The flags for rendering as clap parses them, and those that subcommands share. The flags of each subcommand are in
 //! its own file.
 
+use super::frames::RawAnimation;
 use super::values::{
     Level, Simd, parse_duration, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds,
     parse_simd, parse_size, parse_vector,
@@ -52,8 +53,11 @@ pub(super) struct RawRender {
     #[command(flatten)]
     pub backend: RawBackend,
 
-    /// The picture: .png, .ppm or .exr (linear film); with --stage all, the directory
-    /// [default: SCENE.png]
+    #[command(flatten)]
+    pub animation: RawAnimation,
+
+    /// The picture: .png, .ppm or .exr (linear film); with --stage all, the directory; with
+    /// --frames, a directory, a pattern such as turn-####.png, or an animated .png [default: SCENE.png]
     #[arg(long, value_name = "FILE", help_heading = "Files")]
     pub out: Option<PathBuf>,
     /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]

@@ -3,6 +3,7 @@
 use super::Request;
 use super::backend;
 use super::error::CliError;
+use super::frames;
 use super::paths::Paths;
 use super::raw::{self, DrawWith, ProgressChoice, RawPpm, RawRender};
 use super::sources::{self, ChosenRecipe};
@@ -102,6 +103,9 @@ pub struct SaveSceneOptions {
 
 /// Validates the flags, except `--list` and the subcommands.
 pub(super) fn request(mut raw: RawRender, command: String) -> Result<Request, CliError> {
+    if let Some(request) = frames::request(&raw, &command)? {
+        return Ok(request);
+    }
     let backend = backend::choice(&raw.backend)?;
     check_film_names(&raw)?;
     if raw.go_on && raw.checkpoint.as_ref().is_some_and(|film| film.exists()) {

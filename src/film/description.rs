@@ -23,6 +23,8 @@ pub mod key {
     pub const SAMPLES: &str = "Samples";
     /// Seconds of tracing.
     pub const SECONDS: &str = "Seconds";
+    /// The number of the frame in an animation.
+    pub const FRAME: &str = "Frame";
     /// The command that rendered it.
     pub const COMMAND: &str = "Command";
     /// The backend that rendered it.

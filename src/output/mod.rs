@@ -1,12 +1,14 @@
 //! Picture files: 8-bit PNG, PPM (P6, or P3 on request), and OpenEXR with the whole film. All of them contain a [`Description`].
 //! Pictures of other programs can be read, too: [`read_picture`].
 
+mod apng;
 mod limits;
 mod pfm;
 mod png;
 mod ppm;
 mod read;
 
+pub use apng::{FrameRate, check_frame, write_animation};
 pub use read::{Encoding, ReadPicture, decode_picture, read_picture};
 
 pub use crate::film::{Description, RECIPE_KEY, key};

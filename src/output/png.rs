@@ -12,13 +12,21 @@ pub(super) fn write(
     form: PngForm,
     writer: &mut impl Write,
 ) -> io::Result<()> {
+    with_first_error(writer, |writer| encode(film, transfer, description, form, writer))
+}
+
+/// Runs an encoder. An error of the file system stays whole; the encoder would keep only its text.
+pub(super) fn with_first_error<W: Write>(
+    writer: W,
+    encode: impl FnOnce(&mut FirstError<W>) -> io::Result<()>,
+) -> io::Result<()> {
     let mut writer = FirstError { inner: writer, error: None };
-    let result = encode(film, transfer, description, form, &mut writer);
+    let result = encode(&mut writer);
     result.map_err(|error| writer.error.take().unwrap_or(error))
 }
 
-/// Remembers the file system's error, of which the encoder would keep only the text.
-struct FirstError<W> {
+/// Remembers the file system's error.
+pub(super) struct FirstError<W> {
     inner: W,
     error: Option<io::Error>,
 }
@@ -59,6 +67,19 @@ fn encode(
         PngForm::Fast => ::png::Compression::Fast,
         PngForm::Small => ::png::Compression::Balanced,
     });
+    let mut writer = begin(encoder, description)?;
+    let mut rows = writer.stream_writer()?;
+    write_rows(film, transfer, &mut rows)?;
+    rows.finish()?;
+    writer.finish()?;
+    Ok(())
+}
+
+/// Writes the head of a PNG with its description.
+pub(super) fn begin<'a, W: Write>(
+    mut encoder: ::png::Encoder<'a, W>,
+    description: &Description,
+) -> io::Result<::png::Writer<W>> {
     // Readers keep the two kinds of text chunks apart, so all chunks are of one kind; otherwise their order would be
     // lost.
     let latin_1 = description.entries().all(|(_, value)| value.chars().all(|c| c <= 'ÿ'));
@@ -71,11 +92,23 @@ fn encode(
     recipe.compressed = true;
     recipe.compress_text()?;
     writer.write_text_chunk(&recipe)?;
-    let mut rows = writer.stream_writer()?;
-    write_rows(film, transfer, &mut rows)?;
-    rows.finish()?;
-    writer.finish()?;
-    Ok(())
+    Ok(writer)
+}
+
+/// Reads an 8-bit RGB picture of this size to its end, row by row from the top, three bytes a pixel.
+pub(super) fn read_pixels(reader: impl BufRead + Seek, [width, height]: [u32; 2]) -> io::Result<Vec<u8>> {
+    let mut reader =
+        ::png::Decoder::new_with_limits(reader, ::png::Limits { bytes: TEXT_LIMIT }).read_info()?;
+    let info = reader.info();
+    let is_rgb = (info.color_type, info.bit_depth) == (::png::ColorType::Rgb, ::png::BitDepth::Eight);
+    if (info.width, info.height) != (width, height) || !is_rgb || info.interlaced {
+        let reason = format!("it is not an 8-bit RGB picture of {width}x{height} pixels");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+    }
+    let mut pixels = vec![0; 3 * width as usize * height as usize];
+    reader.next_frame(&mut pixels)?;
+    reader.finish()?;
+    Ok(pixels)
 }
 
 pub(super) fn read_description(reader: impl BufRead + Seek) -> io::Result<Option<Description>> {

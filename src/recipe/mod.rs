@@ -3,6 +3,7 @@
 
 pub mod file;
 
+use crate::animation::Keyframe;
 use crate::memory::{self, MemoryError};
 use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT, TRACING_BYTES_PER_SPHERE};
 use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
@@ -24,6 +25,8 @@ pub struct Recipe {
     pub scene: Arc<Scene>,
     /// The camera.
     pub camera: Camera,
+    /// The keyframes of an animation by rising frame number, if there are any. Not part of the job, which is one picture.
+    pub keyframes: Vec<Keyframe>,
     /// Size, depth, sampler, seed, halves.
     pub settings: RenderSettings,
     /// The rules in force.
@@ -68,6 +71,7 @@ impl Recipe {
             name: name.to_owned(),
             scene: Arc::new(scene),
             camera,
+            keyframes: Vec::new(),
             settings: RenderSettings { width, height, max_depth, ..RenderSettings::default() },
             rules: Rules::FINISHED,
             samples_per_pixel,
@@ -108,6 +112,7 @@ impl Stage {
             name: self.id.to_owned(),
             scene: Arc::new(scene()),
             camera,
+            keyframes: Vec::new(),
             settings: RenderSettings { width, height, max_depth, ..RenderSettings::default() },
             rules,
             samples_per_pixel,

@@ -3,6 +3,7 @@
 use super::common::{ONE_SPHERE, assert_round_trip};
 use glam::DVec3;
 use proptest::prelude::*;
+use weekender::animation::{FRAME_LIMIT, Keyframe};
 use weekender::recipe::Recipe;
 use weekender::recipe::file::parse;
 use weekender::render::{RenderSettings, SamplerKind};
@@ -107,11 +108,15 @@ fn recipe() -> impl Strategy<Value = Recipe> {
                 let numbers = RenderSettings { width, height, max_depth, seed, ..RenderSettings::default() };
                 RenderSettings { sampler, estimate_error, ..numbers }
             });
-    (any::<String>(), scene(), camera(), settings, rules(), 1..=1_u64 << 32).prop_map(
-        |(name, scene, camera, settings, rules, samples_per_pixel)| Recipe {
+    let keyframes = prop::collection::btree_map(0..FRAME_LIMIT, camera(), 0..4).prop_map(|cameras| {
+        cameras.into_iter().map(|(frame, camera)| Keyframe { frame, camera }).collect::<Vec<_>>()
+    });
+    (any::<String>(), scene(), camera(), keyframes, settings, rules(), 1..=1_u64 << 32).prop_map(
+        |(name, scene, camera, keyframes, settings, rules, samples_per_pixel)| Recipe {
             name,
             scene: scene.into(),
             camera,
+            keyframes,
             settings,
             rules,
             samples_per_pixel,

@@ -92,6 +92,16 @@ pub enum Reason {
         /// What to do.
         remedy: &'static str,
     },
+    /// The frame numbers of keyframes do not rise.
+    #[error(
+        "frame is {frame}, but the keyframe before it has {before}; list keyframes by rising frame number, each number once"
+    )]
+    FrameOrder {
+        /// The keyframe's number.
+        frame: u32,
+        /// The number of the keyframe before it.
+        before: u32,
+    },
     /// There is no such kind of material.
     #[error("{what}.kind is {kind:?}, but must be \"lambertian\", \"metal\" or \"dielectric\"")]
     UnknownKind {

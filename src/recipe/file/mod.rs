@@ -20,9 +20,12 @@
 //! table. Instead of `[sky]`, `[materials]` and `[[spheres]]`, a file may name a built-in scene, as pictures of many
 //! spheres do: `scene = "field:1000000"`. With it comes `scene_mark`, a checksum that shows whether the scene has changed.
 //!
+//! `[[keyframes]]` move the camera of an animation: each has a `frame` and the keys of `[camera]`.
+//!
 //! A recipe that is written and read back is the same to the bit, except for its name, which is that of the file.
 
 mod error;
+mod keyframes;
 mod materials;
 mod named;
 mod place;

@@ -1,6 +1,7 @@
 //! From TOML to a recipe.
 
 use super::error::{FileError, Reason, Refusal, refuse};
+use super::keyframes::{RawKeyframe, keyframes_of};
 use super::materials::{NamedOrInline, RawMaterial, material_of};
 use super::named;
 use super::place::{InlineNames, Step, find_place, line_and_column, name_inline_materials, path_of};
@@ -84,6 +85,8 @@ struct RawFile {
     spheres: Option<Vec<RawSphere>>,
     camera: RawCamera,
     #[serde(default)]
+    keyframes: Vec<RawKeyframe>,
+    #[serde(default)]
     render: RawSettings,
     #[serde(default)]
     rules: Rules,
@@ -137,10 +140,12 @@ fn recipe_of(raw: RawFile, name: &str) -> Result<Recipe, Refusal> {
             (Arc::new(scene), inline)
         }
     };
+    let camera = camera_of(&raw.camera);
     let recipe = Recipe {
         name: name.to_owned(),
         scene,
-        camera: camera_of(&raw.camera),
+        camera,
+        keyframes: keyframes_of(&raw.keyframes, &camera)?,
         settings,
         rules: raw.rules,
         samples_per_pixel,

@@ -1,6 +1,7 @@
 //! From a recipe to TOML.
 
 use super::named::{mark, name_of};
+use crate::animation::Keyframe;
 use crate::recipe::Recipe;
 use crate::render::{RenderSettings, SettingValue};
 use crate::scene::{Camera, Parameter, Scene, Sphere};
@@ -34,6 +35,7 @@ fn write_named(out: &mut String, recipe: &Recipe, name: &str) -> std::fmt::Resul
     writeln!(out, "scene = {} # {} spheres", quoted(name), recipe.scene.spheres.len())?;
     writeln!(out, "scene_mark = {}\n", quoted(&mark(&recipe.scene)))?;
     write_camera(out, &recipe.camera)?;
+    write_keyframes(out, &recipe.keyframes)?;
     write_render(out, recipe)?;
     write_rules(out, &recipe.rules)
 }
@@ -46,6 +48,7 @@ fn write_listed(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
         writeln!(out)?;
     }
     write_camera(out, &recipe.camera)?;
+    write_keyframes(out, &recipe.keyframes)?;
     write_render(out, recipe)?;
     write_rules(out, &recipe.rules)?;
     let sky = recipe.scene.sky;
@@ -66,6 +69,18 @@ fn write_listed(out: &mut String, recipe: &Recipe) -> std::fmt::Result {
 
 fn write_camera(out: &mut String, camera: &Camera) -> std::fmt::Result {
     writeln!(out, "[camera] # lengths in scene units")?;
+    write_camera_keys(out, camera)
+}
+
+fn write_keyframes(out: &mut String, keyframes: &[Keyframe]) -> std::fmt::Result {
+    for Keyframe { frame, camera } in keyframes {
+        writeln!(out, "\n[[keyframes]]\nframe = {frame}")?;
+        write_camera_keys(out, camera)?;
+    }
+    Ok(())
+}
+
+fn write_camera_keys(out: &mut String, camera: &Camera) -> std::fmt::Result {
     writeln!(out, "look_from = {}", vector(camera.look_from))?;
     writeln!(out, "look_at = {}", vector(camera.look_at))?;
     writeln!(out, "vup = {}", vector(camera.vup))?;

@@ -68,6 +68,7 @@ pub fn of_scene(scene: Scene, camera: Camera) -> Recipe {
         scene: Arc::new(scene),
         camera,
         settings: RenderSettings { width, height, max_depth: 50, ..RenderSettings::default() },
+        keyframes: Vec::new(),
         rules: Rules::FINISHED,
         samples_per_pixel: SAMPLES,
     }

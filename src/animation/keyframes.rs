@@ -1,0 +1,140 @@
+//! Cameras between keyframes.
+//!
+//! Positions and the up direction follow a Catmull-Rom spline: a cubic between two keyframes, whose slope at each keyframe
+//! is that of the parabola through it and its neighbours. Field of view, defocus and focus distance follow a monotone
+//! cubic (Fritsch and Butland 1984), which never leaves the range between two keyframes. They are interpolated where equal
+//! steps look equal: the field of view as the logarithm of the picture's height at distance 1, the focus distance as a
+//! logarithm, the defocus angle as the radius of the lens at focus distance 1.
+
+use super::turntable::unit;
+use crate::scene::Camera;
+use glam::DVec3;
+
+/// A camera at a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Keyframe {
+    /// Number of the frame, below `FRAME_LIMIT`.
+    pub frame: u32,
+    /// The camera at this frame.
+    pub camera: Camera,
+}
+
+/// The camera at a frame. `keyframes` must have rising frame numbers; `None` if there are none.
+pub(super) fn camera(keyframes: &[Keyframe], frame: u32) -> Option<Camera> {
+    // The index of the first keyframe after this frame.
+    let next = keyframes.partition_point(|keyframe| keyframe.frame <= frame);
+    let Some(last) = next.checked_sub(1) else { return Some(keyframes.first()?.camera) };
+    // A keyframe has its own camera, to the bit.
+    if next == keyframes.len() || keyframes[last].frame == frame {
+        return Some(keyframes[last].camera);
+    }
+    let vector = |point: &dyn Fn(&Camera) -> DVec3| {
+        let along = |axis| Channel { keyframes, point, axis, bend: Bend::Smooth }.at(last, frame);
+        DVec3::from_array([0, 1, 2].map(along))
+    };
+    let number = |value: &dyn Fn(&Camera) -> f64| {
+        let point = &|camera: &Camera| DVec3::splat(value(camera));
+        Channel { keyframes, point, axis: 0, bend: Bend::Monotone }.at(last, frame)
+    };
+    let has_focus = keyframes.iter().any(|keyframe| keyframe.camera.focus_distance.is_some());
+    let half_height = number(&|camera| libm::log(half_tangent(camera.vfov_degrees)));
+    let lens = number(&|camera| half_tangent(camera.defocus_angle_degrees));
+    let focus = || number(&|camera| libm::log(camera.effective_focus_distance()));
+    Some(Camera {
+        look_from: vector(&|camera| camera.look_from),
+        look_at: vector(&|camera| camera.look_at),
+        vup: vector(&|camera| unit(camera.vup)),
+        vfov_degrees: angle_degrees(libm::exp(half_height)),
+        defocus_angle_degrees: angle_degrees(lens),
+        focus_distance: has_focus.then(|| libm::exp(focus())),
+    })
+}
+
+/// Tangent of half an angle.
+fn half_tangent(degrees: f64) -> f64 {
+    libm::tan(degrees.to_radians() / 2.0)
+}
+
+/// The angle whose half has this tangent, degrees.
+fn angle_degrees(half_tangent: f64) -> f64 {
+    (2.0 * libm::atan(half_tangent)).to_degrees()
+}
+
+/// How a number bends at a keyframe.
+#[derive(Clone, Copy, PartialEq)]
+enum Bend {
+    /// As the parabola through three keyframes, so the path may swing beyond a keyframe. Not at all where the point stays
+    /// until the next keyframe.
+    Smooth,
+    /// No further than the keyframes.
+    Monotone,
+}
+
+/// One number of the camera over time.
+struct Channel<'a> {
+    keyframes: &'a [Keyframe],
+    /// The point of the camera whose coordinate this is.
+    point: &'a dyn Fn(&Camera) -> DVec3,
+    axis: usize,
+    bend: Bend,
+}
+
+impl Channel<'_> {
+    fn point(&self, index: usize) -> DVec3 {
+        (self.point)(&self.keyframes[index].camera)
+    }
+
+    fn value(&self, index: usize) -> f64 {
+        self.point(index)[self.axis]
+    }
+
+    /// Whether the point stays from keyframe `index` to the next.
+    fn stays(&self, index: usize) -> bool {
+        self.point(index) == self.point(index + 1)
+    }
+
+    /// Frames from keyframe `index` to the next.
+    fn length(&self, index: usize) -> f64 {
+        f64::from(self.keyframes[index + 1].frame - self.keyframes[index].frame)
+    }
+
+    /// Mean slope from keyframe `index` to the next.
+    fn secant(&self, index: usize) -> f64 {
+        (self.value(index + 1) - self.value(index)) / self.length(index)
+    }
+
+    /// Slope at a keyframe.
+    fn slope(&self, index: usize) -> f64 {
+        let end = self.keyframes.len() - 1;
+        match (index, self.bend) {
+            _ if end == 1 => self.secant(0),
+            (0, Bend::Monotone) => self.secant(0),
+            (_, Bend::Monotone) if index == end => self.secant(end - 1),
+            // The curvature is 0 at both ends.
+            (0, Bend::Smooth) => 1.5 * self.secant(0) - 0.5 * self.slope(1),
+            (_, Bend::Smooth) if index == end => 1.5 * self.secant(end - 1) - 0.5 * self.slope(end - 1),
+            _ => self.inner_slope(index),
+        }
+    }
+
+    fn inner_slope(&self, index: usize) -> f64 {
+        let [before, after] = [index - 1, index].map(|index| self.secant(index));
+        let [h, k] = [index - 1, index].map(|index| self.length(index));
+        match self.bend {
+            Bend::Smooth if self.stays(index - 1) || self.stays(index) => 0.0,
+            Bend::Smooth => (k * before + h * after) / (h + k),
+            Bend::Monotone if before * after <= 0.0 => 0.0,
+            Bend::Monotone => 3.0 * (h + k) / ((h + 2.0 * k) / before + (2.0 * h + k) / after),
+        }
+    }
+
+    /// The number at a frame between keyframe `index` and the next.
+    fn at(&self, index: usize, frame: u32) -> f64 {
+        let length = self.length(index);
+        let t = f64::from(frame - self.keyframes[index].frame) / length;
+        let (start, rise) = (self.value(index), self.value(index + 1) - self.value(index));
+        let [leaving, arriving] = [index, index + 1].map(|index| self.slope(index));
+        let bends = (1.0 - t) * (1.0 - t) * t * leaving - (1.0 - t) * t * t * arriving;
+        start + rise * (3.0 - 2.0 * t) * t * t + length * bends
+    }
+}

@@ -1,0 +1,344 @@
+//! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and one that is there and whole is
+//! kept, so an interrupted run is continued by the same command.
+
+use crate::backends;
+use crate::cli::{FramesOptions, JsonTarget};
+use crate::console;
+use crate::describe::{SOFTWARE, counted, describe, seconds};
+use crate::failure::Failure;
+use crate::files::check_writable;
+use crate::film::{Description, Film, key};
+use crate::interrupt::Interrupt;
+use crate::journal;
+use crate::output::{check_frame, read_description, write_animation, write_image};
+use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
+use crate::recipe::{Recipe, file};
+use crate::terminal::{Display, print_beside, write_json};
+use anyhow::{Context, anyhow};
+use serde::Serialize;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// Interval of progress lines when there is no terminal.
+const LINE_INTERVAL: Duration = Duration::from_secs(5);
+
+/// Version of the JSON. It is raised when a key changes its meaning or is removed.
+const SCHEMA: u32 = 1;
+
+/// Renders the frames that are not there yet, and makes an animated PNG of all if that is asked for. After a signal, the
+/// frame in progress is dropped.
+///
+/// # Errors
+/// [`Failure::Input`] if nothing was rendered; [`Failure::BrokeOff`] if a render failed but earlier frames are whole;
+/// [`Failure::Run`] otherwise.
+pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
+    check_before(&options)?;
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let mut run = Run::new(&options, &interrupt);
+    let failure = run.render_all().err();
+    if matches!(failure, Some(Failure::Input(_))) {
+        return failure.map_or(Ok(ExitCode::SUCCESS), Err);
+    }
+    run.display.clear();
+    let summary = run.summary();
+    let printed = print_beside(options.json.as_ref(), &format!("{summary}\n"));
+    let figures = options.json.as_ref().map_or(Ok(()), |target| write_json(&summary, target));
+    match (failure, printed.and(figures)) {
+        (Some(failure), _) => Err(failure),
+        (None, figures) if interrupt.is_set() => {
+            if let Err(error) = figures {
+                console::note(&format!("error: {error:#}"));
+            }
+            Ok(interrupt.exit_code())
+        }
+        (None, figures) => figures.map(|()| ExitCode::SUCCESS).map_err(Failure::Run),
+    }
+}
+
+/// Checks for everything that could otherwise fail after rendering.
+fn check_before(options: &FramesOptions) -> Result<(), Failure> {
+    let directory = &options.names.directory;
+    if !directory.as_os_str().is_empty() {
+        std::fs::create_dir_all(directory)
+            .with_context(|| {
+                format!("cannot create the directory {}; choose another with --out", directory.display())
+            })
+            .map_err(Failure::Input)?;
+    }
+    let json = match &options.json {
+        Some(JsonTarget::File(path)) => Some(path),
+        _ => None,
+    };
+    let animation = options.animation.as_ref().map(|(path, _)| path);
+    for path in [Some(&options.names.path(options.frames.start)), animation, json].into_iter().flatten() {
+        check_writable(path).map_err(Failure::input)?;
+    }
+    options.job.check_memory(1).map_err(Failure::input)
+}
+
+/// An animation in progress.
+struct Run<'a> {
+    options: &'a FramesOptions,
+    interrupt: &'a Interrupt,
+    display: Display,
+    progressive: Option<Progressive>,
+    begin: Instant,
+    rendered: u32,
+    kept: u32,
+    rendering: Duration,
+    animation: Option<PathBuf>,
+    warnings: Vec<String>,
+}
+
+impl<'a> Run<'a> {
+    fn new(options: &'a FramesOptions, interrupt: &'a Interrupt) -> Self {
+        let template = "{prefix} [{bar:24}] {wide_msg}";
+        let count = options.frames.len() as u64;
+        let display = Display::new(options.progress, count, template, &options.recipe.name, LINE_INTERVAL);
+        Run {
+            options,
+            interrupt,
+            display,
+            progressive: None,
+            begin: Instant::now(),
+            rendered: 0,
+            kept: 0,
+            rendering: Duration::ZERO,
+            animation: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    fn render_all(&mut self) -> Result<(), Failure> {
+        for frame in self.options.frames.clone() {
+            if self.interrupt.is_set() {
+                return Ok(());
+            }
+            let recipe = self.recipe(frame);
+            let path = self.options.names.path(frame);
+            if is_whole(&path, &recipe) {
+                log::debug!("kept {}", path.display());
+                self.kept += 1;
+                continue;
+            }
+            let begin = Instant::now();
+            match self.render(frame, &recipe, &path) {
+                Ok(true) => {
+                    self.rendered += 1;
+                    self.rendering += begin.elapsed();
+                }
+                Ok(false) => return Ok(()),
+                Err(Failure::Run(error)) if self.rendered + self.kept > 0 => {
+                    let done = counted(u64::from(self.rendered + self.kept), "frame");
+                    return Err(Failure::BrokeOff(error.context(format!(
+                        "frame {frame} failed; {done} before it stay, and the same command goes on"
+                    ))));
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        self.assemble().map_err(Failure::Run)
+    }
+
+    /// The picture of a frame.
+    fn recipe(&self, frame: u32) -> Recipe {
+        let camera = self.options.path.camera(frame);
+        Recipe { camera, keyframes: Vec::new(), ..self.options.recipe.clone() }
+    }
+
+    /// Renders and writes a frame; `false` after a signal.
+    fn render(&mut self, frame: u32, recipe: &Recipe, path: &Path) -> Result<bool, Failure> {
+        let job = &self.options.job;
+        // The scene is shared by all frames, so it is validated and prepared once, as far as the camera allows.
+        let job = job.seen_by(recipe.camera, *job.settings()).map_err(Failure::run)?;
+        let plan =
+            Plan { pass_target: Plan::BATCH_PASS, ..Plan::until(Stop::at_samples(recipe.samples_per_pixel)) };
+        let mut request = RenderRequest::new(job, self.options.backend.clone(), plan);
+        let mut progressive = match self.progressive.take() {
+            Some(progressive) => progressive,
+            None => {
+                request.renderer = Some(backends::create(&self.options.backend).map_err(Failure::input)?);
+                Progressive::spawn().context("cannot start the render thread").map_err(Failure::Run)?
+            }
+        };
+        let status = self.watch(frame, &mut progressive, request);
+        let film = progressive.take_film();
+        self.progressive = Some(progressive);
+        if let Phase::Failed(reason) = &status.phase {
+            journal::write_report();
+            return Err(Failure::Run(anyhow!("{reason}")));
+        }
+        let Some(film) = film.filter(|film| film.sample_count() >= recipe.samples_per_pixel) else {
+            return Ok(false);
+        };
+        self.write(frame, recipe, path, &film, &status).map_err(Failure::run)?;
+        Ok(true)
+    }
+
+    fn watch(&mut self, frame: u32, progressive: &mut Progressive, request: RenderRequest) -> Status {
+        let (mut told, mut is_stopping) = (0, false);
+        progressive.watch(request, |progressive, status| {
+            for message in status.messages.iter().skip(told) {
+                if !self.warnings.contains(message) {
+                    self.display.say(&format!("warning: {message}"));
+                    self.warnings.push(message.clone());
+                }
+            }
+            told = status.messages.len();
+            if self.interrupt.is_set() && !is_stopping && !status.phase.is_over() {
+                is_stopping = true;
+                self.display.say(&format!("dropping frame {frame}; the frames before it are whole"));
+                progressive.stop();
+            }
+            self.show(frame, status);
+        })
+    }
+
+    fn show(&mut self, frame: u32, status: &Status) {
+        let (rendered, kept, rendering) = (self.rendered, self.kept, self.rendering);
+        let count = self.options.frames.len();
+        let done = rendered + kept;
+        self.display.update(u64::from(done), || {
+            let left = (count as u32).saturating_sub(done);
+            let left = match rendered {
+                0 => String::new(),
+                _ => {
+                    let each = rendering.as_secs_f64() / f64::from(rendered);
+                    format!(", {} left", seconds(each * f64::from(left)))
+                }
+            };
+            format!("frame {frame}: {done} of {count} frames done, {} spp{left}", status.samples_per_pixel)
+        });
+    }
+
+    fn write(
+        &self,
+        frame: u32,
+        recipe: &Recipe,
+        path: &Path,
+        film: &Film,
+        status: &Status,
+    ) -> anyhow::Result<()> {
+        let _writing = self.interrupt.while_writing(path.display().to_string());
+        let mut description = describe(recipe, self.options.stage, film, status, Some(0.0));
+        description.set(key::FRAME, frame);
+        description.set(key::COMMAND, &self.options.command);
+        write_image(path, film, recipe.rules.transfer, &description)?;
+        log::info!("wrote {}", path.display());
+        Ok(())
+    }
+
+    /// Makes the animated PNG.
+    fn assemble(&mut self) -> anyhow::Result<()> {
+        let Some((path, rate)) = &self.options.animation else { return Ok(()) };
+        let count = self.options.frames.len();
+        self.display.announce(count as u64, || format!("writing {}", path.display()));
+        let _writing = self.interrupt.while_writing(path.display().to_string());
+        let recipe = &self.options.recipe;
+        let mut description = Description::new(&file::to_picture_toml(recipe));
+        description.set(key::SOFTWARE, SOFTWARE);
+        description.set(key::SCENE, &recipe.name);
+        description.set(key::SAMPLES, recipe.samples_per_pixel);
+        description.set(key::COMMAND, &self.options.command);
+        let size = [recipe.settings.width, recipe.settings.height];
+        let first = self.options.frames.start;
+        let files = (0..count).map(|index| self.options.names.path(first + index as u32));
+        write_animation(path, size, *rate, files, &description)?;
+        log::info!("wrote {}", path.display());
+        self.animation = Some(path.clone());
+        Ok(())
+    }
+
+    fn summary(&self) -> Summary {
+        let FramesOptions { recipe, frames, names, .. } = self.options;
+        Summary {
+            schema: SCHEMA,
+            version: env!("CARGO_PKG_VERSION"),
+            scene: recipe.name.clone(),
+            width: recipe.settings.width,
+            height: recipe.settings.height,
+            samples_per_pixel: recipe.samples_per_pixel,
+            first_frame: frames.start,
+            last_frame: frames.end - 1,
+            frames: frames.end - frames.start,
+            frames_done: self.rendered + self.kept,
+            rendered: self.rendered,
+            kept: self.kept,
+            rendering_seconds: self.rendering.as_secs_f64(),
+            total_seconds: self.begin.elapsed().as_secs_f64(),
+            directory: names.directory.clone(),
+            first_file: names.path(frames.start),
+            last_file: names.path(frames.end - 1),
+            animation: self.animation.clone(),
+            warnings: self.warnings.clone(),
+        }
+    }
+}
+
+/// Whether a file is the whole picture of this recipe, by this version of the program.
+fn is_whole(path: &Path, recipe: &Recipe) -> bool {
+    let Ok(found) = read_description(path) else { return false };
+    let wanted = Description::new(&file::to_picture_toml(recipe));
+    let samples = recipe.samples_per_pixel.to_string();
+    found.recipe() == wanted.recipe()
+        && found.get(key::SAMPLES) == Some(&samples)
+        && found.get(key::SOFTWARE) == Some(SOFTWARE)
+        && check_frame(path, [recipe.settings.width, recipe.settings.height]).is_ok()
+}
+
+/// The figures of an animation.
+#[derive(Serialize)]
+struct Summary {
+    schema: u32,
+    version: &'static str,
+    scene: String,
+    width: u32,
+    height: u32,
+    samples_per_pixel: u64,
+    first_frame: u32,
+    last_frame: u32,
+    frames: u32,
+    frames_done: u32,
+    rendered: u32,
+    kept: u32,
+    rendering_seconds: f64,
+    total_seconds: f64,
+    directory: PathBuf,
+    first_file: PathBuf,
+    last_file: PathBuf,
+    animation: Option<PathBuf>,
+    warnings: Vec<String>,
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Summary { scene, width, height, samples_per_pixel, .. } = self;
+        writeln!(
+            f,
+            "scene    {scene}, {width}x{height}, {} per pixel",
+            counted(*samples_per_pixel, "sample")
+        )?;
+        let Summary { frames, frames_done, rendered, kept, .. } = self;
+        writeln!(f, "frames   {frames_done} of {frames} done: {rendered} rendered, {kept} already there")?;
+        write!(f, "time     {}", seconds(self.total_seconds))?;
+        if self.rendered > 0 {
+            let each = self.rendering_seconds / f64::from(self.rendered);
+            write!(f, " ({each:.3} s for each frame rendered)")?;
+        }
+        writeln!(f)?;
+        if self.frames_done < self.frames {
+            return writeln!(
+                f,
+                "files    in {}; run the same command again to go on",
+                self.directory.display()
+            );
+        }
+        writeln!(f, "files    {} to {}", self.first_file.display(), self.last_file.display())?;
+        match &self.animation {
+            Some(path) => writeln!(f, "         {}", path.display()),
+            None => Ok(()),
+        }
+    }
+}

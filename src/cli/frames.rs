@@ -1,0 +1,251 @@
+//! `--frames`: an animation.
+
+use super::Request;
+use super::backend;
+use super::error::CliError;
+use super::paths::Paths;
+use super::raw::{self, ProgressChoice, RawRender};
+use super::sources;
+use super::values::JsonTarget;
+use crate::animation::{CameraPath, FRAME_LIMIT, FRAMES_PER_TURN, FrameNames, Turn};
+use crate::backends::BackendChoice;
+use crate::output::FrameRate;
+use crate::recipe::Recipe;
+use crate::render::RenderJob;
+use crate::stages::Stage;
+use clap::Args;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The flags of animations.
+#[derive(Debug, Args)]
+pub(super) struct RawAnimation {
+    /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
+    /// file [default with --turntable: one turn]
+    #[arg(long, value_name = "A..B", value_parser = parse_frames, allow_hyphen_values = true,
+          help_heading = "Animation")]
+    pub frames: Option<Range<u32>>,
+    /// Let the camera circle around --look-at about --vup: so many frames a turn, or degrees a frame, such as 1.5deg or
+    /// -3deg [without a value: 120 frames]
+    #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
+          require_equals = true, default_missing_value = "120", help_heading = "Animation")]
+    pub turntable: Option<Turn>,
+    /// Frames per second of an animated PNG: a whole number or a fraction such as 30000/1001 [default: 30]
+    #[arg(long, value_name = "RATE", value_parser = parse_rate, allow_hyphen_values = true,
+          help_heading = "Animation")]
+    pub fps: Option<FrameRate>,
+}
+
+/// Options of `--batch --frames`.
+#[derive(Debug)]
+pub struct FramesOptions {
+    /// The scene and its settings. The camera is not that of a frame.
+    pub recipe: Recipe,
+    /// The validated job of the recipe.
+    pub job: RenderJob,
+    /// The stage that it comes from.
+    pub stage: Option<&'static Stage>,
+    /// How the camera moves. The camera of every frame is valid.
+    pub path: CameraPath,
+    /// Numbers of the frames, at least one.
+    pub frames: Range<u32>,
+    /// The files of the frames.
+    pub names: FrameNames,
+    /// The animated PNG to make of them, if any.
+    pub animation: Option<(PathBuf, FrameRate)>,
+    /// The backend.
+    pub backend: BackendChoice,
+    /// Whether progress is shown.
+    pub progress: ProgressChoice,
+    /// Where the JSON is written.
+    pub json: Option<JsonTarget>,
+    /// The command that renders them.
+    pub command: String,
+}
+
+/// Validates the flags of an animation; `None` if they ask for none.
+pub(super) fn request(raw: &RawRender, command: &str) -> Result<Option<Request>, CliError> {
+    let RawAnimation { frames, turntable, fps } = &raw.animation;
+    if frames.is_none() && turntable.is_none() {
+        return match fps {
+            Some(_) => Err(CliError::Needs {
+                flag: "--fps",
+                other: "--frames",
+                reason: "a single picture has no rate; add --frames A..B or --turntable",
+            }),
+            None => Ok(None),
+        };
+    }
+    let flag = if frames.is_some() { "--frames" } else { "--turntable" };
+    if !raw.batch {
+        let reason = "the window shows one picture; frames are rendered to files";
+        return Err(CliError::Needs { flag, other: "--batch", reason });
+    }
+    refuse_others(raw, flag)?;
+    let mut chosen = sources::find(&raw.picture, None)?;
+    raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
+    chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
+    let job = chosen.recipe.job()?;
+    let path = path_of(raw, &chosen.recipe)?;
+    let frames = match (frames, turntable) {
+        (Some(frames), _) => frames.clone(),
+        (None, Some(Turn::FramesPerTurn(count))) => 0..*count,
+        (None, _) => {
+            let reason = "it has no whole number of frames a turn; give A..B";
+            return Err(CliError::Needs { flag: "--turntable in degrees", other: "--frames", reason });
+        }
+    };
+    for frame in frames.clone() {
+        job.seen_by(path.camera(frame), *job.settings())
+            .map_err(|reason| CliError::Frame { frame, reason: Box::new(reason) })?;
+    }
+    let out = raw.out.as_deref().ok_or(CliError::Needs {
+        flag,
+        other: "--out",
+        reason: "it writes many pictures; name a directory, a pattern such as turn-####.png, or an animated turn.png",
+    })?;
+    let (names, animation) = places(out)?;
+    if fps.is_some() && animation.is_none() {
+        let reason = "single frames have no rate; give it to the program that makes a film of them";
+        return Err(CliError::Needs { flag: "--fps", other: "--out FILE.png", reason });
+    }
+    let json = raw.json.clone().map(JsonTarget::from);
+    Paths::default()
+        .read("--scene", sources::scene_file(raw.picture.scene.as_deref()))
+        .write("--out", animation.as_deref().or(Some(&names.path(frames.start))))
+        .write_json(json.as_ref())
+        .check(&[])?;
+    Ok(Some(Request::Frames(Box::new(FramesOptions {
+        recipe: chosen.recipe,
+        job,
+        stage: chosen.stage,
+        path,
+        frames,
+        names,
+        animation: animation.map(|file| (file, fps.unwrap_or(FrameRate { frames: 30, seconds: 1 }))),
+        backend: backend::choice(&raw.backend)?,
+        progress: raw.progress,
+        json,
+        command: command.to_owned(),
+    }))))
+}
+
+/// Returns an error if a flag makes no sense for an animation.
+fn refuse_others(raw: &RawRender, flag: &'static str) -> Result<(), CliError> {
+    let same = "every frame must have the same samples, whenever it is rendered; give --samples";
+    let films = "an animation is kept frame by frame, and whole frames are not rendered again";
+    for (other, is_given, reason) in [
+        ("--stage all", raw.picture.is_every_stage(), "an animation shows one scene; choose one stage"),
+        ("--resume", raw.resume.is_some(), films),
+        ("--checkpoint", raw.checkpoint.is_some(), films),
+        ("--every", raw.every.is_some(), films),
+        ("--time-limit", raw.time_limit.is_some(), same),
+        ("--noise-target", raw.noise_target.is_some(), same),
+        ("--sample-range", raw.sample_range.is_some(), same),
+        ("--ppm", raw.ppm.is_some(), "frames are PNG files"),
+        ("--save-scene", raw.save_scene.is_some(), "write the scene file by a command of its own"),
+        ("--simulate-crash", raw.backend.simulate_crash.is_some(), "it is for single pictures"),
+    ] {
+        if is_given {
+            return Err(CliError::Together { flag, other, reason });
+        }
+    }
+    Ok(())
+}
+
+/// How the flags and the scene file move the camera.
+fn path_of(raw: &RawRender, recipe: &Recipe) -> Result<CameraPath, CliError> {
+    if let Some(turn) = raw.animation.turntable {
+        return Ok(CameraPath::Turntable { start: recipe.camera, turn });
+    }
+    if recipe.keyframes.is_empty() {
+        return Err(CliError::Needs {
+            flag: "--frames",
+            other: "--turntable",
+            reason: "the scene has no [[keyframes]], so the camera would not move",
+        });
+    }
+    let picture = &raw.picture;
+    let camera = [
+        ("--look-from", picture.look_from.is_some()),
+        ("--look-at", picture.look_at.is_some()),
+        ("--vup", picture.vup.is_some()),
+        ("--vfov", picture.vfov.is_some()),
+        ("--defocus-angle", picture.defocus_angle.is_some()),
+        ("--focus-distance", picture.focus_distance.is_some()),
+    ];
+    match camera.into_iter().find(|(_, is_given)| *is_given) {
+        Some((flag, _)) => Err(CliError::Together {
+            flag,
+            other: "the keyframes of the scene file",
+            reason: "they set the camera; change them, or use --turntable",
+        }),
+        None => Ok(CameraPath::Keyframes { still: recipe.camera, keyframes: recipe.keyframes.clone() }),
+    }
+}
+
+/// The files of the frames, and the animated PNG if `out` is one. Its frames are in a directory beside it.
+fn places(out: &Path) -> Result<(FrameNames, Option<PathBuf>), CliError> {
+    let refuse = |reason| Err(CliError::FramesOut { path: out.to_owned(), reason });
+    let ending = out.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    let is_png = ending.as_deref() == Some("png");
+    if out.is_dir() {
+        return Ok((FrameNames::in_directory(out), None));
+    }
+    if out.file_name().is_some_and(|name| name.to_string_lossy().contains('#')) {
+        return match FrameNames::of_pattern(out) {
+            Some(names) if is_png => Ok((names, None)),
+            Some(_) => refuse("but frames are PNG files: let the pattern end in .png"),
+            None => refuse("but a pattern has a single row of #, such as turn-####.png"),
+        };
+    }
+    match ending.as_deref() {
+        None => Ok((FrameNames::in_directory(out), None)),
+        Some("png" | "apng") => {
+            let mut directory = out.file_stem().unwrap_or_default().to_owned();
+            directory.push("-frames");
+            Ok((FrameNames::in_directory(&out.with_file_name(directory)), Some(out.to_owned())))
+        }
+        Some("exr") => {
+            refuse("but an animation has no film: name a directory, or render single pictures as films")
+        }
+        Some(_) => refuse(
+            "but an animation is a directory of PNG files, a pattern such as turn-####.png, or an animated turn.png",
+        ),
+    }
+}
+
+fn parse_frames(text: &str) -> Result<Range<u32>, String> {
+    let parse = || {
+        let (start, end) = text.split_once("..")?;
+        Some(start.trim().parse().ok()?..end.trim().parse().ok()?)
+    };
+    parse().filter(|range: &Range<u32>| range.start < range.end && range.end <= FRAME_LIMIT).ok_or_else(
+        || format!("must be A..B with A below B and B at most {FRAME_LIMIT}, such as 0..{FRAMES_PER_TURN}"),
+    )
+}
+
+fn parse_turn(text: &str) -> Result<Turn, String> {
+    let degrees = || {
+        let degrees: f64 = text.strip_suffix("deg")?.trim_end().parse().ok()?;
+        (degrees != 0.0 && degrees.abs() <= 180.0).then_some(Turn::DegreesPerFrame(degrees))
+    };
+    let frames =
+        || text.parse().ok().filter(|frames| (2..=FRAME_LIMIT).contains(frames)).map(Turn::FramesPerTurn);
+    frames().or_else(degrees).ok_or_else(|| {
+        format!(
+            "must be 2 to {FRAME_LIMIT} frames a turn, such as {FRAMES_PER_TURN}, or up to 180 degrees a frame, such as 3deg or -3deg"
+        )
+    })
+}
+
+fn parse_rate(text: &str) -> Result<FrameRate, String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|number| *number > 0);
+    let (frames, seconds) = text.split_once('/').unwrap_or((text, "1"));
+    number(frames).zip(number(seconds)).map(|(frames, seconds)| FrameRate { frames, seconds }).ok_or_else(
+        || {
+            "must be a whole number or a fraction of numbers from 1 to 65535, such as 30, 25/2 or 30000/1001"
+                .to_owned()
+        },
+    )
+}

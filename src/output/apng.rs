@@ -1,0 +1,70 @@
+//! Animated PNG, assembled from frames that are PNG files.
+
+use super::png;
+use super::{Description, OutputError};
+use crate::files::{self, replace_file};
+use std::io::{self, BufReader, Write};
+use std::path::{Path, PathBuf};
+
+/// Frames per second as a fraction, such as 30000/1001. A PNG holds its inverse, the time of a frame, as two such numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameRate {
+    /// Numerator, at least 1.
+    pub frames: u16,
+    /// Denominator, at least 1.
+    pub seconds: u16,
+}
+
+/// Writes an animated PNG that repeats without end, replacing an existing file. `frames` are the files of its frames: 8-bit
+/// RGB PNG of `size`, width and height in pixels. One frame at a time is in memory.
+///
+/// # Errors
+/// [`OutputError::Write`]; an existing file is then unchanged.
+pub fn write_animation(
+    path: &Path,
+    size: [u32; 2],
+    rate: FrameRate,
+    frames: impl ExactSizeIterator<Item = PathBuf>,
+    description: &Description,
+) -> Result<(), OutputError> {
+    replace_file(path, |writer| {
+        png::with_first_error(writer, |writer| encode(writer, size, rate, frames, description))
+    })?;
+    Ok(())
+}
+
+fn encode(
+    writer: impl Write,
+    size: [u32; 2],
+    rate: FrameRate,
+    frames: impl ExactSizeIterator<Item = PathBuf>,
+    description: &Description,
+) -> io::Result<()> {
+    let mut encoder = ::png::Encoder::new(writer, size[0], size[1]);
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    let count = u32::try_from(frames.len()).map_err(io::Error::other)?;
+    encoder.set_animated(count, 0)?;
+    encoder.set_frame_delay(rate.seconds, rate.frames)?;
+    let mut writer = png::begin(encoder, description)?;
+    for frame in frames {
+        let pixels = pixels_of(&frame, size).map_err(|error| io::Error::other(error.to_string()))?;
+        writer.write_image_data(&pixels)?;
+    }
+    writer.finish()?;
+    Ok(())
+}
+
+/// Checks that a file is an 8-bit RGB PNG of `size`, and whole.
+///
+/// # Errors
+/// [`OutputError::Input`] or [`OutputError::Read`].
+pub fn check_frame(path: &Path, size: [u32; 2]) -> Result<(), OutputError> {
+    pixels_of(path, size).map(drop)
+}
+
+fn pixels_of(path: &Path, size: [u32; 2]) -> Result<Vec<u8>, OutputError> {
+    let (file, _) = files::open(path)?;
+    png::read_pixels(BufReader::new(file), size)
+        .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })
+}

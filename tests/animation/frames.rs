@@ -1,0 +1,164 @@
+//! Frames and animated PNG, rendered by the program.
+
+use super::common::{SCENE, names, pixels, render, weekender};
+use std::fs;
+use std::io::BufReader;
+use std::path::Path;
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+use weekender::output::{key, read_description};
+use weekender::recipe::file::parse;
+
+fn temp() -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    directory
+}
+
+const KEYFRAMED: [&str; 2] = ["--scene", "scene.toml"];
+
+#[test]
+fn a_frame_alone_has_the_same_bits_as_in_a_run() {
+    let directory = temp();
+    for (name, path) in [("turn", &["--turntable=9"][..]), ("keys", &KEYFRAMED)] {
+        let run = |frames: &str, out: &str| {
+            render(directory.path(), &[path, &["--frames", frames, "--out", out]].concat())
+        };
+        let json = run("0..7", name);
+        assert_eq!((&json["frames_done"], &json["rendered"]), (&7.into(), &7.into()));
+        let found = names(&directory.path().join(name));
+        assert_eq!(found, (0..7).map(|frame| format!("frame-{frame:04}.png")).collect::<Vec<_>>());
+        let in_run = |frame: u32| pixels(&directory.path().join(format!("{name}/frame-{frame:04}.png")));
+        for frame in [3, 6] {
+            run(&format!("{frame}..{}", frame + 1), &format!("{name}-alone-#.png"));
+            assert!(in_run(frame) == pixels(&directory.path().join(format!("{name}-alone-{frame}.png"))));
+        }
+        assert!(in_run(3) != in_run(4), "the camera moves");
+    }
+}
+
+#[test]
+fn a_frame_is_the_single_picture_of_its_camera() {
+    let directory = temp();
+    render(directory.path(), &[&KEYFRAMED[..], &["--frames", "2..3", "--out", "d"]].concat());
+    let single =
+        ["--batch", "--scene", "scene.toml", "--size", "24x14", "--samples", "4", "--out", "one.png"];
+    let camera = ["--look-from", "3,1,3", "--vfov", "60"];
+    assert!(weekender(directory.path(), &[&single[..], &camera].concat()).output().unwrap().status.success());
+    let frame = directory.path().join("d/frame-0002.png");
+    assert!(pixels(&frame) == pixels(&directory.path().join("one.png")));
+    let description = read_description(&frame).unwrap();
+    assert_eq!(description.get(key::FRAME), Some("2"));
+    let recipe = parse(description.recipe(), "frame").unwrap();
+    assert_eq!((recipe.camera.vfov_degrees, recipe.keyframes.len()), (60.0, 0));
+}
+
+#[test]
+fn whole_frames_are_kept_and_others_are_rendered_again() {
+    let directory = temp();
+    let run = |more: &[&str]| {
+        let json = render(directory.path(), &[&["--turntable=8", "--out", "d"], more].concat());
+        [&json["rendered"], &json["kept"]].map(|count| count.as_u64().unwrap())
+    };
+    let path = |frame: u32| directory.path().join(format!("d/frame-{frame:04}.png"));
+    assert_eq!(run(&["--frames", "2..5"]), [3, 0]);
+    assert_eq!(run(&[]), [5, 3], "a whole turn by default");
+    assert_eq!(run(&[]), [0, 8]);
+    let good: Vec<_> = (0..8).map(|frame| fs::read(path(frame)).unwrap()).collect();
+
+    // Cut short, one flipped bit in the pixels, another frame, and not a picture.
+    fs::write(path(0), &good[0][..good[0].len() - 20]).unwrap();
+    let mut flipped = good[1].clone();
+    let data = flipped.windows(4).position(|word| word == b"IDAT").unwrap();
+    flipped[data + 40] ^= 1;
+    fs::write(path(1), &flipped).unwrap();
+    fs::write(path(2), &good[3]).unwrap();
+    fs::write(path(4), "nothing").unwrap();
+    fs::remove_file(path(5)).unwrap();
+    assert_eq!(run(&[]), [5, 3]);
+    for frame in [0, 1, 2, 4, 5] {
+        fs::write(directory.path().join("good.png"), &good[frame as usize]).unwrap();
+        assert!(pixels(&path(frame)) == pixels(&directory.path().join("good.png")), "frame {frame}");
+    }
+    // Another picture has other frames.
+    assert_eq!(run(&["--samples", "5"]), [8, 0]);
+    assert_eq!(run(&["--samples", "5", "--seed", "1"]), [8, 0]);
+    assert_eq!(run(&["--samples", "5", "--seed", "1"]), [0, 8]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_whole_frames_and_goes_on() {
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let directory = temp();
+        let flags =
+            ["--batch", "--size", "160x90", "--samples", "64", "--turntable=400", "--out", "turn.png"];
+        let mut child = weekender(directory.path(), &[&flags[..], &["--json", "figures.json"]].concat())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let frames = directory.path().join("turn-frames");
+        let count = || frames.is_dir().then(|| names(&frames).len()).unwrap_or_default();
+        let begin = Instant::now();
+        while count() < 3 && begin.elapsed() < Duration::from_secs(100) {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let kill = std::process::Command::new("kill").args(["-s", signal, &child.id().to_string()]).status();
+        assert!(kill.unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(code));
+
+        let done = count();
+        assert!((3..400).contains(&done), "{done} frames");
+        assert!(names(&frames).iter().all(|name| name.starts_with("frame-")), "{:?}", names(&frames));
+        let figures = fs::read_to_string(directory.path().join("figures.json")).unwrap();
+        let figures: serde_json::Value = serde_json::from_str(&figures).unwrap();
+        assert_eq!(
+            (&figures["frames_done"], &figures["animation"]),
+            (&done.into(), &serde_json::Value::Null)
+        );
+        assert!(!directory.path().join("turn.png").exists());
+
+        let range = format!("0..{}", done + 1);
+        let again = [&flags[..], &["--frames", &range, "--json", "-"]].concat();
+        let output = weekender(directory.path(), &again).output().unwrap();
+        let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!((&json["kept"], &json["rendered"]), (&done.into(), &1.into()));
+        assert!(directory.path().join("turn.png").exists());
+    }
+}
+
+/// Frames and delays of an animated PNG.
+fn decoded(path: &Path) -> (u32, Vec<(u16, u16, Vec<u8>)>) {
+    let file = BufReader::new(fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let control = *reader.info().animation_control().unwrap();
+    let mut frames = Vec::new();
+    for _ in 0..control.num_frames {
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        let frame = reader.info().frame_control().unwrap();
+        frames.push((frame.delay_num, frame.delay_den, pixels));
+    }
+    reader.finish().unwrap();
+    (control.num_plays, frames)
+}
+
+#[test]
+fn an_animated_png_has_all_frames_and_exact_delays() {
+    let directory = temp();
+    for (flags, delay) in [(&[][..], (1, 30)), (&["--fps", "30000/1001"][..], (1001, 30_000))] {
+        let json = render(directory.path(), &[&["--turntable=6", "--out", "turn.png"], flags].concat());
+        assert_eq!(json["animation"], "turn.png");
+        let (plays, frames) = decoded(&directory.path().join("turn.png"));
+        assert_eq!((plays, frames.len()), (0, 6), "it repeats without end");
+        for (index, (number, denominator, found)) in frames.iter().enumerate() {
+            assert_eq!((*number, *denominator), delay);
+            let frame = directory.path().join(format!("turn-frames/frame-{index:04}.png"));
+            assert!(*found == pixels(&frame), "frame {index}");
+        }
+    }
+    let description = read_description(&directory.path().join("turn.png")).unwrap();
+    assert!(description.get(key::COMMAND).unwrap().contains("--turntable=6"));
+    parse(description.recipe(), "turn").unwrap().job().unwrap();
+}

@@ -1,0 +1,210 @@
+//! Camera paths as functions of the frame's number.
+
+use glam::DVec3;
+use std::f64::consts::TAU;
+use weekender::animation::{CameraPath, FrameNames, Keyframe, Turn};
+use weekender::scene::Camera;
+
+fn camera() -> Camera {
+    Camera {
+        look_from: DVec3::new(3.0, 2.0, 4.0),
+        look_at: DVec3::new(1.0, 0.5, -1.0),
+        vup: DVec3::new(0.0, 2.0, 0.1),
+        vfov_degrees: 30.0,
+        defocus_angle_degrees: 1.0,
+        focus_distance: Some(5.0),
+    }
+}
+
+fn turntable(turn: Turn) -> CameraPath {
+    CameraPath::Turntable { start: camera(), turn }
+}
+
+fn keyframed(keyframes: Vec<Keyframe>) -> CameraPath {
+    CameraPath::Keyframes { still: camera(), keyframes }
+}
+
+#[test]
+fn a_turntable_closes_to_the_bit() {
+    for (turn, length) in [
+        (Turn::FramesPerTurn(7), 7),
+        (Turn::FramesPerTurn(120), 120),
+        (Turn::DegreesPerFrame(3.0), 120),
+        (Turn::DegreesPerFrame(-1.5), 240),
+    ] {
+        let path = turntable(turn);
+        assert_eq!(path.camera(0), camera());
+        assert_eq!(path.camera(length), camera(), "{turn:?}");
+        for frame in 1..length {
+            assert_ne!(path.camera(frame), camera(), "{turn:?}, {frame}");
+        }
+        assert_eq!(path.camera(5 * length + 3), path.camera(3));
+    }
+}
+
+#[test]
+fn a_turntable_circles_about_the_up_direction() {
+    let (start, axis) = (camera(), camera().vup.normalize());
+    let arm = start.look_from - start.look_at;
+    let path = turntable(Turn::FramesPerTurn(90));
+    for frame in 0..90 {
+        let turned = path.camera(frame);
+        let now = turned.look_from - turned.look_at;
+        assert!((now.length() - arm.length()).abs() < 1e-12);
+        assert!((now.dot(axis) - arm.dot(axis)).abs() < 1e-12);
+        assert_eq!(Camera { look_from: start.look_from, ..turned }, start);
+        // Counterclockwise from above, by the same angle in each frame.
+        let flat = |arm: DVec3| (arm - axis * axis.dot(arm)).normalize();
+        let angle = flat(arm).cross(flat(now)).dot(axis).atan2(flat(arm).dot(flat(now)));
+        let expected = TAU * f64::from(frame) / 90.0;
+        assert!(((angle - expected) / TAU + 0.5).rem_euclid(1.0) - 0.5 < 1e-12, "{frame}: {angle}");
+    }
+    let back = turntable(Turn::DegreesPerFrame(-4.0)).camera(1);
+    assert!(back.look_from.distance(path.camera(89).look_from) < 1e-12);
+}
+
+#[test]
+fn a_turntable_needs_no_moderate_numbers() {
+    for scale in [1e-18, 1e-9, 1e15] {
+        let start = Camera {
+            look_from: DVec3::Z * scale,
+            look_at: DVec3::ZERO,
+            vup: DVec3::Y * 1e-200,
+            focus_distance: None,
+            ..camera()
+        };
+        let path = CameraPath::Turntable { start, turn: Turn::FramesPerTurn(4) };
+        path.camera(1).validate().unwrap();
+        assert!(path.camera(1).look_from.distance(DVec3::X * scale) < 1e-15 * scale);
+    }
+}
+
+/// A path of uneven steps with every parameter in motion.
+fn keyframes() -> Vec<Keyframe> {
+    [(3, 0.0), (10, 1.0), (12, 3.0), (40, 2.0)]
+        .map(|(frame, x)| Keyframe {
+            frame,
+            camera: Camera {
+                look_from: DVec3::new(x, 2.0 + x * x, 5.0 - x),
+                look_at: DVec3::new(0.1 * x, -0.3 * x, 0.0),
+                vup: DVec3::new(0.1 * x, 3.0, 0.0),
+                vfov_degrees: 20.0 + 30.0 * x,
+                defocus_angle_degrees: x,
+                focus_distance: (x > 0.5).then_some(1.0 + x),
+            },
+        })
+        .to_vec()
+}
+
+#[test]
+fn a_path_goes_through_its_keyframes_exactly_and_rests_beyond_them() {
+    let path = keyframed(keyframes());
+    for Keyframe { frame, camera } in keyframes() {
+        assert_eq!(path.camera(frame), camera);
+    }
+    assert_eq!(path.camera(0), keyframes()[0].camera);
+    assert_eq!(path.camera(99_999), keyframes()[3].camera);
+    assert_eq!(keyframed(Vec::new()).camera(7), camera());
+}
+
+/// The path on a grid `FINE` times as fine as its frames, which frame numbers alone could not see.
+fn refined(fine: u32) -> CameraPath {
+    let stretched =
+        keyframes().into_iter().map(|keyframe| Keyframe { frame: fine * keyframe.frame, ..keyframe });
+    keyframed(stretched.collect())
+}
+
+/// All numbers of a camera that are interpolated.
+fn numbers(camera: &Camera) -> [f64; 12] {
+    let Camera { look_from: f, look_at: a, vup, .. } = camera;
+    let up = vup.normalize();
+    let (view, lens) = (camera.vfov_degrees, camera.defocus_angle_degrees);
+    [f.x, f.y, f.z, a.x, a.y, a.z, up.x, up.y, up.z, view, lens, camera.effective_focus_distance()]
+}
+
+#[test]
+fn a_path_has_neither_jumps_nor_corners() {
+    // Steps, and changes of steps, shrink with the grid: a jump would keep the first and a corner the second.
+    let worst = |fine: u32| {
+        let path = refined(fine);
+        let cameras: Vec<_> = (3 * fine..=40 * fine).map(|frame| numbers(&path.camera(frame))).collect();
+        let step = cameras.windows(2).flat_map(|pair| (0..12).map(|i| (pair[1][i] - pair[0][i]).abs()));
+        let bend = cameras
+            .windows(3)
+            .flat_map(|three| (0..12).map(|i| (three[2][i] - 2.0 * three[1][i] + three[0][i]).abs()));
+        [step.fold(0.0, f64::max), bend.fold(0.0, f64::max)]
+    };
+    let ([step, bend], [fine_step, fine_bend]) = (worst(64), worst(256));
+    assert!(fine_step < 0.26 * step, "{step} {fine_step}");
+    assert!(fine_bend < 0.08 * bend, "{bend} {fine_bend}");
+}
+
+#[test]
+fn lens_and_view_never_leave_the_range_of_two_keyframes() {
+    let path = refined(32);
+    for pair in keyframes().windows(2) {
+        let ends = [pair[0].camera, pair[1].camera].map(|camera| numbers(&camera));
+        for frame in 32 * pair[0].frame..=32 * pair[1].frame {
+            let now = numbers(&path.camera(frame));
+            for number in 9..12 {
+                let [low, high] =
+                    [ends[0][number].min(ends[1][number]), ends[0][number].max(ends[1][number])];
+                assert!((low - 1e-9..=high + 1e-9).contains(&now[number]), "{frame}: {now:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_straight_even_path_stays_straight_and_even() {
+    let at = |frame: u32| Keyframe {
+        frame,
+        camera: Camera {
+            look_from: DVec3::new(f64::from(frame), 1.0, 9.0),
+            focus_distance: None,
+            ..camera()
+        },
+    };
+    for keyframes in [vec![at(0), at(8)], vec![at(0), at(5), at(6), at(8)]] {
+        let path = keyframed(keyframes);
+        for frame in 0..=8 {
+            let now = path.camera(frame);
+            assert!(now.look_from.distance(at(frame).camera.look_from) < 1e-12, "{now:?}");
+            assert_eq!((now.look_at, now.focus_distance), (camera().look_at, None));
+            assert!((now.vfov_degrees - 30.0).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_camera_stands_still_between_equal_keyframes() {
+    let at = |frame, x: f64| Keyframe {
+        frame,
+        camera: Camera { look_from: DVec3::new(x, x * x, 9.0), ..camera() },
+    };
+    let path = keyframed(vec![at(0, 0.0), at(10, 2.0), at(20, 2.0), at(30, 5.0)]);
+    for frame in 10..=20 {
+        assert_eq!(path.camera(frame).look_from, at(0, 2.0).camera.look_from, "{frame}");
+    }
+    assert_ne!(path.camera(21).look_from, path.camera(20).look_from);
+}
+
+#[test]
+fn a_view_widens_evenly_to_the_eye() {
+    let at = |frame, vfov_degrees: f64| Keyframe { frame, camera: Camera { vfov_degrees, ..camera() } };
+    let path = keyframed(vec![at(0, 10.0), at(2, 90.0)]);
+    let height = |degrees: f64| (degrees.to_radians() / 2.0).tan();
+    let middle = height(path.camera(1).vfov_degrees);
+    assert!((middle * middle - height(10.0) * height(90.0)).abs() < 1e-12, "the geometric mean: {middle}");
+}
+
+#[test]
+fn names_have_at_least_the_digits_of_the_pattern() {
+    let names = FrameNames::of_pattern("shots/turn-##.png".as_ref()).unwrap();
+    let shown = [0, 7, 123].map(|frame| names.path(frame).display().to_string());
+    assert_eq!(shown, ["shots/turn-00.png", "shots/turn-07.png", "shots/turn-123.png"]);
+    assert_eq!(FrameNames::in_directory("a".as_ref()).path(42), std::path::Path::new("a/frame-0042.png"));
+    for pattern in ["turn.png", "turn-#-#.png", "#/turn.png"] {
+        assert_eq!(FrameNames::of_pattern(pattern.as_ref()), None, "{pattern}");
+    }
+}

@@ -1,0 +1,68 @@
+//! Animations that make no sense.
+
+use super::common::{SCENE, names, run};
+
+/// Exit code 2, a message with all of `parts`, and no new file.
+fn refused(arguments: &[&str], parts: &[&str]) {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
+    let output = run(directory.path(), arguments);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+    for part in parts {
+        assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
+    }
+    assert_eq!(names(directory.path()), ["scene.toml"], "{arguments:?} left something behind");
+}
+
+#[test]
+fn ranges_turns_and_rates_have_limits() {
+    for range in ["5..5", "6..5", "0..100001", "-1..5", "7", "a..b"] {
+        refused(
+            &["--batch", "--turntable", "--frames", range, "--out", "d"],
+            &[range, "100000, such as 0..120"],
+        );
+    }
+    for turn in ["0", "1", "-5", "100001", "0deg", "181deg", "nandeg", "x"] {
+        refused(&["--batch", &format!("--turntable={turn}"), "--out", "d"], &[turn, "such as 3deg or -3deg"]);
+    }
+    for rate in ["0", "-1", "29.97", "30/0", "70000"] {
+        refused(&["--batch", "--turntable", "--fps", rate, "--out", "a.png"], &[rate, "30000/1001"]);
+    }
+}
+
+#[test]
+fn a_camera_must_move_and_be_valid() {
+    refused(&["--batch", "--frames", "0..3", "--out", "d"], &["--turntable", "[[keyframes]]"]);
+    refused(&["--batch", "--turntable=3deg", "--out", "d"], &["--frames", "A..B"]);
+    let scene = ["--batch", "--scene", "scene.toml", "--frames", "0..6", "--out", "d"];
+    refused(&[&scene[..], &["--vfov", "20"]].concat(), &["--vfov", "use --turntable"]);
+    let far = ["--batch", "--turntable", "--look-from", "0,0,9e18", "--look-at", "0,0,-9e18", "--out", "d"];
+    refused(&far, &["frame 1"]);
+}
+
+#[test]
+fn an_animation_is_not_a_film() {
+    let base = ["--batch", "--turntable", "--frames", "0..2"];
+    let with = |more: &[&str], parts: &[&str]| refused(&[&base[..], more].concat(), parts);
+    with(&[], &["--frames needs --out"]);
+    with(&["--out", "a.exr"], &["a.exr", "no film"]);
+    with(&["--out", "a.mp4"], &["a.mp4", "turn-####.png"]);
+    with(&["--out", "a-##.ppm"], &["end in .png"]);
+    with(&["--out", "a-#-#.png"], &["single row of #"]);
+    with(&["--out", "d", "--fps", "30"], &["--fps needs --out FILE.png"]);
+    with(&["--out", "a.png", "--json", "a.png"], &["the same file"]);
+    for (flag, value) in [
+        ("--resume", "film.exr"),
+        ("--checkpoint", "film.exr"),
+        ("--time-limit", "3"),
+        ("--noise-target", "0.1"),
+        ("--sample-range", "0..4"),
+        ("--save-scene", "other.toml"),
+        ("--stage", "all"),
+    ] {
+        with(&["--out", "d", flag, value], &["--frames cannot be used with", flag]);
+    }
+    refused(&["--frames", "0..2", "--turntable", "--out", "d"], &["--frames needs --batch"]);
+    refused(&["--batch", "--fps", "30"], &["--fps needs --frames"]);
+}

@@ -1,0 +1,51 @@
+//! Keyframes of scene files.
+
+use super::common::SCENE;
+use glam::DVec3;
+use weekender::recipe::Recipe;
+use weekender::recipe::file::{parse, to_picture_toml, to_toml};
+
+fn with(before: &str, after: &str) -> Result<Recipe, String> {
+    assert!(SCENE.contains(before));
+    parse(&SCENE.replacen(before, after, 1), "scene.toml").map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_keyframe_takes_what_it_leaves_out_from_the_camera() {
+    let recipe = parse(SCENE, "scene").unwrap();
+    let [first, second, third] = recipe.keyframes.as_slice() else { panic!("{recipe:?}") };
+    assert_eq!((first.frame, first.camera), (0, recipe.camera));
+    assert_eq!((second.frame, second.camera.vfov_degrees), (2, 60.0));
+    assert_eq!(second.camera.look_from, DVec3::new(3.0, 1.0, 3.0));
+    assert_eq!((third.camera.vfov_degrees, third.camera.focus_distance), (40.0, Some(3.0)));
+}
+
+#[test]
+fn keyframes_are_written_and_read_back_to_the_bit() {
+    let mut recipe = parse(SCENE, "scene").unwrap();
+    recipe.keyframes[1].camera.look_at = DVec3::new(0.1, 1.0 / 3.0, -1e-18);
+    // A keyframe without a focus distance focuses on look_at, whatever the camera does.
+    recipe.camera.focus_distance = Some(7.0);
+    for text in [to_toml(&recipe), to_picture_toml(&recipe)] {
+        assert_eq!(parse(&text, "scene").unwrap(), recipe);
+    }
+}
+
+#[test]
+fn wrong_keyframes_are_refused_with_their_place() {
+    for (before, after, parts) in [
+        ("frame = 2", "frame = 0", ["scene.toml:10:1", "frame is 0, but the keyframe before it has 0"]),
+        ("frame = 5", "frame = 1", ["scene.toml:15:1", "list keyframes by rising frame number"]),
+        ("frame = 2", "frame = -1", ["scene.toml:10:1", "within 0 and 99999"]),
+        ("frame = 2", "frame = 100000", ["scene.toml:10:1", "frame is 100000"]),
+        ("frame = 2", "frame = 2\nzoom = 3", ["scene.toml:11:1", "unknown key `zoom`"]),
+        ("frame = 2\n", "", ["scene.toml:9:1", "missing key `frame`"]),
+        ("vfov_degrees = 60.0", "vfov_degrees = 0", ["scene.toml:12:1", "vfov_degrees is 0"]),
+        ("look_at = [0.0, 0.5, 0.0]", "look_at = [4.0, 2.0, 0.0]", ["scene.toml:17:1", "are both"]),
+    ] {
+        let message = with(before, after).unwrap_err();
+        for part in parts {
+            assert!(message.contains(part), "{part}: {message}");
+        }
+    }
+}
