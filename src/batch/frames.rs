@@ -37,10 +37,10 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     check_before(&options)?;
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut run = Run::new(&options, &interrupt);
-    let failure = run.render_all().err();
-    if matches!(failure, Some(Failure::Input(_))) {
-        return failure.map_or(Ok(ExitCode::SUCCESS), Err);
-    }
+    let failure = match run.render_all() {
+        Err(failure @ Failure::Input(_)) => return Err(failure),
+        outcome => outcome.err(),
+    };
     run.display.clear();
     let summary = run.summary();
     let printed = print_beside(options.json.as_ref(), &format!("{summary}\n"));

@@ -76,8 +76,8 @@ fn encode(
 }
 
 /// Writes the head of a PNG with its description.
-pub(super) fn begin<'a, W: Write>(
-    mut encoder: ::png::Encoder<'a, W>,
+pub(super) fn begin<W: Write>(
+    mut encoder: ::png::Encoder<'_, W>,
     description: &Description,
 ) -> io::Result<::png::Writer<W>> {
     // Readers keep the two kinds of text chunks apart, so all chunks are of one kind; otherwise their order would be

@@ -51,8 +51,9 @@ pub fn run(directory: &Path, arguments: &[&str]) -> Output {
 
 /// Renders frames, which must succeed, and returns the figures.
 pub fn render(directory: &Path, arguments: &[&str]) -> serde_json::Value {
-    let small = ["--batch", "--size", "24x14", "--samples", "4", "--threads", "2", "--json", "-"];
-    let output = run(directory, &[&small, arguments].concat());
+    let small = ["--batch", "--size", "24x14", "--threads", "2", "--json", "-"];
+    let samples = if arguments.contains(&"--samples") { &[][..] } else { &["--samples", "4"] };
+    let output = run(directory, &[&small, samples, arguments].concat());
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
