@@ -4,37 +4,17 @@ use super::Request;
 use super::backend;
 use super::error::CliError;
 use super::paths::Paths;
-use super::raw::{self, ProgressChoice, RawRender};
+use super::raw::{self, ProgressChoice, RawAnimation, RawRender};
 use super::sources;
 use super::values::JsonTarget;
-use crate::animation::{CameraPath, FRAME_LIMIT, FRAMES_PER_TURN, FrameNames, Turn};
+use crate::animation::{CameraPath, FrameNames, Turn};
 use crate::backends::BackendChoice;
 use crate::output::FrameRate;
 use crate::recipe::Recipe;
 use crate::render::RenderJob;
 use crate::stages::Stage;
-use clap::Args;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-
-/// The flags of animations.
-#[derive(Debug, Args)]
-pub(super) struct RawAnimation {
-    /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
-    /// file [default with --turntable: one turn]
-    #[arg(long, value_name = "A..B", value_parser = parse_frames, allow_hyphen_values = true,
-          help_heading = "Animation")]
-    pub frames: Option<Range<u32>>,
-    /// Let the camera circle around --look-at about --vup: so many frames a turn, or degrees a frame, such as 1.5deg or
-    /// -3deg [without a value: 120 frames]
-    #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
-          require_equals = true, default_missing_value = "120", help_heading = "Animation")]
-    pub turntable: Option<Turn>,
-    /// Frames per second of an animated PNG: a whole number or a fraction such as 30000/1001 [default: 30]
-    #[arg(long, value_name = "RATE", value_parser = parse_rate, allow_hyphen_values = true,
-          help_heading = "Animation")]
-    pub fps: Option<FrameRate>,
-}
 
 /// Options of `--batch --frames`.
 #[derive(Debug)]
@@ -213,39 +193,4 @@ fn places(out: &Path) -> Result<(FrameNames, Option<PathBuf>), CliError> {
             "but an animation is a directory of PNG files, a pattern such as turn-####.png, or an animated turn.png",
         ),
     }
-}
-
-fn parse_frames(text: &str) -> Result<Range<u32>, String> {
-    let parse = || {
-        let (start, end) = text.split_once("..")?;
-        Some(start.trim().parse().ok()?..end.trim().parse().ok()?)
-    };
-    parse().filter(|range: &Range<u32>| range.start < range.end && range.end <= FRAME_LIMIT).ok_or_else(
-        || format!("must be A..B with A below B and B at most {FRAME_LIMIT}, such as 0..{FRAMES_PER_TURN}"),
-    )
-}
-
-fn parse_turn(text: &str) -> Result<Turn, String> {
-    let degrees = || {
-        let degrees: f64 = text.strip_suffix("deg")?.trim_end().parse().ok()?;
-        (degrees != 0.0 && degrees.abs() <= 180.0).then_some(Turn::DegreesPerFrame(degrees))
-    };
-    let frames =
-        || text.parse().ok().filter(|frames| (2..=FRAME_LIMIT).contains(frames)).map(Turn::FramesPerTurn);
-    frames().or_else(degrees).ok_or_else(|| {
-        format!(
-            "must be 2 to {FRAME_LIMIT} frames a turn, such as {FRAMES_PER_TURN}, or up to 180 degrees a frame, such as 3deg or -3deg"
-        )
-    })
-}
-
-fn parse_rate(text: &str) -> Result<FrameRate, String> {
-    let number = |text: &str| text.trim().parse().ok().filter(|number| *number > 0);
-    let (frames, seconds) = text.split_once('/').unwrap_or((text, "1"));
-    number(frames).zip(number(seconds)).map(|(frames, seconds)| FrameRate { frames, seconds }).ok_or_else(
-        || {
-            "must be a whole number or a fraction of numbers from 1 to 65535, such as 30, 25/2 or 30000/1001"
-                .to_owned()
-        },
-    )
 }

@@ -1,12 +1,12 @@
 //! The flags for rendering as clap parses them, and those that subcommands share. The flags of each subcommand are in
 //! its own file.
 
-use super::frames::RawAnimation;
 use super::values::{
-    Level, Simd, parse_duration, parse_isa, parse_number, parse_rmse, parse_sample_range, parse_seconds,
-    parse_simd, parse_size, parse_vector,
+    Level, Simd, parse_duration, parse_frames, parse_isa, parse_number, parse_rate, parse_rmse,
+    parse_sample_range, parse_seconds, parse_simd, parse_size, parse_turn, parse_vector,
 };
-use crate::output::PpmForm;
+use crate::animation::Turn;
+use crate::output::{FrameRate, PpmForm};
 use crate::recipe::Recipe;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
 use crate::scene::VFOV_LIMITS_DEGREES;
@@ -72,7 +72,7 @@ pub(super) struct RawRender {
     /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
     /// 1h
     /// [default: 60s]
-    #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true,
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, parse_frames, parse_turn, parse_rate, allow_hyphen_values = true,
           help_heading = "Files")]
     pub every: Option<Duration>,
     /// Continue a film; without --scene and --stage, with its own scene
@@ -96,6 +96,25 @@ pub(super) struct RawRender {
     /// Show progress on standard error; auto: if it is a terminal
     #[arg(long, value_enum, default_value = "auto")]
     pub progress: ProgressChoice,
+}
+
+/// The flags of animations.
+#[derive(Debug, Args)]
+pub(super) struct RawAnimation {
+    /// Render frames A to B - 1 of an animation to --out; the camera moves by --turntable or by the keyframes of the scene
+    /// file [default with --turntable: one turn]
+    #[arg(long, value_name = "A..B", value_parser = parse_frames, allow_hyphen_values = true,
+          help_heading = "Animation")]
+    pub frames: Option<Range<u32>>,
+    /// Let the camera circle around --look-at about --vup: so many frames a turn, or degrees a frame, such as 1.5deg or
+    /// -3deg [without a value: 120 frames]
+    #[arg(long, value_name = "FRAMES|DEGREES", value_parser = parse_turn, num_args = 0..=1,
+          require_equals = true, default_missing_value = "120", help_heading = "Animation")]
+    pub turntable: Option<Turn>,
+    /// Frames per second of an animated PNG: a whole number or a fraction such as 30000/1001 [default: 30]
+    #[arg(long, value_name = "RATE", value_parser = parse_rate, allow_hyphen_values = true,
+          help_heading = "Animation")]
+    pub fps: Option<FrameRate>,
 }
 
 /// What renders; all commands that render a picture share these flags.

@@ -1,5 +1,7 @@
 //! Parses the values of flags. An error message says what is allowed; clap puts the value and the flag before it.
 
+use crate::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
+use crate::output::FrameRate;
 use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::render_cpu::Isa;
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
@@ -198,6 +200,41 @@ pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|share: &f64| (0.0..=1.0).contains(share))
         .ok_or_else(|| "must be from 0 to 1, such as 1e-4".to_owned())
+}
+
+pub(super) fn parse_frames(text: &str) -> Result<Range<u32>, String> {
+    let parse = || {
+        let (start, end) = text.split_once("..")?;
+        Some(start.trim().parse().ok()?..end.trim().parse().ok()?)
+    };
+    parse().filter(|range: &Range<u32>| range.start < range.end && range.end <= FRAME_LIMIT).ok_or_else(
+        || format!("must be A..B with A below B and B at most {FRAME_LIMIT}, such as 0..{FRAMES_PER_TURN}"),
+    )
+}
+
+pub(super) fn parse_turn(text: &str) -> Result<Turn, String> {
+    let degrees = || {
+        let degrees: f64 = text.strip_suffix("deg")?.trim_end().parse().ok()?;
+        (degrees != 0.0 && degrees.abs() <= 180.0).then_some(Turn::DegreesPerFrame(degrees))
+    };
+    let frames =
+        || text.parse().ok().filter(|frames| (2..=FRAME_LIMIT).contains(frames)).map(Turn::FramesPerTurn);
+    frames().or_else(degrees).ok_or_else(|| {
+        format!(
+            "must be 2 to {FRAME_LIMIT} frames a turn, such as {FRAMES_PER_TURN}, or up to 180 degrees a frame, such as 3deg or -3deg"
+        )
+    })
+}
+
+pub(super) fn parse_rate(text: &str) -> Result<FrameRate, String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|number| *number > 0);
+    let (frames, seconds) = text.split_once('/').unwrap_or((text, "1"));
+    number(frames).zip(number(seconds)).map(|(frames, seconds)| FrameRate { frames, seconds }).ok_or_else(
+        || {
+            "must be a whole number or a fraction of numbers from 1 to 65535, such as 30, 25/2 or 30000/1001"
+                .to_owned()
+        },
+    )
 }
 
 #[cfg(test)]
