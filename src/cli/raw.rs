@@ -72,7 +72,7 @@ pub(super) struct RawRender {
     /// Interval at which --checkpoint is written, the most that a power cut can cost: 0.1s to 30d, such as 30s, 5m or
     /// 1h
     /// [default: 60s]
-    #[arg(long, value_name = "DURATION", value_parser = parse_duration, parse_frames, parse_turn, parse_rate, allow_hyphen_values = true,
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true,
           help_heading = "Files")]
     pub every: Option<Duration>,
     /// Continue a film; without --scene and --stage, with its own scene
