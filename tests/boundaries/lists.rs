@@ -353,6 +353,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("spheres", &["model", "answers", "tracer"]),
     ("panels", &["model", "command", "facts", "widgets", "spheres"]),
     ("info", &["model", "command", "facts", "widgets", "menu"]),
+    ("first_steps", &["model", "command", "facts", "places", "theme"]),
     (
         "viewport",
         &[
@@ -378,6 +379,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "facts",
             "frame_log",
             "toasts",
+            "first_steps",
             "changes",
             "tracer",
             "layers",
