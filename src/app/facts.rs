@@ -91,17 +91,14 @@ impl Facts {
     /// The name of a command, with the file that it opens.
     pub fn name(&self, command: Command) -> String {
         let Some(path) = self.path(command) else { return command.name() };
-        let name =
-            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into());
-        // Files of the same name are told apart by their directories.
-        let is_alone =
-            self.model.remembered.recent.iter().filter(|other| other.file_name() == path.file_name()).count()
-                == 1;
-        let directory = path.parent().filter(|_| !is_alone);
-        directory.map_or_else(
-            || format!("Open {name}"),
-            |directory| format!("Open {name} in {}", directory.display()),
-        )
+        let name = path.file_name().unwrap_or(path.as_os_str()).display();
+        let is_same = |other: &&PathBuf| other.file_name() == path.file_name();
+        let is_alone = self.model.remembered.recent.iter().filter(is_same).count() == 1;
+        match path.parent() {
+            // Files of the same name are told apart by their directories.
+            Some(directory) if !is_alone => format!("Open {name} in {}", directory.display()),
+            _ => format!("Open {name}"),
+        }
     }
 
     /// Why a command is disabled, in words; `None` if it is enabled.

@@ -60,7 +60,7 @@ impl Card {
 }
 
 fn content(ui: &mut Ui, steps: &FirstSteps, facts: &Facts, commands: &mut Vec<Command>) {
-    ui.label(RichText::new("First steps").heading());
+    ui.label(RichText::new("First steps").heading().strong());
     let about = "Every picture of Ray Tracing in One Weekend, rendered while you watch.";
     ui.add(egui::Label::new(about).wrap());
     ui.add_space(4.0);
@@ -105,10 +105,7 @@ fn words(step: Step, facts: &Facts) -> String {
             let later = later(has_spheres, "red-sphere");
             format!("Click a sphere, then drag it or change its material{later}")
         }
-        Step::Leaf if facts.disabled_reason(Command::NextStage).is_some() => {
-            "Press Page Up for the stage before this one, the book's last".to_owned()
-        }
-        Step::Leaf => "Press Page Down for the next stage of the book".to_owned(),
+        Step::Leaf => "Press Page Up for the previous stage, Page Down for the next".to_owned(),
     }
 }
 
@@ -132,7 +129,9 @@ fn hint(ui: &mut Ui, is_done: bool, text: &str) {
         }
         let label = ui.add(egui::Label::new(RichText::new(text).color(colour)).wrap());
         if is_done {
-            label.accessible_name(format!("Done: {text}"));
+            // Where AccessKit keeps the text of a label.
+            let done = format!("Done: {text}");
+            label.ctx.accesskit_node_builder(label.id, |node| node.set_value(done));
         }
     });
 }
