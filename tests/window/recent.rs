@@ -16,7 +16,7 @@ fn saved(directory: &tempfile::TempDir, names: &[&str]) -> (Harness<'static, Win
     until(&mut harness, "a picture", has_samples(1));
     let paths: Vec<PathBuf> = names.iter().map(|name| directory.path().join(name)).collect();
     for path in &paths {
-        save(&mut harness, OutputFormat::from_path(path).unwrap(), path);
+        save(&mut harness, Command::Save(OutputFormat::from_path(path).unwrap()), path);
     }
     send(&mut harness, Command::Stage(&Stage::ALL[0]));
     (harness, paths)
@@ -91,7 +91,7 @@ fn the_picture_is_copied_as_it_is_saved() {
     let path = directory.path().join("same.png");
     let mut harness = open(&format!("{SMALL} --samples 16"));
     until(&mut harness, "the end", has_samples(16));
-    save(&mut harness, OutputFormat::Png, &path);
+    save(&mut harness, Command::Save(OutputFormat::Png), &path);
     // Neither the view nor the exposure is copied.
     send(&mut harness, Command::Brighter);
     harness.event(egui::Event::Copy);
