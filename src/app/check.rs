@@ -63,8 +63,8 @@ impl Check {
         }
     }
 
-    /// Takes findings. Returns why a picture could not be checked.
-    pub fn follow(&mut self) -> Option<String> {
+    /// Takes findings. Returns the picture that was checked, or why it could not be.
+    pub fn follow(&mut self) -> Option<Result<PathBuf, String>> {
         let checked = self.answers.take()?;
         if checked.number != self.number {
             return None;
@@ -73,10 +73,10 @@ impl Check {
         match checked.outcome {
             Ok(Found { words, size, views }) => {
                 let textures = views.map(|rgb8| Texture::new(size, &rgb8, None));
-                self.shown = Some(Shown { path: checked.path, words, size, textures });
-                None
+                self.shown = Some(Shown { path: checked.path.clone(), words, size, textures });
+                Some(Ok(checked.path))
             }
-            Err(reason) => Some(reason),
+            Err(reason) => Some(Err(reason)),
         }
     }
 

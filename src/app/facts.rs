@@ -9,6 +9,7 @@ use super::model::show::Show;
 use super::model::view::Mode;
 use crate::progressive::{Phase, Status};
 use crate::stages::{Shading, Stage};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A snapshot of the window at the start of the frame.
@@ -66,12 +67,37 @@ impl Facts {
             Command::Plot => remembered.has_plot,
             Command::Packet => remembered.has_packet,
             Command::Code => remembered.has_code,
+            Command::FirstSteps => self.model.has_first_steps,
             Command::FullScreen => self.model.is_full_screen,
             Command::Theme(theme) => remembered.theme == theme,
             Command::Device(device) => remembered.device == device,
             Command::Stage(stage) => document.stage() == Some(stage),
             Command::Extreme(case) => document.case() == Some(case),
             _ => false,
+        }
+    }
+
+    /// The commands for the files that were opened or saved last, newest first.
+    pub fn recent(&self) -> impl Iterator<Item = Command> {
+        (0..self.model.remembered.recent.len()).map(Command::Recent)
+    }
+
+    /// The file that a command opens, if it was opened or saved before.
+    pub fn path(&self, command: Command) -> Option<&Path> {
+        let Command::Recent(place) = command else { return None };
+        self.model.remembered.recent.get(place).map(PathBuf::as_path)
+    }
+
+    /// The name of a command, with the file that it opens.
+    pub fn name(&self, command: Command) -> String {
+        let Some(path) = self.path(command) else { return command.name() };
+        let name = path.file_name().unwrap_or(path.as_os_str()).display();
+        let is_same = |other: &&PathBuf| other.file_name() == path.file_name();
+        let is_alone = self.model.remembered.recent.iter().filter(is_same).count() == 1;
+        match path.parent() {
+            // Files of the same name are told apart by their directories.
+            Some(directory) if !is_alone => format!("Open {name} in {}", directory.display()),
+            _ => format!("Open {name}"),
         }
     }
 

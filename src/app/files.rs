@@ -11,7 +11,7 @@ use crate::progressive::{FilmIdentity, ReferenceMeans};
 use crate::recipe::file;
 use crate::render::RenderJob;
 use crate::saved::{self, OpenError, Opened, SavedFilm};
-use eframe::egui::Context;
+use eframe::egui::{ColorImage, Context};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -45,6 +45,8 @@ pub struct Files {
     pub opened: Answers<Result<Opened, NotOpened>>,
     /// Films to resume.
     pub resumed: Answers<Result<Resumed, String>>,
+    /// Pictures for the clipboard, and their samples per pixel.
+    pub copied: Answers<(ColorImage, u64)>,
     /// Films to compare with.
     pub references: Answers<Result<(PathBuf, ReferenceMeans), String>>,
 }
@@ -75,6 +77,16 @@ impl Files {
             } else {
                 Err(format!("{} does not end in {}", path.display(), format.ending()))
             });
+        });
+    }
+
+    /// Resolves the film of `document` as it is saved with 8 bits, at the next end of a pass.
+    pub fn copy(&self, context: &Context, document: &Document, main: &Tracer) {
+        let transfer = document.rules().transfer;
+        let answer = self.copied.answer(context);
+        main.inspect(move |film| {
+            let size = [film.width(), film.height()].map(|pixels| pixels as usize);
+            answer.give((ColorImage::from_rgb(size, &film.to_rgb8(transfer)), film.sample_count()));
         });
     }
 

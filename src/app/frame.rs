@@ -3,6 +3,7 @@
 use super::frame_log::FrameTimes;
 use super::input::{self, Keyboard};
 use super::model::Model;
+use super::model::first_steps::Step;
 use super::model::show::Show;
 use super::places::Place;
 use super::tracer::{Shown, Want};
@@ -96,12 +97,13 @@ impl Window {
         for path in input::dropped(context) {
             self.files.open(context, path);
         }
-        let Model { view, selected, is_full_screen, .. } = &self.model;
+        let Model { view, selected, is_full_screen, has_first_steps, .. } = &self.model;
         let keyboard = Keyboard {
             had_focus: self.had_focus,
             is_other_view: view.mode().is_some() || view.show() != Show::Picture,
             has_selection: selected.is_some(),
             is_full_screen: *is_full_screen,
+            has_first_steps: *has_first_steps,
         };
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
         let before = self.model.document.camera;
@@ -158,6 +160,7 @@ impl Window {
             code,
             commands,
             spheres,
+            is_new,
             ..
         } = self;
         let selected = spheres.selected(model);
@@ -201,7 +204,13 @@ impl Window {
                     let help = "The window has no room for it at the right; it follows the controls";
                     let is_asked =
                         has_info_below && ui.button("Stage and pixel: below").on_hover_text(help).clicked();
-                    panels::ui(ui, (document, selected), remembered, &facts, (&mut edits, commands));
+                    panels::ui(
+                        ui,
+                        (document, selected),
+                        remembered,
+                        (&facts, *is_new),
+                        (&mut edits, commands),
+                    );
                     if is_asked {
                         ui.scroll_to_cursor(Some(egui::Align::Min));
                     }
@@ -251,6 +260,9 @@ impl Window {
         if touch.is_move {
             self.stop_at_surfaces(&before);
         }
+        if touch.is_orbit && facts.no_rays().is_none() {
+            self.note_step(Step::Orbit);
+        }
         if touch.is_move || touch.edit.is_some() {
             self.changes.note_move();
         }
@@ -259,6 +271,7 @@ impl Window {
         }
         edits.into_iter().chain(touch.edit).for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
+            self.first_steps.ui(ui, room, &facts, &mut self.commands);
             self.toasts.ui(ui, room);
         }
         if let Some(text) = widgets::take_told(ui.ctx()) {
@@ -307,6 +320,10 @@ impl Window {
             && let Some(named) = self.pending_save.take()
         {
             self.files.save(context, (document, &self.main), self.seconds_before, named);
+        }
+        if self.pending_copy && self.main.has_samples(document) {
+            self.pending_copy = false;
+            self.files.copy(context, document, &self.main);
         }
         if let Some(words) = self.spheres.told(document, &self.main) {
             self.toasts.good(words);

@@ -24,6 +24,8 @@ pub struct Keyboard {
     pub has_selection: bool,
     /// The window is in full-screen mode.
     pub is_full_screen: bool,
+    /// The card with the first steps is shown.
+    pub has_first_steps: bool,
 }
 
 /// Turns keys into commands. Returns whether held keys may move the camera.
@@ -41,8 +43,11 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
             continue;
         }
         // In a long frame a key can have been pressed several times.
-        let presses =
+        let mut presses =
             context.input_mut(|input| input.count_and_consume_key(shortcut.modifiers, shortcut.logical_key));
+        if command == Command::CopyPicture {
+            presses += context.input_mut(take_copies);
+        }
         if presses > 0 {
             if command == Command::Panels {
                 context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::None));
@@ -65,9 +70,11 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     if also(Key::Backspace) {
         commands.push(Command::DeleteSphere);
     }
-    // Escape first leaves a control, then deselects, then leaves a comparison or another view, then full-screen mode.
+    // Escape first leaves a control, then closes the first steps, then deselects, then leaves a comparison or another view, then full-screen mode.
     if !keyboard.had_focus && also(Key::Escape) {
-        if keyboard.has_selection {
+        if keyboard.has_first_steps {
+            commands.push(Command::FirstSteps);
+        } else if keyboard.has_selection {
             commands.push(Command::Deselect);
         } else if keyboard.is_other_view {
             commands.push(Command::Show(Show::Picture));
@@ -76,6 +83,13 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
         }
     }
     true
+}
+
+/// Takes the events that the window system sends instead of Ctrl+C, and returns how many there were.
+fn take_copies(input: &mut egui::InputState) -> usize {
+    let before = input.events.len();
+    input.events.retain(|event| !matches!(event, egui::Event::Copy));
+    before - input.events.len()
 }
 
 /// Moves the camera while keys are held. Returns whether it moved.

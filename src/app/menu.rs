@@ -65,17 +65,36 @@ fn menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
                     }
                     last = Some(section);
                     item(ui, facts, commands, command);
+                    if command == Command::Open {
+                        recent(ui, facts, commands);
+                    }
                 }
             });
         });
     }
 }
 
+/// The menu of the files that were opened or saved last.
+fn recent(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    let is_empty = facts.recent().next().is_none();
+    let menu = ui.add_enabled_ui(!is_empty, |ui| {
+        ui.menu_button(format!("{ROOM_FOR_CHECK}Open recent"), |ui| {
+            ui.set_width(MENU_WIDTH);
+            for command in facts.recent() {
+                let place = facts.path(command).map(|path| path.display().to_string()).unwrap_or_default();
+                item(ui, facts, commands, command).on_hover_text(place);
+            }
+        })
+    });
+    let response = menu.inner.response.accessible_name("Open recent");
+    response.on_disabled_hover_text("No file has been opened or saved yet");
+}
+
 /// The section of a command. Commands with the same number are grouped together.
 fn section(command: Command) -> u8 {
     match command {
         Command::Save(_) | Command::SaveScene => 1,
-        Command::CopyCommand => 2,
+        Command::CopyPicture | Command::CopyCommand => 2,
         Command::LoadReference => 3,
         Command::Quit => 4,
         Command::Home | Command::ResetAll => 1,
@@ -148,9 +167,9 @@ const ROOM_FOR_CHECK: &str = "      ";
 pub fn item(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command) -> egui::Response {
     let disabled_reason = facts.disabled_reason(command);
     let is_on = facts.is_on(command);
-    let button = line(ui, command, format!("{ROOM_FOR_CHECK}{}", command.name()), false);
+    let button = line(ui, command, format!("{ROOM_FOR_CHECK}{}", facts.name(command)), false);
     let mut response = ui.add_enabled(disabled_reason.is_none(), button).on_hover_text(command.help());
-    response = response.accessible_name(command.name());
+    response = response.accessible_name(facts.name(command));
     if is_on {
         let middle = response.rect.left_center() + egui::vec2(12.0, 0.0);
         let mark = [[-4.0, 0.0], [-1.0, 3.0], [4.5, -4.0]].map(|[x, y]| middle + egui::vec2(x, y));

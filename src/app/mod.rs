@@ -14,6 +14,7 @@ mod command;
 mod dialogs;
 mod facts;
 mod files;
+mod first_steps;
 mod frame;
 mod frame_log;
 mod identity;

@@ -3,7 +3,9 @@
 use super::command::Command;
 use super::dialogs::{Dialog, Palette, PathBox, Purpose};
 use super::facts::neighbour;
+use super::model::Model;
 use super::model::device::{self, Device};
+use super::model::first_steps::Step;
 use super::model::origin::{Origin, Source};
 use super::model::remembered::Bookmark;
 use super::model::show::Show;
@@ -36,10 +38,12 @@ impl Window {
         }
         match command {
             Command::Open => self.ask_path(Purpose::Open),
+            Command::Recent(place) => self.open_recent(context, place),
             Command::Save(format) => self.ask_path(Purpose::Save(format)),
             Command::SaveScene => self.ask_path(Purpose::SaveScene),
             Command::LoadReference => self.ask_path(Purpose::ReferenceFilm),
             Command::SavePlot => self.ask_path(Purpose::SavePlot),
+            Command::CopyPicture => self.pending_copy = true,
             Command::CopyCommand => self.copy_command(context),
             Command::CopyPlot => {
                 context.copy_text(plot::csv(&self.main.status().history));
@@ -99,7 +103,7 @@ impl Window {
             Command::Controls | Command::Info | Command::Plot | Command::Packet | Command::Code => {
                 self.toggle_panel(command)
             }
-            Command::NextPanel => self.panel = places::next(context, self.panel, &self.model.remembered),
+            Command::NextPanel => self.panel = places::next(context, self.panel, &self.model),
             Command::ListPaths => {
                 if let Some(pixel) = self.inspector.hovered() {
                     self.paths.list(&self.model.document, pixel, context);
@@ -130,11 +134,13 @@ impl Window {
             }
             Command::Device(device) => self.model.remembered.device = device,
             Command::PreviousStage => {
+                self.note_step(Step::Leaf);
                 if let Some(stage) = neighbour(self.document(), false) {
                     self.show_origin(Origin::of_stage(stage));
                 }
             }
             Command::NextStage => {
+                self.note_step(Step::Leaf);
                 if let Some(stage) = neighbour(self.document(), true) {
                     self.show_origin(Origin::of_stage(stage));
                 }
@@ -149,6 +155,7 @@ impl Window {
             Command::Companion => self.open_companion(context),
             Command::Palette => self.dialogs.open(Dialog::Palette(Palette::typed(context))),
             Command::Help => self.dialogs.open(Dialog::Help),
+            Command::FirstSteps => self.toggle_first_steps(),
         }
     }
 
@@ -200,6 +207,36 @@ impl Window {
         // While all panels are hidden, show the requested one.
         *panel = !*panel || !remembered.has_panels;
         remembered.has_panels = true;
+    }
+
+    /// Shows the card with the first steps, or closes it for good.
+    fn toggle_first_steps(&mut self) {
+        let Model { has_first_steps, remembered, .. } = &mut self.model;
+        *has_first_steps = !*has_first_steps;
+        if *has_first_steps {
+            remembered.first_steps.forget();
+        } else {
+            remembered.first_steps.is_over = true;
+        }
+    }
+
+    /// Ticks a step off while the card is shown.
+    pub(super) fn note_step(&mut self, step: Step) {
+        if self.model.has_first_steps {
+            self.model.remembered.first_steps.note(step);
+        }
+    }
+
+    /// Opens a file of the list, or drops it from there if it is gone.
+    fn open_recent(&mut self, context: &egui::Context, place: usize) {
+        let recent = &mut self.model.remembered.recent;
+        let Some(path) = recent.get(place).cloned() else { return };
+        if path.exists() {
+            self.files.open(context, path);
+        } else {
+            recent.remove(place);
+            self.toasts.bad(format!("{} is no longer there; the list drops it", path.display()));
+        }
     }
 
     fn toggle_pause(&mut self, context: &egui::Context) {

@@ -2,6 +2,7 @@
 
 use super::command::Command;
 use super::model::edit::{Edit, first_difference};
+use super::model::first_steps::Step;
 use super::navigation;
 use super::spheres::grip::{new_body, to_copy};
 use super::spheres::neighbour;
@@ -54,8 +55,9 @@ impl Window {
 
     /// Edits the scene, or says why not.
     pub(super) fn edit(&mut self, edit: Edit) {
-        if let Err(reason) = self.spheres.edit(&mut self.model, edit) {
-            self.toasts.bad(reason);
+        match self.spheres.edit(&mut self.model, edit) {
+            Ok(()) => self.note_step(Step::Change),
+            Err(reason) => self.toasts.bad(reason),
         }
     }
 

@@ -1,11 +1,13 @@
 //! The parts of the window that the keyboard goes through.
 
-use super::model::remembered::Remembered;
+use super::model::Model;
 use eframe::egui::{self, Context, FocusDirection, Id, Rect, Sense, Ui};
 
 /// A part of the window with controls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Place {
+    /// The card with the first steps.
+    FirstSteps,
     /// The top bar.
     Menu,
     /// The left panel.
@@ -21,19 +23,29 @@ pub enum Place {
 }
 
 impl Place {
-    const ALL: [Place; 6] =
-        [Place::Menu, Place::Controls, Place::Info, Place::Plot, Place::Code, Place::Packet];
+    const ALL: [Place; 7] = [
+        Place::FirstSteps,
+        Place::Menu,
+        Place::Controls,
+        Place::Info,
+        Place::Plot,
+        Place::Code,
+        Place::Packet,
+    ];
 
-    fn is_shown(self, remembered: &Remembered) -> bool {
-        remembered.has_panels
-            && match self {
-                Place::Menu => true,
-                Place::Controls => remembered.has_controls,
-                Place::Info => remembered.has_info,
-                Place::Plot => remembered.has_plot,
-                Place::Code => remembered.has_code,
-                Place::Packet => remembered.has_packet,
-            }
+    fn is_shown(self, model: &Model) -> bool {
+        let remembered = &model.remembered;
+        self == Place::FirstSteps && model.has_first_steps
+            || remembered.has_panels
+                && match self {
+                    Place::FirstSteps => false,
+                    Place::Menu => true,
+                    Place::Controls => remembered.has_controls,
+                    Place::Info => remembered.has_info,
+                    Place::Plot => remembered.has_plot,
+                    Place::Code => remembered.has_code,
+                    Place::Packet => remembered.has_packet,
+                }
     }
 
     fn id(self) -> Id {
@@ -49,12 +61,12 @@ impl Place {
 
 /// Gives the keyboard focus to the first control of the part after `last`; after the last one, to the picture. Returns
 /// that part.
-pub fn next(context: &Context, last: Option<Place>, remembered: &Remembered) -> Option<Place> {
+pub fn next(context: &Context, last: Option<Place>, model: &Model) -> Option<Place> {
     // Escape leaves the panels.
     let last = last.filter(|_| context.memory(|memory| memory.focused().is_some()));
     let after =
         last.map_or(0, |last| Place::ALL.iter().position(|place| *place == last).map_or(0, |at| at + 1));
-    let place = Place::ALL.into_iter().skip(after).find(|place| place.is_shown(remembered));
+    let place = Place::ALL.into_iter().skip(after).find(|place| place.is_shown(model));
     context.memory_mut(|memory| match place {
         Some(place) => {
             memory.request_focus(place.id());

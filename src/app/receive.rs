@@ -20,6 +20,10 @@ impl Window {
             match outcome {
                 Ok(path) => {
                     self.remember_directory(&path);
+                    // A plot cannot be opened.
+                    if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("csv")) {
+                        self.model.remembered.note_recent(&path);
+                    }
                     self.toasts.good(format!("Saved {}", path.display()));
                 }
                 Err(reason) => self.toasts.bad(format!("Not saved: {reason}")),
@@ -34,8 +38,15 @@ impl Window {
                 Err(NotOpened { reason, .. }) => self.toasts.bad(format!("Not opened: {reason}")),
             }
         }
-        if let Some(reason) = self.check.follow() {
-            self.toasts.bad(format!("Not checked: {reason}"));
+        match self.check.follow() {
+            Some(Ok(path)) => self.model.remembered.note_recent(&path),
+            Some(Err(reason)) => self.toasts.bad(format!("Not checked: {reason}")),
+            None => {}
+        }
+        while let Some((picture, samples)) = self.files.copied.take() {
+            let [width, height] = picture.size;
+            self.toasts.good(format!("Copied the picture: {width}x{height}, {samples} samples per pixel"));
+            context.copy_image(picture);
         }
         while let Some(outcome) = self.files.resumed.take() {
             match outcome {
@@ -68,6 +79,7 @@ impl Window {
     fn show_opened(&mut self, opened: Opened) {
         let Opened { path, recipe, stage, content, .. } = opened;
         self.remember_directory(&path);
+        self.model.remembered.note_recent(&path);
         let origin = match content {
             Content::Scene => Origin::new(recipe.clone(), Source::File(path.clone())),
             _ => Origin::guess(&recipe, stage),
@@ -90,6 +102,7 @@ impl Window {
         let path = resumed.path.display();
         if self.document().has_same_film(&resumed.begun) {
             self.toasts.good(format!("Continuing {path}"));
+            self.model.remembered.note_recent(&resumed.path);
             self.adopt(resumed.film);
         } else {
             self.toasts.bad(format!(

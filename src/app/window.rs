@@ -7,6 +7,7 @@ use super::command::Command;
 use super::dialogs::Dialogs;
 use super::facts::Facts;
 use super::files::Files;
+use super::first_steps::Card;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::identity::Identity;
 use super::inspector::Inspector;
@@ -37,6 +38,7 @@ use crate::progressive::Status;
 use crate::recipe::Recipe;
 use crate::render::RenderJob;
 use crate::saved::SavedFilm;
+use crate::stages::Stage;
 use anyhow::{Context as _, Result};
 use eframe::egui;
 use std::path::PathBuf;
@@ -69,12 +71,15 @@ pub struct Window {
     pub(super) files: Files,
     pub(super) dialogs: Dialogs,
     pub(super) toasts: Toasts,
+    pub(super) first_steps: Card,
     /// Commands to be carried out.
     pub(super) commands: Vec<Command>,
     /// A film to be read once a frame can be woken, and its job.
     pub(super) pending_resume: Option<(PathBuf, RenderJob)>,
     /// A save that waits until the full-size film has samples.
     pub(super) pending_save: Option<(OutputFormat, PathBuf)>,
+    /// The picture is to be copied once the full-size film has samples.
+    pub(super) pending_copy: bool,
     /// A film to continue, until the tracer takes it.
     pub(super) pending_film: Option<Film>,
     /// Tracing time of the film's samples before this run, if known.
@@ -93,6 +98,8 @@ pub struct Window {
     /// The panel that has had the focus last.
     pub(super) panel: Option<Place>,
     pub(super) is_dressed: bool,
+    /// This is the user's first window, opened without a picture.
+    pub(super) is_new: bool,
     pub(super) frames_to_fit: u8,
     /// Samples per pixel at which the window panics, as an injected fault.
     pub(super) crashes_at: Option<u64>,
@@ -115,7 +122,17 @@ impl Window {
             .as_deref()
             .map(|path| FrameLog::create(path).with_context(|| format!("cannot write {}", path.display())))
             .transpose()?;
-        let document = document_of(&options);
+        let has_first_steps = !options.is_picture_given && !remembered.first_steps.is_over;
+        let document = match Stage::ALL.last().filter(|_| has_first_steps) {
+            Some(last) => {
+                let document = Document::new(Origin::of_stage(last));
+                Document { stop: options.stop.unwrap_or(document.stop), ..document }
+            }
+            None => document_of(&options),
+        };
+        if let Some(file) = &options.file {
+            remembered.note_recent(file);
+        }
         let pending_resume = match options.resume {
             Some(path) => Some((path, options.recipe.job()?)),
             None => None,
@@ -130,6 +147,7 @@ impl Window {
                 devices: DeviceOptions::of(&options.backend),
                 is_paused: false,
                 is_full_screen: false,
+                has_first_steps,
             },
             main: Tracer::new().context("cannot start the render thread")?,
             second: Second::default(),
@@ -149,9 +167,11 @@ impl Window {
             files: Files::default(),
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
+            first_steps: Card::default(),
             commands: Vec::new(),
             pending_resume,
             pending_save: None,
+            pending_copy: false,
             pending_film: None,
             seconds_before: Some(0.0),
             invalid: None,
@@ -163,6 +183,7 @@ impl Window {
             known_failures: (0, 0),
             panel: None,
             is_dressed: false,
+            is_new: is_first && has_first_steps,
             frames_to_fit: FRAMES_TO_FIT,
             crashes_at: options.crashes_at,
         })
@@ -356,7 +377,7 @@ fn document_of(options: &WindowOptions) -> Document {
         (None, Some(path), _) => Origin::new(unchanged.clone(), Source::File(path.clone())),
         (None, None, Some(builtin)) => {
             // A built-in scene that is also a stage is opened as that stage.
-            match crate::stages::Stage::find(&builtin.name) {
+            match Stage::find(&builtin.name) {
                 Ok(stage) if stage.recipe().scene == builtin.scene => Origin::of_stage(stage),
                 _ => Origin::new(builtin, Source::Builtin),
             }

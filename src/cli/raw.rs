@@ -168,7 +168,7 @@ pub(super) struct RawBackend {
 }
 
 /// What is rendered; rendering and comparing share these flags.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, PartialEq, Args)]
 pub(super) struct RawPicture {
     /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "stage", help_heading = "Picture")]
@@ -219,6 +219,11 @@ pub(super) struct RawPicture {
 }
 
 impl RawPicture {
+    /// Whether any of these flags is given.
+    pub fn is_given(&self) -> bool {
+        *self != RawPicture::default()
+    }
+
     /// Whether all stages are requested instead of one picture.
     pub fn is_every_stage(&self) -> bool {
         self.stage.as_deref() == Some("all")

@@ -51,6 +51,8 @@ pub struct WindowOptions {
     pub stage: Option<&'static Stage>,
     /// The scene file that it comes from.
     pub file: Option<PathBuf>,
+    /// Whether flags chose or changed the picture.
+    pub is_picture_given: bool,
     /// The backend.
     pub backend: BackendChoice,
     /// Whether flags chose the backend.
@@ -192,6 +194,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         stage: chosen.stage,
         file: file.map(PathBuf::from),
         backend,
+        is_picture_given: raw.picture.is_given() || raw.resume.is_some() || raw.estimate_error.is_some(),
         is_device_given: backend::is_given(&raw.backend),
         resume: raw.resume.clone(),
         draw_with: raw.draw_with,

@@ -355,6 +355,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("spheres", &["model", "answers", "tracer"]),
     ("panels", &["model", "command", "facts", "widgets", "spheres"]),
     ("info", &["model", "command", "facts", "widgets", "menu"]),
+    ("first_steps", &["model", "command", "facts", "places", "theme"]),
     (
         "viewport",
         &[
@@ -380,6 +381,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "facts",
             "frame_log",
             "toasts",
+            "first_steps",
             "changes",
             "tracer",
             "layers",

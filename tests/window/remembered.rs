@@ -6,7 +6,7 @@ use weekender::cli::{self, Request};
 
 /// What eframe stores in a file.
 #[derive(Default)]
-struct Storage(std::collections::HashMap<String, String>);
+pub struct Storage(std::collections::HashMap<String, String>);
 
 impl eframe::Storage for Storage {
     fn get_string(&self, key: &str) -> Option<String> {

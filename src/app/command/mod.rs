@@ -1,6 +1,9 @@
 //! All commands that the user can give. Menus, buttons, shortcuts, the palette and the help are generated from this.
 
+mod group;
 mod words;
+
+pub use group::Group;
 
 use super::model::device::Device;
 use super::model::remembered::Theme;
@@ -10,64 +13,19 @@ use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
-/// The menu that lists a command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
-    /// Opening, saving and copying.
-    File,
-    /// Undo, reset and bookmarks.
-    Edit,
-    /// Selecting and editing the spheres of the scene.
-    Spheres,
-    /// What the window shows.
-    View,
-    /// Pause, restart and devices.
-    Render,
-    /// The stages of the book.
-    Stage,
-    /// Scenes that are numerically difficult.
-    Extreme,
-    /// The book, the palette and the list of keys.
-    Help,
-}
-
-impl Group {
-    /// The menus, in order.
-    pub const ALL: [Group; 8] = [
-        Group::File,
-        Group::Edit,
-        Group::Spheres,
-        Group::View,
-        Group::Render,
-        Group::Stage,
-        Group::Extreme,
-        Group::Help,
-    ];
-
-    /// The title of the menu.
-    pub fn name(self) -> &'static str {
-        match self {
-            Group::File => "File",
-            Group::Edit => "Edit",
-            Group::Spheres => "Spheres",
-            Group::View => "View",
-            Group::Render => "Render",
-            Group::Stage => "Stage",
-            Group::Extreme => "Extreme scenes",
-            Group::Help => "Help",
-        }
-    }
-}
-
 /// A command that the user can give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// Open a picture, film or scene.
     Open,
+    /// Open this file of those opened or saved last, counted from 0.
+    Recent(usize),
     /// Save the picture, in this format.
     Save(OutputFormat),
     /// Save the scene file.
     SaveScene,
+    /// Copy the picture to the clipboard.
+    CopyPicture,
     /// Copy the command line to the clipboard.
     CopyCommand,
     /// Load a film to compare with.
@@ -178,6 +136,8 @@ pub enum Command {
     Palette,
     /// Show the keys and mouse actions.
     Help,
+    /// Show or close the card with the first steps.
+    FirstSteps,
 }
 
 const fn key(key: Key) -> Option<KeyboardShortcut> {
@@ -197,11 +157,11 @@ const VIEW_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 impl Command {
-    /// All commands, in the order of the menus.
+    /// All commands, in the order of the menus, except those for the files opened or saved last.
     pub fn all() -> Vec<Command> {
         use Command::*;
         let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
-        all.extend([SaveScene, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
+        all.extend([SaveScene, CopyPicture, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
         all.extend([AddSphere, DuplicateSphere, DeleteSphere, NextSphere, PreviousSphere, Deselect]);
         all.extend([FocusSphere, LookAtSphere, ResetSpheres]);
@@ -226,7 +186,7 @@ impl Command {
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
         all.push(BookArithmetic);
         all.extend(shown_cases().iter().map(Extreme));
-        all.extend([Palette, Help]);
+        all.extend([Palette, Help, FirstSteps]);
         all
     }
 
@@ -234,46 +194,6 @@ impl Command {
     pub fn opens_dialog(self) -> bool {
         use Command::{Help, LoadReference, Open, Palette, Save, SavePlot, SaveScene};
         matches!(self, Open | Save(_) | SaveScene | SavePlot | LoadReference | Palette | Help)
-    }
-
-    /// The menu that contains the command.
-    pub fn group(self) -> Group {
-        match self {
-            Command::Open
-            | Command::Save(_)
-            | Command::SaveScene
-            | Command::CopyCommand
-            | Command::LoadReference
-            | Command::CopyPlot
-            | Command::SavePlot
-            | Command::Quit => Group::File,
-            Command::Undo | Command::Redo | Command::Home | Command::ResetAll | Command::AddBookmark => {
-                Group::Edit
-            }
-            Command::AddSphere
-            | Command::DuplicateSphere
-            | Command::DeleteSphere
-            | Command::NextSphere
-            | Command::PreviousSphere
-            | Command::Deselect
-            | Command::FocusSphere
-            | Command::LookAtSphere
-            | Command::ResetSpheres => Group::Spheres,
-            Command::Pause
-            | Command::GoOn
-            | Command::Restart
-            | Command::SwitchDevice
-            | Command::Device(_) => Group::Render,
-            Command::PreviousStage
-            | Command::NextStage
-            | Command::Stage(_)
-            | Command::Code
-            | Command::Book
-            | Command::Companion => Group::Stage,
-            Command::BookArithmetic | Command::Extreme(_) => Group::Extreme,
-            Command::Palette | Command::Help => Group::Help,
-            _ => Group::View,
-        }
     }
 
     /// The shortcut as it is printed on a keyboard.
@@ -297,6 +217,7 @@ impl Command {
             Command::Save(OutputFormat::Png) => ctrl(Key::S),
             Command::Save(OutputFormat::P6) => ctrl_shift(Key::S),
             Command::Save(OutputFormat::Exr) => ctrl(Key::E),
+            Command::CopyPicture => ctrl(Key::C),
             Command::CopyCommand => ctrl_shift(Key::C),
             Command::Quit => ctrl(Key::Q),
             Command::Undo => ctrl(Key::Z),

@@ -8,10 +8,12 @@ impl Command {
     pub fn name(self) -> String {
         match self {
             Command::Open => "Open…".into(),
+            Command::Recent(place) => format!("Open recent {}", place + 1),
             Command::Save(OutputFormat::Png) => "Save as PNG…".into(),
             Command::Save(OutputFormat::P6) => "Save as PPM (P6)…".into(),
             Command::Save(OutputFormat::Exr) => "Save film (EXR checkpoint)…".into(),
             Command::SaveScene => "Save scene file…".into(),
+            Command::CopyPicture => "Copy picture".into(),
             Command::CopyCommand => "Copy as command".into(),
             Command::LoadReference => "Load reference film…".into(),
             Command::CopyPlot => "Copy error against time".into(),
@@ -67,6 +69,7 @@ impl Command {
             Command::Companion => "Read this in the companion".into(),
             Command::Palette => "Command palette".into(),
             Command::Help => "Keyboard and mouse".into(),
+            Command::FirstSteps => "First steps".into(),
         }
     }
 
@@ -83,7 +86,9 @@ impl Command {
             Command::Save(OutputFormat::Exr) => {
                 "Linear picture with the exact sums, which can be resumed and merged"
             }
+            Command::Recent(_) => "Open a file that was opened or saved before",
             Command::SaveScene => "Scene, camera and settings as text",
+            Command::CopyPicture => "To the clipboard at full size, with 8 bits per channel as it is saved",
             Command::CopyCommand => {
                 "The command line that renders this picture; on the CPU it is the same to the bit"
             }
@@ -146,6 +151,7 @@ impl Command {
             Command::Companion => "Opens the page that \"weekender companion --out companion\" has written",
             Command::Palette => "Find any command by its name",
             Command::Help => "All keys, and what the mouse does",
+            Command::FirstSteps => "A card over the picture with three things to try",
         }
     }
 }

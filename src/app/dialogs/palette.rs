@@ -13,17 +13,27 @@ pub struct Palette {
     chosen: usize,
 }
 
-/// Commands whose name or help contains every word of `text`. First comes the command with exactly this name, then
-/// those with all words in their name, then the others.
-fn matching(text: &str) -> Vec<Command> {
+/// Commands whose name or help contains every word of `text`, with their names. First comes the command with exactly this
+/// name, then those with all words in their name, then the others.
+fn matching(text: &str, commands: impl Iterator<Item = (Command, String)>) -> Vec<(Command, String)> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
     let has = |place: &str| words.iter().all(|word| place.to_lowercase().contains(word.as_str()));
-    let all = || Command::all().into_iter().filter(|command| *command != Command::Palette);
-    let is_it = |command: &Command| command.name() == text;
-    let by_name = |command: &Command| has(&command.name()) && !is_it(command);
-    let by_help =
-        |command: &Command| !has(&command.name()) && has(&format!("{} {}", command.name(), command.help()));
-    all().filter(is_it).chain(all().filter(by_name)).chain(all().filter(by_help)).collect()
+    let rank = |command: Command, name: &str| match name {
+        _ if name == text => Some(0),
+        _ if has(name) => Some(1),
+        _ => has(&format!("{name} {}", command.help())).then_some(2),
+    };
+    let mut found: Vec<_> = commands
+        .filter(|(command, _)| *command != Command::Palette)
+        .filter_map(|(command, name)| Some((rank(command, &name)?, command, name)))
+        .collect();
+    found.sort_by_key(|(rank, ..)| *rank);
+    found.into_iter().map(|(_, command, name)| (command, name)).collect()
+}
+
+/// All commands, and the files that were opened or saved last.
+fn listed(facts: &Facts) -> impl Iterator<Item = (Command, String)> {
+    Command::all().into_iter().chain(facts.recent()).map(|command| (command, facts.name(command)))
 }
 
 impl Palette {
@@ -61,7 +71,7 @@ impl Palette {
         if response.changed() {
             self.chosen = 0;
         }
-        let found = matching(&self.text);
+        let found = matching(&self.text, listed(facts));
         let last = found.len().saturating_sub(1);
         if down {
             self.chosen = (self.chosen + 1).min(last);
@@ -69,7 +79,7 @@ impl Palette {
         if up {
             self.chosen = self.chosen.saturating_sub(1);
         }
-        let mut run = enter.then(|| found.get(self.chosen).copied()).flatten();
+        let mut run = enter.then(|| found.get(self.chosen)).flatten().map(|(command, _)| *command);
         ui.add_space(6.0);
         let list =
             egui::ScrollArea::vertical().min_scrolled_height(height).max_height(height).auto_shrink(false);
@@ -77,9 +87,9 @@ impl Palette {
             if found.is_empty() {
                 ui.label(RichText::new("No command matches").color(ui.visuals().weak_text_color()));
             }
-            for (index, command) in found.iter().enumerate() {
+            for (index, (command, name)) in found.iter().enumerate() {
                 let disabled_reason = facts.disabled_reason(*command);
-                let button = line(ui, *command, command.name(), index == self.chosen);
+                let button = line(ui, *command, name.clone(), index == self.chosen);
                 let response =
                     ui.add_enabled(disabled_reason.is_none(), button).on_hover_text(command.help());
                 let response = response.on_disabled_hover_text(disabled_reason.unwrap_or_default());
@@ -106,18 +116,23 @@ mod tests {
     use super::*;
     use crate::stages::Stage;
 
+    fn found(text: &str) -> Vec<Command> {
+        let all = Command::all().into_iter().map(|command| (command, command.name()));
+        matching(text, all).into_iter().map(|(command, _)| command).collect()
+    }
+
     #[test]
     fn every_command_is_found_by_its_name() {
         for command in Command::all().into_iter().filter(|command| *command != Command::Palette) {
-            assert!(matching(&command.name()).contains(&command), "{command:?}");
+            assert!(found(&command.name()).contains(&command), "{command:?}");
         }
-        assert!(matching("xyzzy").is_empty());
+        assert!(found("xyzzy").is_empty());
     }
 
     #[test]
     fn names_come_before_help() {
-        assert_eq!(matching("undo").first(), Some(&Command::Undo));
+        assert_eq!(found("undo").first(), Some(&Command::Undo));
         let stage = Stage::find("glass-schlick").unwrap();
-        assert_eq!(matching("11.4").first(), Some(&Command::Stage(stage)));
+        assert_eq!(found("11.4").first(), Some(&Command::Stage(stage)));
     }
 }

@@ -6,6 +6,7 @@ pub mod command_line;
 pub mod device;
 pub mod document;
 pub mod edit;
+pub mod first_steps;
 pub mod further;
 pub mod origin;
 pub mod remembered;
@@ -36,6 +37,8 @@ pub struct Model {
     pub is_paused: bool,
     /// Whether the window is in full-screen mode.
     pub is_full_screen: bool,
+    /// Whether the card with the first steps is shown.
+    pub has_first_steps: bool,
 }
 
 impl Model {

@@ -1,10 +1,15 @@
 //! Settings that the window keeps from one run to the next.
 
 use super::device::{self, Device};
+use super::first_steps::FirstSteps;
 use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// How many files are remembered.
+pub const RECENT_LIMIT: usize = 8;
 
 /// The colour theme of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -87,7 +92,11 @@ pub struct Remembered {
     /// Saved cameras.
     pub bookmarks: Vec<Bookmark>,
     /// The directory of the last saved file.
-    pub directory: Option<std::path::PathBuf>,
+    pub directory: Option<PathBuf>,
+    /// The files that were opened or saved last, newest first.
+    pub recent: Vec<PathBuf>,
+    /// What the user has tried of the first steps.
+    pub first_steps: FirstSteps,
 }
 
 impl Default for Remembered {
@@ -105,6 +114,8 @@ impl Default for Remembered {
             threads: None,
             bookmarks: Vec::new(),
             directory: None,
+            recent: Vec::new(),
+            first_steps: FirstSteps::default(),
         }
     }
 }
@@ -114,6 +125,16 @@ impl Remembered {
     pub fn lanes_in_use(&self) -> usize {
         let best = Isa::available().into_iter().max().unwrap_or(Isa::Portable);
         self.lanes.unwrap_or_else(|| best.native_lanes())
+    }
+
+    /// Remembers a file that was opened or saved. A path that is not Unicode is not remembered: it could not be stored.
+    pub fn note_recent(&mut self, path: &Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.recent.retain(|recent| *recent != path);
+        if path.to_str().is_some() {
+            self.recent.insert(0, path);
+            self.recent.truncate(RECENT_LIMIT);
+        }
     }
 
     /// Replaces settings that are not available on this machine; they may come from another machine or version.
@@ -126,6 +147,7 @@ impl Remembered {
         }
         // A window that opens without any panel would confuse the user.
         self.has_panels = true;
+        self.recent.truncate(RECENT_LIMIT);
         self.bookmarks.retain(|bookmark| bookmark.camera().validate().is_ok());
         self
     }
@@ -148,5 +170,15 @@ mod tests {
         let mended = strange.mended();
         assert_eq!((mended.lanes, mended.threads, mended.bookmarks.len()), (None, None, 1));
         assert_eq!(mended.bookmarks[0].camera(), Camera::BOOK);
+    }
+
+    #[test]
+    fn the_newest_files_are_remembered_once() {
+        let mut remembered = Remembered::default();
+        for number in (0..10).chain([4]) {
+            remembered.note_recent(Path::new(&format!("/of/{number}.png")));
+        }
+        let expected = [4, 9, 8, 7, 6, 5, 3, 2].map(|number| PathBuf::from(format!("/of/{number}.png")));
+        assert_eq!(remembered.recent, expected);
     }
 }

@@ -17,12 +17,12 @@ use super::spheres::Selected;
 use eframe::egui::{self, RichText, Ui};
 use reset::Reset;
 
-/// Draws the groups.
+/// Draws the groups. For a new user those about rendering are folded at first.
 pub fn ui(
     ui: &mut Ui,
     (document, selected): (&mut Document, Option<&Selected>),
     remembered: &mut Remembered,
-    facts: &Facts,
+    (facts, is_new): (&Facts, bool),
     (edits, commands): (&mut Vec<Edit>, &mut Vec<Command>),
 ) {
     if let Some(reason) = &facts.invalid {
@@ -30,34 +30,34 @@ pub fn ui(
         ui.add(egui::Label::new(text).wrap());
         ui.add_space(4.0);
     }
-    group(ui, "Spheres", Some(&spheres::RESET), document, |ui, _| {
+    group(ui, ("Spheres", true), Some(&spheres::RESET), document, |ui, _| {
         spheres::ui(ui, selected, facts, edits, commands);
     });
-    group(ui, "Camera", Some(&camera::RESET), document, |ui, document| {
+    group(ui, ("Camera", true), Some(&camera::RESET), document, |ui, document| {
         camera::ui(ui, &mut document.camera, &mut remembered.bookmarks, facts, commands);
     });
-    group(ui, "Lens", Some(&lens::RESET), document, |ui, document| {
+    group(ui, ("Lens", true), Some(&lens::RESET), document, |ui, document| {
         lens::ui(ui, &mut document.camera, facts);
     });
-    group(ui, "Render", Some(&render::RESET), document, |ui, document| {
+    group(ui, ("Render", !is_new), Some(&render::RESET), document, |ui, document| {
         render::ui(ui, &mut document.settings, remembered, facts);
     });
-    group(ui, "Stop", Some(&stop::RESET), document, |ui, document| {
+    group(ui, ("Stop", !is_new), Some(&stop::RESET), document, |ui, document| {
         stop::ui(ui, &mut document.stop, facts);
     });
-    group(ui, "Output", None, document, |ui, _| output::ui(ui, commands));
+    group(ui, ("Output", !is_new), None, document, |ui, _| output::ui(ui, commands));
 }
 
-/// A collapsible group of controls. `reset` is `None` if the stage has no values for the group.
+/// A collapsible group of controls, at first open or folded. `reset` is `None` if the stage has no values for the group.
 fn group(
     ui: &mut Ui,
-    name: &str,
+    (name, is_open): (&str, bool),
     reset: Option<&Reset>,
     document: &mut Document,
     body: impl FnOnce(&mut Ui, &mut Document),
 ) {
     let id = ui.make_persistent_id(("group", name));
-    let state = egui::collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, true);
+    let state = egui::collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, is_open);
     state
         .show_header(ui, |ui| {
             ui.label(RichText::new(name).strong());

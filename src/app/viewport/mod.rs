@@ -55,6 +55,8 @@ pub struct Viewport {
 pub struct Touch {
     /// The user moved the camera.
     pub is_move: bool,
+    /// The user dragged the camera around the point looked at.
+    pub is_orbit: bool,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
@@ -192,6 +194,7 @@ impl Viewport {
         if moved != *camera {
             *camera = moved;
             touch.is_move = true;
+            touch.is_orbit = response.dragged_by(PointerButton::Primary);
         }
     }
 

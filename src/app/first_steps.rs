@@ -1,0 +1,137 @@
+//! A card in a corner of the picture: what the window is, and three things to try.
+
+use super::command::Command;
+use super::facts::Facts;
+use super::model::first_steps::{FirstSteps, Step};
+use super::places::Place;
+use super::theme;
+use crate::stages::Stage;
+use eframe::egui::{self, Align2, Button, Color32, Margin, Rect, RichText, Sense, Stroke, Ui, vec2};
+use std::time::{Duration, Instant};
+
+/// The largest width of the card, in points.
+const WIDTH: f32 = 292.0;
+
+/// The smallest distance between the card and the edge of the viewport, in points.
+const MARGIN: f32 = 12.0;
+
+/// For how long the card stays when everything has been done.
+const FAREWELL: Duration = Duration::from_secs(6);
+
+/// The card.
+#[derive(Default)]
+pub struct Card {
+    all_done: Option<Instant>,
+}
+
+impl Card {
+    /// Draws the card in the upper right corner of `over`.
+    pub fn ui(&mut self, ui: &Ui, over: Rect, facts: &Facts, commands: &mut Vec<Command>) {
+        if !facts.model.has_first_steps {
+            self.all_done = None;
+            return;
+        }
+        let steps = &facts.model.remembered.first_steps;
+        if steps.has_all() {
+            let left = FAREWELL.saturating_sub(self.all_done.get_or_insert_with(Instant::now).elapsed());
+            if left.is_zero() {
+                commands.push(Command::FirstSteps);
+                return;
+            }
+            ui.ctx().request_repaint_after(left);
+        }
+        let [width, height] = [over.width(), over.height()].map(|room| (room - 2.0 * MARGIN).max(80.0));
+        egui::Area::new(egui::Id::unique("first steps"))
+            .accessible_name("First steps")
+            .pivot(Align2::RIGHT_TOP)
+            .fixed_pos(over.right_top() + vec2(-MARGIN, MARGIN))
+            .constrain_to(over)
+            .show(ui.ctx(), |ui| {
+                let frame = theme::float_frame(ui).inner_margin(Margin::symmetric(16, 12)).corner_radius(8);
+                frame.shadow(ui.visuals().window_shadow).show(ui, |ui| {
+                    ui.set_width(width.min(WIDTH) - 34.0);
+                    egui::ScrollArea::vertical().max_height(height - 26.0).show(ui, |ui| {
+                        Place::FirstSteps.begin(ui);
+                        content(ui, steps, facts, commands);
+                    });
+                });
+            });
+    }
+}
+
+fn content(ui: &mut Ui, steps: &FirstSteps, facts: &Facts, commands: &mut Vec<Command>) {
+    ui.label(RichText::new("First steps").heading().strong());
+    let about = "Every picture of Ray Tracing in One Weekend, rendered while you watch.";
+    ui.add(egui::Label::new(about).wrap());
+    ui.add_space(4.0);
+    for step in Step::ALL {
+        hint(ui, steps.has(step), &words(step, facts));
+    }
+    if steps.has_all() {
+        let weak = ui.visuals().weak_text_color();
+        let bye = "That is all. Help > First steps shows this again.";
+        ui.add(egui::Label::new(RichText::new(bye).color(weak)).wrap());
+    }
+    ui.add_space(4.0);
+    ui.horizontal_wrapped(|ui| {
+        if let Some(first) = Stage::ALL.first().filter(|first| facts.document().stage() != Some(*first)) {
+            let label = format!("Start the book at {}", first.section);
+            let label = RichText::new(label).color(ui.visuals().selection.stroke.color);
+            let button = Button::new(label).fill(theme::accent(ui));
+            if ui.add(button).on_hover_text(first.what_is_new).clicked() {
+                commands.push(Command::Stage(first));
+            }
+        }
+        let close = ui.button("Close").on_hover_text("Escape does this too; the Help menu brings it back");
+        if close.accessible_name("Close the first steps").clicked() {
+            commands.push(Command::FirstSteps);
+        }
+    });
+}
+
+/// What to do for a step in the stage that is shown.
+fn words(step: Step, facts: &Facts) -> String {
+    let document = facts.document();
+    // The first stages have nothing to orbit or to click.
+    let later = |is_possible: bool, from: &str| {
+        let section = Stage::find(from).ok().filter(|_| !is_possible).map(|stage| stage.section);
+        section.map_or_else(String::new, |section| format!(" (from section {section} on)"))
+    };
+    let has_rays = facts.no_rays().is_none();
+    match step {
+        Step::Orbit => format!("Drag the picture to look from elsewhere{}", later(has_rays, "sky")),
+        Step::Change => {
+            let has_spheres = has_rays && !document.scene().spheres.is_empty();
+            let later = later(has_spheres, "red-sphere");
+            format!("Click a sphere, then drag it or change its material{later}")
+        }
+        Step::Leaf => "Press Page Up for the previous stage, Page Down for the next".to_owned(),
+    }
+}
+
+/// A line with a tick, or the place for one.
+fn hint(ui: &mut Ui, is_done: bool, text: &str) {
+    const RADIUS: f32 = 7.0;
+    let visuals = ui.visuals();
+    let (weak, tick) = (visuals.weak_text_color(), visuals.selection.stroke.color);
+    let (fill, edge, colour) = if is_done {
+        (theme::accent(ui), theme::accent(ui), weak)
+    } else {
+        (Color32::TRANSPARENT, weak, visuals.text_color())
+    };
+    ui.horizontal_top(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(2.0 * RADIUS + 2.0, 2.0 * RADIUS + 2.0), Sense::hover());
+        let painter = ui.painter();
+        painter.circle(rect.center(), RADIUS, fill, Stroke::new(1.0, edge));
+        if is_done {
+            let mark = [[-3.2, 0.2], [-0.9, 2.6], [3.4, -2.8]].map(|[x, y]| rect.center() + vec2(x, y));
+            painter.line(mark.to_vec(), Stroke::new(1.5, tick));
+        }
+        let label = ui.add(egui::Label::new(RichText::new(text).color(colour)).wrap());
+        if is_done {
+            // Where AccessKit keeps the text of a label.
+            let done = format!("Done: {text}");
+            label.ctx.accesskit_node_builder(label.id, |node| node.set_value(done));
+        }
+    });
+}

@@ -1,0 +1,158 @@
+//! The card that a new user sees.
+
+use crate::common::{control, drag_from, hold, middle, open, open_sized, opened, send, until, window};
+use crate::remembered::Storage;
+use eframe::egui::{Key, Rect, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use weekender::app::{Command, Window};
+use weekender::cli::{self, Request};
+
+const ABOUT: &str = "Every picture of Ray Tracing in One Weekend, rendered while you watch.";
+const STEPS: [&str; 3] = [
+    "Drag the picture to look from elsewhere",
+    "Click a sphere, then drag it or change its material",
+    "Press Page Up for the previous stage, Page Down for the next",
+];
+
+/// A control of each group that is folded for a new user.
+const FOLDED: [&str; 3] = ["Seed", "Time", "Save PNG"];
+
+/// The first window of a new user, with a small picture.
+fn first() -> Harness<'static, Window> {
+    let mut first = window("");
+    let settings = &mut first.document_mut().settings;
+    (settings.width, settings.height) = (64, 36);
+    opened(first)
+}
+
+fn has_card(harness: &Harness<'_, Window>) -> bool {
+    harness.query_by_label(ABOUT).is_some()
+}
+
+/// Which steps are ticked off.
+fn ticks(harness: &Harness<'_, Window>) -> [bool; 3] {
+    STEPS.map(|step| {
+        let has = |text: &str| harness.query_by_label(text).is_some();
+        let is_done = has(&format!("Done: {step}"));
+        assert!(is_done != has(step), "{step}");
+        is_done
+    })
+}
+
+#[test]
+fn the_first_window_shows_the_last_picture_and_a_card() {
+    let mut harness = first();
+    assert!(has_card(&harness));
+    assert_eq!(harness.state().document().stage().unwrap().id, "book");
+    let has = |name: &str| harness.query_all_by_label(name).next().is_some();
+    assert!(has("Field of view") && has("Defocus angle"), "camera and lens are open");
+    assert!(FOLDED.iter().all(|name| !has(name)), "render, stop and output are folded");
+    assert_eq!(ticks(&harness), [false; 3]);
+    harness.get_by_label("Start the book at 2.1").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().stage().unwrap().id, "ppm-tiny");
+    assert!(has_card(&harness), "the steps are still there");
+    assert!(harness.query_by_label("Start the book at 2.1").is_none(), "this is where it starts");
+    assert!(harness.query_by_label(&format!("{} (from section 5.2 on)", STEPS[1])).is_some());
+}
+
+#[test]
+fn who_asks_for_a_picture_sees_it_without_a_card() {
+    for arguments in ["--stage metal", "--scene book", "--size 32x18", "--vfov 30"] {
+        let harness = open(arguments);
+        assert!(!has_card(&harness), "{arguments}");
+        for name in FOLDED {
+            assert!(harness.query_all_by_label(name).next().is_some(), "{arguments}: {name} is folded");
+        }
+    }
+    assert_eq!(open("--size 32x18").state().document().name(), "three-spheres");
+    assert!(has_card(&open("--device cpu --threads 1")), "these say nothing about the picture");
+}
+
+#[test]
+fn each_step_is_ticked_off_once_it_is_done() {
+    let mut harness = first();
+    let at = middle(&harness);
+    harness.key_press(Key::W);
+    harness.run_steps(3);
+    assert_eq!(ticks(&harness), [false; 3], "flying is none of the steps");
+    hold(&mut harness, at, true);
+    hold(&mut harness, at, false);
+    harness.run_steps(3);
+    assert!(harness.state().selected().is_some());
+    assert_eq!(ticks(&harness), [false; 3], "a selected sphere has not changed yet");
+    drag_from(&mut harness, at, vec2(20.0, 0.0));
+    harness.run_steps(3);
+    assert!(harness.state().document().has_changed_scene());
+    assert_eq!(ticks(&harness), [false, true, false]);
+    let sky = harness.state().picture_rect().left_top() + vec2(20.0, 10.0);
+    drag_from(&mut harness, sky, vec2(40.0, 0.0));
+    harness.run_steps(3);
+    assert_eq!(ticks(&harness), [true, true, false]);
+    assert!(!harness.state_mut().remembered_mut().first_steps.is_over);
+    harness.key_press(Key::PageUp);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("That is all. Help > First steps shows this again.").is_some());
+    assert!(harness.state_mut().remembered_mut().first_steps.is_over);
+    until(&mut harness, "the card goes", |window| window.disabled_reason(Command::FirstSteps).is_none());
+    let begin = std::time::Instant::now();
+    while has_card(&harness) {
+        assert!(begin.elapsed().as_secs() < 60, "the card stays");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        harness.step();
+    }
+}
+
+#[test]
+fn a_closed_card_returns_only_when_asked() {
+    let mut harness = first();
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(!has_card(&harness));
+    let mut storage = Storage::default();
+    eframe::App::save(harness.state_mut(), &mut storage);
+    let Request::Window(options) = cli::parse(["weekender".into()]).unwrap() else { panic!() };
+    let mut again = opened(Window::new(*options, Some(&storage)).unwrap());
+    assert!(!has_card(&again));
+    assert_eq!(again.state().document().name(), "three-spheres");
+    control(&again, "Help").click();
+    again.run_steps(3);
+    again.get_by_label("First steps").click();
+    again.run_steps(3);
+    assert!(has_card(&again));
+    again.get_by_label("Close the first steps").click();
+    again.run_steps(3);
+    assert!(!has_card(&again));
+}
+
+#[test]
+fn what_was_done_is_forgotten_when_the_card_is_shown_again() {
+    let mut harness = first();
+    let at = middle(&harness);
+    drag_from(&mut harness, at, vec2(40.0, 0.0));
+    harness.run_steps(3);
+    assert_eq!(ticks(&harness), [true, false, false]);
+    send(&mut harness, Command::FirstSteps);
+    send(&mut harness, Command::FirstSteps);
+    harness.run_steps(3);
+    assert_eq!(ticks(&harness), [false; 3]);
+}
+
+/// The card is in the viewport, away from the middle of the picture, and the keyboard reaches it.
+#[test]
+fn the_card_leaves_the_middle_of_the_picture_free() {
+    for size in [[1280.0, 800.0], [800.0, 600.0]] {
+        let mut harness = open_sized("", size);
+        harness.run_steps(3);
+        let parts = [ABOUT, STEPS[0], STEPS[1], STEPS[2], "Start the book at 2.1", "Close the first steps"];
+        let card =
+            parts.map(|part| harness.get_by_label(part).rect()).into_iter().fold(Rect::NOTHING, Rect::union);
+        let (room, picture) = (harness.get_by_label("Picture").rect(), harness.state().picture_rect());
+        assert!(room.contains_rect(card.expand(8.0)), "{size:?}: {card:?} in {room:?}");
+        assert!(!card.expand(16.0).contains(picture.center()), "{size:?}: {card:?} over {picture:?}");
+        harness.key_press(Key::F6);
+        harness.run_steps(3);
+        assert!(harness.get_by_label("Start the book at 2.1").is_focused(), "{size:?}");
+    }
+}

@@ -1,0 +1,116 @@
+//! The files that were opened or saved last, and the picture on the clipboard.
+
+use crate::common::{SMALL, control, has_samples, open, save, send, until};
+use eframe::egui::{self, Key, Modifiers, OutputCommand};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use weekender::app::{Command, Window};
+use weekender::output::OutputFormat;
+use weekender::stages::Stage;
+
+/// A window whose picture was saved under these names, one after the other, and that then shows another stage.
+fn saved(directory: &tempfile::TempDir, names: &[&str]) -> (Harness<'static, Window>, Vec<PathBuf>) {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    let paths: Vec<PathBuf> = names.iter().map(|name| directory.path().join(name)).collect();
+    for path in &paths {
+        save(&mut harness, Command::Save(OutputFormat::from_path(path).unwrap()), path);
+    }
+    send(&mut harness, Command::Stage(&Stage::ALL[0]));
+    (harness, paths)
+}
+
+fn opens(harness: &mut Harness<'_, Window>, path: &std::path::Path) {
+    let told = format!("Opened {}", path.display());
+    until(harness, &told, |window| window.messages().contains(&told));
+    assert_eq!(harness.state().document().stage().unwrap().id, "glass-schlick");
+}
+
+#[test]
+fn files_are_opened_again_from_the_menu() {
+    let directory = tempfile::tempdir().unwrap();
+    let (mut harness, paths) = saved(&directory, &["one.png", "two.exr"]);
+    let recent = |harness: &mut Harness<'_, Window>| harness.state_mut().remembered_mut().recent.clone();
+    assert_eq!(recent(&mut harness), [paths[1].clone(), paths[0].clone()]);
+    control(&harness, "File").click();
+    harness.run_steps(3);
+    harness.get_by_label("Open recent").click();
+    harness.run_steps(3);
+    harness.get_by_label("Open one.png").click();
+    harness.run_steps(2);
+    opens(&mut harness, &paths[0]);
+    assert_eq!(recent(&mut harness), paths, "it is the newest now");
+}
+
+#[test]
+fn files_are_opened_again_from_the_palette() {
+    let directory = tempfile::tempdir().unwrap();
+    let (mut harness, paths) = saved(&directory, &["one.png", "two.png"]);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+    harness.run_steps(3);
+    harness.get_by_label("Command").type_text("one.png");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    assert_eq!(harness.state().performed(), Some(Command::Recent(1)));
+    opens(&mut harness, &paths[0]);
+}
+
+#[test]
+fn a_file_that_is_gone_is_dropped_from_the_list() {
+    let directory = tempfile::tempdir().unwrap();
+    let (mut harness, paths) = saved(&directory, &["one.png", "two.png"]);
+    std::fs::remove_file(&paths[1]).unwrap();
+    send(&mut harness, Command::Recent(0));
+    let told = format!("{} is no longer there; the list drops it", paths[1].display());
+    assert!(harness.state().messages().contains(&told), "{:?}", harness.state().messages());
+    assert_eq!(harness.state_mut().remembered_mut().recent, paths[..1]);
+    assert_eq!(harness.state().document().stage(), Some(&Stage::ALL[0]), "what was shown stays");
+}
+
+/// The picture that a command for the clipboard holds, after at most this many frames.
+fn copied(harness: &mut Harness<'_, Window>, patience: Duration) -> Option<egui::ColorImage> {
+    let begin = Instant::now();
+    while begin.elapsed() < patience {
+        for command in &harness.output().platform_output.commands {
+            if let OutputCommand::CopyImage(image) = command {
+                return Some(image.clone());
+            }
+        }
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+    None
+}
+
+#[test]
+fn the_picture_is_copied_as_it_is_saved() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("same.png");
+    let mut harness = open(&format!("{SMALL} --samples 16"));
+    until(&mut harness, "the end", has_samples(16));
+    save(&mut harness, Command::Save(OutputFormat::Png), &path);
+    // Neither the view nor the exposure is copied.
+    send(&mut harness, Command::Brighter);
+    harness.event(egui::Event::Copy);
+    harness.step();
+    let image = copied(&mut harness, Duration::from_secs(60)).expect("nothing was copied");
+    let told = "Copied the picture: 32x18, 16 samples per pixel";
+    assert!(harness.state().messages().iter().any(|text| text == told), "{:?}", harness.state().messages());
+    let mine: Vec<u8> = image.pixels.iter().flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()]).collect();
+    assert_eq!(image.size, [32, 18]);
+    assert!(mine == image::open(&path).unwrap().to_rgb8().into_raw(), "not what is saved");
+}
+
+#[test]
+fn in_a_text_field_the_copied_text_is_that_of_the_field() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+    harness.run_steps(3);
+    harness.event(egui::Event::Copy);
+    harness.step();
+    assert!(copied(&mut harness, Duration::from_millis(500)).is_none());
+}
