@@ -1,55 +1,6 @@
-//! The menus, and which command each of them lists.
+//! Which menu lists which command.
 
-use super::Command;
-
-/// The menu that lists a command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
-    /// Opening, saving and copying.
-    File,
-    /// Undo, reset and bookmarks.
-    Edit,
-    /// Selecting and editing the spheres of the scene.
-    Spheres,
-    /// What the window shows.
-    View,
-    /// Pause, restart and devices.
-    Render,
-    /// The stages of the book.
-    Stage,
-    /// Scenes that are numerically difficult.
-    Extreme,
-    /// The book, the palette and the list of keys.
-    Help,
-}
-
-impl Group {
-    /// The menus, in order.
-    pub const ALL: [Group; 8] = [
-        Group::File,
-        Group::Edit,
-        Group::Spheres,
-        Group::View,
-        Group::Render,
-        Group::Stage,
-        Group::Extreme,
-        Group::Help,
-    ];
-
-    /// The title of the menu.
-    pub fn name(self) -> &'static str {
-        match self {
-            Group::File => "File",
-            Group::Edit => "Edit",
-            Group::Spheres => "Spheres",
-            Group::View => "View",
-            Group::Render => "Render",
-            Group::Stage => "Stage",
-            Group::Extreme => "Extreme scenes",
-            Group::Help => "Help",
-        }
-    }
-}
+use super::{Command, Group};
 
 impl Command {
     /// The menu that contains the command.

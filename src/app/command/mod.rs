@@ -3,8 +3,6 @@
 mod group;
 mod words;
 
-pub use group::Group;
-
 use super::model::device::Device;
 use super::model::remembered::Theme;
 use super::model::show::Show;
@@ -12,6 +10,55 @@ use crate::output::OutputFormat;
 use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+/// The menu that lists a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Opening, saving and copying.
+    File,
+    /// Undo, reset and bookmarks.
+    Edit,
+    /// Selecting and editing the spheres of the scene.
+    Spheres,
+    /// What the window shows.
+    View,
+    /// Pause, restart and devices.
+    Render,
+    /// The stages of the book.
+    Stage,
+    /// Scenes that are numerically difficult.
+    Extreme,
+    /// The book, the palette and the list of keys.
+    Help,
+}
+
+impl Group {
+    /// The menus, in order.
+    pub const ALL: [Group; 8] = [
+        Group::File,
+        Group::Edit,
+        Group::Spheres,
+        Group::View,
+        Group::Render,
+        Group::Stage,
+        Group::Extreme,
+        Group::Help,
+    ];
+
+    /// The title of the menu.
+    pub fn name(self) -> &'static str {
+        match self {
+            Group::File => "File",
+            Group::Edit => "Edit",
+            Group::Spheres => "Spheres",
+            Group::View => "View",
+            Group::Render => "Render",
+            Group::Stage => "Stage",
+            Group::Extreme => "Extreme scenes",
+            Group::Help => "Help",
+        }
+    }
+}
 
 /// A command that the user can give.
 #[derive(Clone, Copy, Debug, PartialEq)]
