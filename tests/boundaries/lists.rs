@@ -407,14 +407,12 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("perform_spheres", &["model", "command", "navigation", "spheres", "window"]),
     ("receive", &["model", "command", "files", "window"]),
     ("rescue", &["window"]),
+    ("queries", &["model", "command", "window"]),
     (
-        "frame",
+        "layout",
         &[
             "model",
             "theme",
-            "frame_log",
-            "tracer",
-            "input",
             "places",
             "menu",
             "status_bar",
@@ -426,8 +424,10 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "window",
         ],
     ),
+    ("frame", &["model", "theme", "frame_log", "tracer", "input", "window"]),
     ("mod", &["model", "command", "theme", "window"]),
 ];
 
 /// Files that may use the whole window.
-pub const TOP: &[&str] = &["window", "perform", "perform_spheres", "receive", "rescue", "frame", "mod"];
+pub const TOP: &[&str] =
+    &["window", "queries", "perform", "perform_spheres", "receive", "rescue", "layout", "frame", "mod"];
