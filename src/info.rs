@@ -5,7 +5,7 @@ use crate::describe::{counted, seconds};
 use crate::failure::Failure;
 use crate::film::{CheckpointError, ErrorEstimate, FilmHead, checkpoint, key};
 use crate::memory;
-use crate::plan::Plan;
+use crate::plan::{AnyPlan, Frames, Plan, Samples, Work};
 use crate::recipe::{Recipe, file};
 use crate::saved::Saved;
 use crate::terminal::{print, write_json};
@@ -54,6 +54,7 @@ struct Info {
     program: Option<String>,
     film_version: Option<u32>,
     sample_version: Option<u32>,
+    frames: Option<String>,
     parts: Option<usize>,
     command: Option<String>,
     #[serde(skip)]
@@ -62,8 +63,11 @@ struct Info {
 
 impl Info {
     fn of(path: &Path) -> Result<Info, Failure> {
-        if Plan::is_at(path) {
-            return Ok(Info::of_plan(&Plan::load(path).map_err(Failure::input)?));
+        if AnyPlan::is_at(path) {
+            return Ok(match AnyPlan::load(path).map_err(Failure::input)? {
+                AnyPlan::Samples(plan) => Info::of_samples(&plan),
+                AnyPlan::Frames(plan) => Info::of_frames(&plan),
+            });
         }
         if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) {
             let recipe = file::load(path).map_err(Failure::input)?;
@@ -115,23 +119,39 @@ impl Info {
             program: None,
             film_version: None,
             sample_version: None,
+            frames: None,
             parts: None,
             command: None,
             error_words: None,
         }
     }
 
-    fn of_plan(plan: &Plan) -> Info {
-        let manifest = &plan.manifest;
-        let [start, end] = manifest.samples;
+    fn of_samples(plan: &Plan<Samples>) -> Info {
+        let [start, end] = plan.manifest.work.samples;
         Info {
-            stage: manifest.stage.clone(),
             samples_per_pixel: Some(end - start),
             sample_ranges: Some(format!("{start}..{end}")),
             halves: Some(if plan.job.settings().estimate_error { 2 } else { 1 }),
+            ..Info::of_plan(plan)
+        }
+    }
+
+    fn of_frames(plan: &Plan<Frames>) -> Info {
+        let [start, end] = plan.manifest.work.frames;
+        Info {
+            samples_per_pixel: Some(plan.recipe.samples_per_pixel),
+            frames: Some(format!("{start}..{end}")),
+            ..Info::of_plan(plan)
+        }
+    }
+
+    fn of_plan<W: Work>(plan: &Plan<W>) -> Info {
+        let manifest = &plan.manifest;
+        Info {
+            stage: manifest.stage.clone(),
             program: Some(manifest.program.clone()),
             sample_version: Some(manifest.sample_version),
-            parts: Some(manifest.parts.len()),
+            parts: Some(manifest.work.count()),
             command: Some(manifest.command.clone()),
             ..Info::new("plan", &plan.path, &plan.recipe)
         }
@@ -174,6 +194,9 @@ impl fmt::Display for Info {
             write!(f, "samples  {samples} per pixel")?;
             if let Some(ranges) = &self.sample_ranges {
                 write!(f, " ({ranges})")?;
+            }
+            if let Some(frames) = &self.frames {
+                write!(f, " of the frames {frames}")?;
             }
             if let Some(parts) = self.parts {
                 write!(f, " in {}", counted(parts as u64, "part"))?;

@@ -137,6 +137,11 @@ impl Interrupt {
         self.0.is_set.load(Ordering::Relaxed)
     }
 
+    /// Whether somebody at a keyboard has asked for the end, and can ask again.
+    pub fn is_by_hand(&self) -> bool {
+        self.0.arrived.hurries()
+    }
+
     /// The exit code of a program that a signal has ended in good order.
     pub fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.0.arrived.exit_code())

@@ -2,13 +2,15 @@
 
 use crate::scene::Camera;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Frames of a turn by default: four seconds at 30 frames a second.
 pub const FRAMES_PER_TURN: u32 = 120;
 
 /// The speed of a turntable. Seen from above, the camera circles counterclockwise.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Turn {
     /// Frames of a whole turn, at least 1.
     FramesPerTurn(u32),

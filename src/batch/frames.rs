@@ -1,18 +1,19 @@
 //! `--frames`: the frames of an animation. Each is written as soon as it is rendered, and one that is there and whole is
 //! kept, so an interrupted run is continued by the same command.
 
+use super::ended;
 use crate::backends;
 use crate::cli::{FramesOptions, JsonTarget};
-use crate::console;
-use crate::describe::{SOFTWARE, counted, describe, seconds};
+use crate::describe::{SOFTWARE, counted, describe, describe_animation, seconds};
 use crate::failure::Failure;
 use crate::files::check_writable;
-use crate::film::{Description, Film, key};
+use crate::film::{Film, key};
 use crate::interrupt::Interrupt;
 use crate::journal;
-use crate::output::{check_frame, read_description, write_animation, write_image};
+use crate::output::{write_animation, write_image};
 use crate::progressive::{Phase, Plan, Progressive, RenderRequest, Status, Stop};
-use crate::recipe::{Recipe, file};
+use crate::recipe::Recipe;
+use crate::saved::FrameState;
 use crate::terminal::{Display, print_beside, write_json};
 use anyhow::{Context, anyhow};
 use serde::Serialize;
@@ -45,16 +46,7 @@ pub fn render_frames(options: FramesOptions) -> Result<ExitCode, Failure> {
     let summary = run.summary();
     let printed = print_beside(options.json.as_ref(), &format!("{summary}\n"));
     let figures = options.json.as_ref().map_or(Ok(()), |target| write_json(&summary, target));
-    match (failure, printed.and(figures)) {
-        (Some(failure), _) => Err(failure),
-        (None, figures) if interrupt.is_set() => {
-            if let Err(error) = figures {
-                console::note(&format!("error: {error:#}"));
-            }
-            Ok(interrupt.exit_code())
-        }
-        (None, figures) => figures.map(|()| ExitCode::SUCCESS).map_err(Failure::Run),
-    }
+    ended(failure, printed.and(figures), &interrupt)
 }
 
 /// Checks for everything that could otherwise fail after rendering.
@@ -118,7 +110,7 @@ impl<'a> Run<'a> {
             }
             let recipe = self.recipe(frame);
             let path = self.options.names.path(frame);
-            if is_whole(&path, &recipe) {
+            if FrameState::of(&path, &recipe, SOFTWARE) == FrameState::Whole {
                 log::debug!("kept {}", path.display());
                 self.kept += 1;
                 continue;
@@ -144,8 +136,7 @@ impl<'a> Run<'a> {
 
     /// The picture of a frame.
     fn recipe(&self, frame: u32) -> Recipe {
-        let camera = self.options.path.camera(frame);
-        Recipe { camera, keyframes: Vec::new(), ..self.options.recipe.clone() }
+        self.options.recipe.at_frame(&self.options.path, frame)
     }
 
     /// Renders and writes a frame; `false` after a signal.
@@ -237,11 +228,7 @@ impl<'a> Run<'a> {
         self.display.announce(count as u64, || format!("writing {}", path.display()));
         let _writing = self.interrupt.while_writing(path.display().to_string());
         let recipe = &self.options.recipe;
-        let mut description = Description::new(&file::to_picture_toml(recipe));
-        description.set(key::SOFTWARE, SOFTWARE);
-        description.set(key::SCENE, &recipe.name);
-        description.set(key::SAMPLES, recipe.samples_per_pixel);
-        description.set(key::COMMAND, &self.options.command);
+        let description = describe_animation(recipe, &self.options.command);
         let size = [recipe.settings.width, recipe.settings.height];
         let first = self.options.frames.start;
         let files = (0..count).map(|index| self.options.names.path(first + index as u32));
@@ -275,17 +262,6 @@ impl<'a> Run<'a> {
             warnings: self.warnings.clone(),
         }
     }
-}
-
-/// Whether a file is the whole picture of this recipe, by this version of the program.
-fn is_whole(path: &Path, recipe: &Recipe) -> bool {
-    let Ok(found) = read_description(path) else { return false };
-    let wanted = Description::new(&file::to_picture_toml(recipe));
-    let samples = recipe.samples_per_pixel.to_string();
-    found.recipe() == wanted.recipe()
-        && found.get(key::SAMPLES) == Some(&samples)
-        && found.get(key::SOFTWARE) == Some(SOFTWARE)
-        && check_frame(path, [recipe.settings.width, recipe.settings.height]).is_ok()
 }
 
 /// The figures of an animation.

@@ -89,6 +89,15 @@ fn render_all(
         }
     }
     let figures = printed.and(write_figures(&options, summaries));
+    ended(failure, figures, &interrupt)
+}
+
+/// The end of a run. `figures` is the outcome of printing and writing its figures.
+fn ended(
+    failure: Option<Failure>,
+    figures: anyhow::Result<()>,
+    interrupt: &Interrupt,
+) -> Result<ExitCode, Failure> {
     match (failure, figures) {
         (Some(failure), _) => Err(failure),
         (None, figures) if interrupt.is_set() => {
@@ -241,10 +250,12 @@ impl Begun<'_> {
             }
             if self.interrupt.is_set() && !is_stopping {
                 is_stopping = true;
-                progress.say(
-                    "finishing the current samples and writing the files; press Ctrl-C again to exit at once \
-                     without writing",
-                );
+                let hint = if self.interrupt.is_by_hand() {
+                    "; press Ctrl-C again to exit at once without writing"
+                } else {
+                    ""
+                };
+                progress.say(&format!("finishing the current samples and writing the files{hint}"));
                 progressive.stop();
             }
             if let Some(words) = keeper.as_mut().and_then(|keeper| keeper.look(progressive, status)) {

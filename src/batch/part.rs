@@ -1,14 +1,14 @@
 //! `weekender render-part`: renders a part of a plan. The command can be repeated at any time: it goes on from the part's
-//! last checkpoint, and ends at once if the part is whole.
+//! last checkpoint or from the frames that are there, and ends at once if the part is whole.
 
 use super::files::Places;
-use super::{check_before, render_all};
-use crate::cli::{BatchOptions, PartOptions, RenderOptions};
+use super::{check_before, frames, render_all};
+use crate::cli::{BatchOptions, CHECKPOINT_INTERVAL, FramesOptions, PartOptions, RenderOptions};
 use crate::console;
 use crate::failure::Failure;
 use crate::film::CheckpointError;
 use crate::output::PpmForm;
-use crate::plan::{Part, Plan};
+use crate::plan::{AnyPlan, Frames, Part, Plan, Samples};
 use crate::progressive::{self, Stop};
 use crate::saved::{self, OpenError, SavedFilm};
 use crate::terminal::print_beside;
@@ -21,7 +21,36 @@ use std::process::ExitCode;
 /// # Errors
 /// [`Failure::Input`] if there is no such part, or its file is another film; otherwise those of a render.
 pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
-    let plan = Plan::load(&options.plan).map_err(Failure::input)?;
+    match AnyPlan::load(&options.plan).map_err(Failure::input)? {
+        AnyPlan::Samples(plan) => render_samples(&plan, options),
+        AnyPlan::Frames(plan) => render_frames_of(&plan, options),
+    }
+}
+
+fn render_frames_of(plan: &Plan<Frames>, options: PartOptions) -> Result<ExitCode, Failure> {
+    let part = plan.part(options.part).map_err(Failure::input)?;
+    if options.every.is_some() {
+        return Err(Failure::Input(anyhow!(
+            "--every is for films, but {} divides an animation, whose frames are kept one by one; leave it out",
+            plan.path.display()
+        )));
+    }
+    frames::render_frames(FramesOptions {
+        recipe: plan.recipe.clone(),
+        job: plan.job.clone(),
+        stage: plan.stage(),
+        path: plan.camera_path(),
+        frames: part.range(),
+        names: plan.names(),
+        animation: None,
+        backend: options.backend,
+        progress: options.progress,
+        json: options.json,
+        command: options.command,
+    })
+}
+
+fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode, Failure> {
     let part = plan.part(options.part).map_err(Failure::input)?;
     let path = plan.part_path(part);
     let render = RenderOptions {
@@ -35,7 +64,7 @@ pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
         },
         out: path.clone(),
         checkpoint: Some(path.clone()),
-        every: options.every,
+        every: options.every.unwrap_or(CHECKPOINT_INTERVAL),
         resume: Some(path.clone()),
         ppm: PpmForm::Binary,
         command: options.command.clone(),
@@ -52,7 +81,7 @@ pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
     check_before(&batch)?;
     // The places are noted before the film is read: another run may be writing it.
     let places: Vec<Places> = batch.renders.iter().map(Places::of).collect();
-    let found = find(&path, &plan, part)?;
+    let found = find(&path, plan, part)?;
     if let Some(found) = &found
         && part.missing(found.film.samples()) == 0
     {
@@ -67,7 +96,7 @@ pub fn render_part(options: PartOptions) -> Result<ExitCode, Failure> {
 }
 
 /// The film of the part, if there is one to go on with. A damaged one is put aside.
-fn find(path: &Path, plan: &Plan, part: &Part) -> Result<Option<SavedFilm>, Failure> {
+fn find(path: &Path, plan: &Plan<Samples>, part: &Part) -> Result<Option<SavedFilm>, Failure> {
     if path.symlink_metadata().is_err() {
         return Ok(None);
     }

@@ -1,12 +1,14 @@
-//! `weekender plan`: divides a picture into parts and makes the commands for them.
+//! `weekender plan`: divides a picture or an animation into parts and makes the commands for them.
 
-use crate::cli::{JsonTarget, PlanFormat, PlanOptions};
+use crate::cli::{JsonTarget, PlanFormat, PlanOptions, PlannedWork};
 use crate::console;
 use crate::describe::counted;
 use crate::failure::{Failure, output_failure};
 use crate::film::Film;
 use crate::memory;
-use crate::plan::{Commands, Division, Manifest, Plan, ScriptKind, divide, write_scripts};
+use crate::plan::{
+    Commands, Division, Frames, Manifest, Plan, Samples, ScriptKind, Work, divide, write_scripts,
+};
 use crate::shell;
 use crate::terminal::write_json;
 use anyhow::{Context, anyhow};
@@ -21,38 +23,58 @@ const USUAL_ARRAY: usize = 1001;
 /// # Errors
 /// [`Failure::Input`] if the plan cannot be written; [`Failure::Run`] if its commands cannot.
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
-    let division = divide(options.samples.clone(), options.parts)
-        .ok_or_else(|| Failure::input(anyhow!("{} parts need as many samples", options.parts)))?;
+    let too_few = || Failure::input(anyhow!("{} parts need as many samples or frames", options.parts));
+    match &options.work {
+        PlannedWork::Samples(samples) => {
+            let division = divide(samples.clone(), options.parts).ok_or_else(too_few)?;
+            let plan = written(options, Samples::new(samples, &division))?;
+            console::note(&about_samples(&plan, &division));
+            start(&plan, options)
+        }
+        PlannedWork::Frames { frames, turntable, rate } => {
+            let work = Frames::new(frames, *turntable, *rate, options.parts).ok_or_else(too_few)?;
+            let plan = written(options, work)?;
+            console::note(&about_frames(&plan));
+            start(&plan, options)
+        }
+    }
+}
+
+/// Writes the plan.
+fn written<W: Work>(options: &PlanOptions, work: W) -> Result<Plan<W>, Failure> {
     let directory = &options.directory;
     std::fs::create_dir_all(directory)
         .with_context(|| {
             format!("cannot create the directory {}; choose another with --out", directory.display())
         })
         .map_err(Failure::Input)?;
-    let parts = Manifest::parts_of(&division.parts);
     let manifest = Manifest {
         command: options.command.clone(),
         scene: options.recipe.name.clone(),
         stage: options.stage.map(|stage| stage.id.to_owned()),
         flags: options.flags.clone(),
-        ..Manifest::new(&options.samples, division.block, parts)
+        ..Manifest::new(work)
     };
-    let plan = Plan::write(directory, &options.recipe, &options.job, manifest).map_err(Failure::input)?;
-    console::note(&about(&plan, &division));
+    Plan::write(directory, &options.recipe, &options.job, manifest).map_err(Failure::input)
+}
+
+/// Makes the commands of a plan, in the form that is asked for.
+fn start<W: Work>(plan: &Plan<W>, options: &PlanOptions) -> Result<ExitCode, Failure> {
+    let directory = &options.directory;
     let told =
         || (plan.path.display().to_string(), directory.join(&plan.manifest.result).display().to_string());
     let (path, result) = told();
-    let commands = Commands::new(&options.program, &path, &plan);
+    let commands = Commands::new(&options.program, &path, plan);
     let kind = match options.format {
         PlanFormat::Text => {
             let lines: String =
-                (0..plan.manifest.parts.len()).map(|part| commands.part_line(part) + "\n").collect();
+                (0..plan.manifest.work.count()).map(|part| commands.part_line(part) + "\n").collect();
             console::write_out(&lines).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
             console::note(&format!("then: {}", commands.merge_line(&result)));
             return Ok(ExitCode::SUCCESS);
         }
         PlanFormat::Json => {
-            let json = PlanJson::of(&plan, &commands, &result);
+            let json = PlanJson::of(plan, &commands, &result);
             write_json(&json, &JsonTarget::StandardOutput).map_err(Failure::Run)?;
             return Ok(ExitCode::SUCCESS);
         }
@@ -60,8 +82,8 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
         PlanFormat::Parallel => ScriptKind::Parallel,
         PlanFormat::Make => ScriptKind::Make,
     };
-    let files = write_scripts(kind, &plan, &options.program).map_err(Failure::run)?;
-    if kind == ScriptKind::Slurm && plan.manifest.parts.len() > USUAL_ARRAY {
+    let files = write_scripts(kind, plan, &options.program).map_err(Failure::run)?;
+    if kind == ScriptKind::Slurm && plan.manifest.work.count() > USUAL_ARRAY {
         console::note(&format!(
             "Slurm refuses arrays of more than {USUAL_ARRAY} tasks unless its MaxArraySize is larger: \
              scontrol show config | grep MaxArraySize"
@@ -77,7 +99,7 @@ pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
 }
 
 /// What was chosen, in words.
-fn about(plan: &Plan, Division { block, parts }: &Division) -> String {
+fn about_samples(plan: &Plan<Samples>, Division { block, parts }: &Division) -> String {
     let lengths = || parts.iter().map(|part| part.end - part.start);
     let (shortest, longest) = (lengths().min().unwrap_or(0), lengths().max().unwrap_or(0));
     let each = if shortest == longest {
@@ -98,23 +120,44 @@ fn about(plan: &Plan, Division { block, parts }: &Division) -> String {
     )
 }
 
+/// What was chosen, in words.
+fn about_frames(plan: &Plan<Frames>) -> String {
+    let lengths = || plan.manifest.work.parts.iter().map(|part| part.range().len() as u64);
+    let (shortest, longest) = (lengths().min().unwrap_or(0), lengths().max().unwrap_or(0));
+    let each = if shortest == longest {
+        format!("{} each", counted(longest, "frame"))
+    } else {
+        format!("{shortest} to {longest} frames")
+    };
+    let (settings, parts) = (plan.job.settings(), plan.manifest.work.count() as u64);
+    format!(
+        "{}: {} of {}x{} with {} per pixel, {} of {each}",
+        plan.path.display(),
+        plan.recipe.name,
+        settings.width,
+        settings.height,
+        counted(plan.recipe.samples_per_pixel, "sample"),
+        counted(parts, "part")
+    )
+}
+
 /// The plan and its commands for other programs.
 #[derive(Serialize)]
-struct PlanJson<'a> {
+struct PlanJson<'a, W: Work> {
     plan: &'a str,
     #[serde(flatten)]
-    manifest: &'a Manifest,
+    manifest: &'a Manifest<W>,
     part_commands: Vec<Vec<String>>,
     merge_command: Vec<String>,
 }
 
-impl<'a> PlanJson<'a> {
-    fn of(plan: &'a Plan, commands: &Commands<'a>, result: &str) -> Self {
+impl<'a, W: Work> PlanJson<'a, W> {
+    fn of(plan: &'a Plan<W>, commands: &Commands<'a>, result: &str) -> Self {
         let part = |part: usize| commands.part(&part.to_string());
         PlanJson {
             plan: commands.manifest,
             manifest: &plan.manifest,
-            part_commands: (0..plan.manifest.parts.len()).map(part).collect(),
+            part_commands: (0..plan.manifest.work.count()).map(part).collect(),
             merge_command: commands.merge(result),
         }
     }

@@ -128,15 +128,15 @@ pub enum CliError {
         /// Why, and what to do.
         reason: &'static str,
     },
-    /// There are more parts than samples.
-    #[error(
-        "--parts is {parts}, but there are {samples} samples per pixel to divide; each part needs one at least"
-    )]
+    /// There are more parts than samples or frames.
+    #[error("--parts is {parts}, but there are {count} {what} to divide; each part needs one at least")]
     TooManyParts {
         /// The number of parts.
         parts: u64,
-        /// The number of samples per pixel.
-        samples: u64,
+        /// The number of samples per pixel or of frames.
+        count: u64,
+        /// Which of the two.
+        what: &'static str,
     },
     /// The directory's name cannot be part of a command.
     #[error("--out is {}, which cannot stand in a command: its name must be UTF-8 without control characters", path.display())]

@@ -4,7 +4,7 @@ use super::Request;
 use super::backend;
 use super::error::CliError;
 use super::paths::Paths;
-use super::raw::{self, ProgressChoice, RawAnimation, RawRender};
+use super::raw::{self, ProgressChoice, RawAnimation, RawPicture, RawRender};
 use super::sources;
 use super::values::JsonTarget;
 use crate::animation::{CameraPath, FrameNames, Turn};
@@ -15,6 +15,9 @@ use crate::render::RenderJob;
 use crate::stages::Stage;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+
+/// The rate of an animated PNG.
+pub(super) const DEFAULT_RATE: FrameRate = FrameRate { frames: 30, seconds: 1 };
 
 /// Options of `--batch --frames`.
 #[derive(Debug)]
@@ -66,19 +69,8 @@ pub(super) fn request(raw: &RawRender, command: &str) -> Result<Option<Request>,
     raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
     chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
     let job = chosen.recipe.job()?;
-    let path = path_of(raw, &chosen.recipe)?;
-    let frames = match (frames, turntable) {
-        (Some(frames), _) => frames.clone(),
-        (None, Some(Turn::FramesPerTurn(count))) => 0..*count,
-        (None, _) => {
-            let reason = "it has no whole number of frames a turn; give A..B";
-            return Err(CliError::Needs { flag: "--turntable in degrees", other: "--frames", reason });
-        }
-    };
-    for frame in frames.clone() {
-        job.seen_by(path.camera(frame), *job.settings())
-            .map_err(|reason| CliError::Frame { frame, reason: Box::new(reason) })?;
-    }
+    let path = path_of(&raw.animation, &raw.picture, &chosen.recipe)?;
+    let frames = frames_of(&raw.animation, &path, &job)?;
     let out = raw.out.as_deref().ok_or(CliError::Needs {
         flag,
         other: "--out",
@@ -102,7 +94,7 @@ pub(super) fn request(raw: &RawRender, command: &str) -> Result<Option<Request>,
         path,
         frames,
         names,
-        animation: animation.map(|file| (file, fps.unwrap_or(FrameRate { frames: 30, seconds: 1 }))),
+        animation: animation.map(|file| (file, fps.unwrap_or(DEFAULT_RATE))),
         backend: backend::choice(&raw.backend)?,
         progress: raw.progress,
         json,
@@ -133,9 +125,34 @@ fn refuse_others(raw: &RawRender, flag: &'static str) -> Result<(), CliError> {
     Ok(())
 }
 
+/// Numbers of the frames, whose cameras are valid.
+pub(super) fn frames_of(
+    animation: &RawAnimation,
+    path: &CameraPath,
+    job: &RenderJob,
+) -> Result<Range<u32>, CliError> {
+    let frames = match (&animation.frames, animation.turntable) {
+        (Some(frames), _) => frames.clone(),
+        (None, Some(Turn::FramesPerTurn(count))) => 0..count,
+        (None, _) => {
+            let reason = "it has no whole number of frames a turn; give A..B";
+            return Err(CliError::Needs { flag: "--turntable in degrees", other: "--frames", reason });
+        }
+    };
+    for frame in frames.clone() {
+        job.seen_by(path.camera(frame), *job.settings())
+            .map_err(|reason| CliError::Frame { frame, reason: Box::new(reason) })?;
+    }
+    Ok(frames)
+}
+
 /// How the flags and the scene file move the camera.
-fn path_of(raw: &RawRender, recipe: &Recipe) -> Result<CameraPath, CliError> {
-    if let Some(turn) = raw.animation.turntable {
+pub(super) fn path_of(
+    animation: &RawAnimation,
+    picture: &RawPicture,
+    recipe: &Recipe,
+) -> Result<CameraPath, CliError> {
+    if let Some(turn) = animation.turntable {
         return Ok(CameraPath::Turntable { start: recipe.camera, turn });
     }
     if recipe.keyframes.is_empty() {
@@ -145,7 +162,6 @@ fn path_of(raw: &RawRender, recipe: &Recipe) -> Result<CameraPath, CliError> {
             reason: "the scene has no [[keyframes]], so the camera would not move",
         });
     }
-    let picture = &raw.picture;
     let camera = [
         ("--look-from", picture.look_from.is_some()),
         ("--look-at", picture.look_at.is_some()),

@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::paths::Paths;
 use super::values::parse_duration;
 use crate::output::OutputFormat;
-use crate::plan::Plan;
+use crate::plan::AnyPlan;
 use clap::Args;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -17,10 +17,12 @@ pub(super) struct RawMerge {
     /// Film files (.exr), as --checkpoint, --out and merge write them, or one plan: its directory, or its plan.json
     #[arg(required = true, num_args = 1.., value_name = "FILM|PLAN")]
     pub films: Vec<PathBuf>,
-    /// Where the result is written: .exr for the film, .png or .ppm for the picture; may be repeated
+    /// Where the result is written: .exr for the film, .png or .ppm for the picture; .png for an animation; may be
+    /// repeated
     #[arg(long, value_name = "FILE", required_unless_present = "check")]
     pub out: Vec<PathBuf>,
-    /// Merge the parts of a plan as they come, and write the picture so far, until the plan is complete or Ctrl-C
+    /// Merge the parts of a plan as they come, and write the picture so far, until the plan is complete or Ctrl-C; an
+    /// animation is written once it is complete
     #[arg(long)]
     pub watch: bool,
     /// Interval at which --watch writes the picture so far: 0.1s to 30d [default: 60s]
@@ -78,7 +80,7 @@ pub struct InfoOptions {
 
 pub(super) fn merge(raw: RawMerge, program: &str) -> Result<MergeOptions, CliError> {
     let source = match raw.films.as_slice() {
-        [plan] if Plan::is_at(plan) => MergeSource::Plan(plan.clone()),
+        [plan] if AnyPlan::is_at(plan) => MergeSource::Plan(plan.clone()),
         films => MergeSource::Films(films.to_vec()),
     };
     if let MergeSource::Films(films) = &source {
@@ -86,7 +88,7 @@ pub(super) fn merge(raw: RawMerge, program: &str) -> Result<MergeOptions, CliErr
             let reason = "only a plan says which parts are to come; make one with `weekender plan`";
             return Err(CliError::Needs { flag: "--watch", other: "a plan", reason });
         }
-        if films.iter().any(|film| Plan::is_at(film)) {
+        if films.iter().any(|film| AnyPlan::is_at(film)) {
             let reason =
                 "a plan names its parts itself; merge it alone, then merge the result with the films";
             return Err(CliError::Together { flag: "a plan", other: "other files", reason });

@@ -2,11 +2,13 @@
 
 use super::backend;
 use super::error::CliError;
-use super::raw::{self, ProgressChoice, RawBackend, RawPicture, RawSwitch};
-use super::render::CHECKPOINT_INTERVAL;
-use super::sources;
+use super::frames::{DEFAULT_RATE, frames_of, path_of};
+use super::raw::{self, ProgressChoice, RawAnimation, RawBackend, RawPicture, RawSwitch};
+use super::sources::{self, ChosenRecipe};
 use super::values::{JsonTarget, parse_duration, parse_sample_range};
+use crate::animation::Turn;
 use crate::backends::BackendChoice;
+use crate::output::FrameRate;
 use crate::recipe::Recipe;
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::stages::Stage;
@@ -38,10 +40,13 @@ pub(super) struct RawPlan {
     /// [default: on, or the scene's]
     #[arg(long, value_enum, help_heading = "Parts")]
     pub estimate_error: Option<RawSwitch>,
-    /// Parts, 1 to 100000: each holds some samples of the whole picture
+    /// Parts, 1 to 100000: each holds some samples of the whole picture, or some whole frames of an animation
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=PARTS_LIMIT),
           allow_hyphen_values = true, help_heading = "Parts")]
     pub parts: u64,
+
+    #[command(flatten)]
+    pub animation: RawAnimation,
 
     #[command(flatten)]
     pub backend: RawBackend,
@@ -100,6 +105,22 @@ pub enum PlanFormat {
     Make,
 }
 
+/// What a plan divides.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PlannedWork {
+    /// Samples of a picture.
+    Samples(Range<u64>),
+    /// Frames of an animation, whose cameras are valid.
+    Frames {
+        /// Numbers of the frames.
+        frames: Range<u32>,
+        /// How the camera circles, unless it follows keyframes.
+        turntable: Option<Turn>,
+        /// The rate of the animated PNG.
+        rate: FrameRate,
+    },
+}
+
 /// Options of `weekender plan`.
 #[derive(Debug)]
 pub struct PlanOptions {
@@ -109,8 +130,8 @@ pub struct PlanOptions {
     pub job: RenderJob,
     /// The stage that it comes from.
     pub stage: Option<&'static Stage>,
-    /// The samples to divide.
-    pub samples: Range<u64>,
+    /// What is divided.
+    pub work: PlannedWork,
     /// Number of parts.
     pub parts: u64,
     /// Directory of the plan.
@@ -134,8 +155,8 @@ pub struct PartOptions {
     pub part: u64,
     /// The backend.
     pub backend: BackendChoice,
-    /// Interval at which the film is written.
-    pub every: Duration,
+    /// Interval at which the film is written, if it was given.
+    pub every: Option<Duration>,
     /// Whether progress is shown.
     pub progress: ProgressChoice,
     /// Where the JSON is written.
@@ -152,15 +173,14 @@ pub(super) fn plan(raw: RawPlan, program: &str, command: String) -> Result<PlanO
     backend::choice(&raw.backend)?;
     let mut chosen = sources::find(&raw.picture, None)?;
     raw::change(&mut chosen.recipe, &raw.picture, raw.estimate_error);
-    let samples = match raw.sample_range {
-        Some(range) => range,
-        None => 0..raw.samples.unwrap_or(chosen.recipe.samples_per_pixel),
+    let is_animation = raw.animation.frames.is_some() || raw.animation.turntable.is_some();
+    let (job, work) = if is_animation { frames(&raw, &mut chosen)? } else { samples(&raw, &mut chosen)? };
+    let (count, what) = match &work {
+        PlannedWork::Samples(samples) => (samples.end - samples.start, "samples per pixel"),
+        PlannedWork::Frames { frames, .. } => (u64::from(frames.end - frames.start), "frames"),
     };
-    chosen.recipe.samples_per_pixel = samples.end;
-    let job = chosen.recipe.job()?;
-    let count = samples.end - samples.start;
     if raw.parts > count {
-        return Err(CliError::TooManyParts { parts: raw.parts, samples: count });
+        return Err(CliError::TooManyParts { parts: raw.parts, count, what });
     }
     let name = raw.out.to_str().filter(|name| !name.chars().any(char::is_control));
     if name.is_none() {
@@ -172,7 +192,7 @@ pub(super) fn plan(raw: RawPlan, program: &str, command: String) -> Result<PlanO
         recipe: chosen.recipe,
         job,
         stage: chosen.stage,
-        samples,
+        work,
         parts: raw.parts,
         directory: raw.out,
         format: raw.format,
@@ -180,6 +200,40 @@ pub(super) fn plan(raw: RawPlan, program: &str, command: String) -> Result<PlanO
         program: raw.program.unwrap_or_else(|| program.to_owned()),
         command,
     })
+}
+
+/// Samples to divide.
+fn samples(raw: &RawPlan, chosen: &mut ChosenRecipe) -> Result<(RenderJob, PlannedWork), CliError> {
+    if raw.animation.fps.is_some() {
+        let reason = "a single picture has no rate; add --frames A..B or --turntable";
+        return Err(CliError::Needs { flag: "--fps", other: "--frames", reason });
+    }
+    let samples = match &raw.sample_range {
+        Some(range) => range.clone(),
+        None => 0..raw.samples.unwrap_or(chosen.recipe.samples_per_pixel),
+    };
+    chosen.recipe.samples_per_pixel = samples.end;
+    Ok((chosen.recipe.job()?, PlannedWork::Samples(samples)))
+}
+
+/// Frames to divide.
+fn frames(raw: &RawPlan, chosen: &mut ChosenRecipe) -> Result<(RenderJob, PlannedWork), CliError> {
+    let flag = if raw.animation.frames.is_some() { "--frames" } else { "--turntable" };
+    let whole = "a frame is rendered whole, with all its samples; give --samples";
+    let kept = "whole frames are kept, and the frame in progress is short work";
+    for (other, is_given, reason) in
+        [("--sample-range", raw.sample_range.is_some(), whole), ("--every", raw.every.is_some(), kept)]
+    {
+        if is_given {
+            return Err(CliError::Together { flag, other, reason });
+        }
+    }
+    chosen.recipe.samples_per_pixel = raw.samples.unwrap_or(chosen.recipe.samples_per_pixel);
+    let job = chosen.recipe.job()?;
+    let path = path_of(&raw.animation, &raw.picture, &chosen.recipe)?;
+    let frames = frames_of(&raw.animation, &path, &job)?;
+    let rate = raw.animation.fps.unwrap_or(DEFAULT_RATE);
+    Ok((job, PlannedWork::Frames { frames, turntable: raw.animation.turntable, rate }))
 }
 
 pub(super) fn part(raw: RawPart, command: String) -> Result<PartOptions, CliError> {
@@ -191,7 +245,7 @@ pub(super) fn part(raw: RawPart, command: String) -> Result<PartOptions, CliErro
         plan: raw.plan,
         part,
         backend: backend::choice(&raw.backend)?,
-        every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
+        every: raw.every,
         progress: raw.progress,
         json: raw.json.map(JsonTarget::from),
         command,

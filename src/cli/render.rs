@@ -19,7 +19,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// Interval at which a checkpoint is written by default.
-pub(super) const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
+pub const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
 
 /// Options of `--batch`.
 #[derive(Debug)]

@@ -42,19 +42,21 @@ pub(super) enum RawCommand {
     /// Rows take turns, after a warm-up that does not count. Medians are shown with minimum and maximum. Reading,
     /// preparing and writing are not timed. The C program is compiled with the compiler that CC names, or with cc.
     Bench(Box<RawBench>),
-    /// Divide the samples of a picture into parts that many machines render, and make the commands for them
+    /// Divide the samples of a picture, or the frames of an animation, into parts that many machines render, and make the
+    /// commands for them
     ///
     /// Writes plan.json and the scene into the directory --out. A part's command can be repeated at any time: it goes on
-    /// from the part's last checkpoint, and ends at once if the part is whole.
+    /// from the part's last checkpoint or from the frames that are there, and ends at once if the part is whole.
     Plan(Box<RawPlan>),
     /// Render a part of a plan, or go on with it
     ///
-    /// The part's film is its own checkpoint. The exit code is 0 if the part is whole, 143 after SIGTERM (the checkpoint
+    /// The part's film is its own checkpoint; frames are kept one by one. The exit code is 0 if the part is whole, 143 after SIGTERM (the checkpoint
     /// is written; run it again), 130 after Ctrl-C and 2 if the part cannot be rendered.
     RenderPart(Box<RawPart>),
     /// Merge films of the same picture that hold different samples, or the parts of a plan
     ///
-    /// Of a plan, what is there is merged, also checkpoints of unfinished parts. The exit code is 0 if nothing is
+    /// Of a plan, what is there is merged, also checkpoints of unfinished parts; frames become an animated PNG once all are
+    /// there. The exit code is 0 if nothing is
     /// missing, 1 if a part is missing, unfinished or damaged, and 2 if nothing could be merged.
     Merge(Box<RawMerge>),
     /// Say what a film, picture, scene file or plan says about itself

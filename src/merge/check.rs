@@ -4,7 +4,7 @@ use super::parts::{self, State};
 use crate::console;
 use crate::failure::{FAILED, Failure, output_failure};
 use crate::film::{FilmHead, SampleRanges, checkpoint};
-use crate::plan::Plan;
+use crate::plan::{Plan, Samples};
 use crate::recipe::file;
 use crate::saved::same_job;
 use crate::shell;
@@ -16,9 +16,9 @@ use std::process::ExitCode;
 ///
 /// # Errors
 /// [`Failure::Run`] if standard output cannot be written.
-pub(super) fn plan(plan: &Plan, program: &str) -> Result<ExitCode, Failure> {
+pub(super) fn plan(plan: &Plan<Samples>, program: &str) -> Result<ExitCode, Failure> {
     let recipe = file::to_picture_toml(&plan.recipe);
-    let count = plan.manifest.parts.len();
+    let count = plan.manifest.work.parts.len();
     let states = (0..count).map(|index| (index, parts::checked_state(plan, index, &recipe)));
     let lacking: Vec<_> = states.filter(|(_, state)| *state != State::Whole).collect();
     let mut lines: Vec<String> =
@@ -26,17 +26,16 @@ pub(super) fn plan(plan: &Plan, program: &str) -> Result<ExitCode, Failure> {
     lines.extend(strays(plan));
     lines.push(format!("{} of {count} parts are whole", count - lacking.len()));
     if !lacking.is_empty() {
-        let numbers: Vec<String> = lacking.iter().map(|(index, _)| index.to_string()).collect();
-        lines.push(format!("for what is missing (--array={} in Slurm):", numbers.join(",")));
-        lines.push(parts::commands(plan, &lacking, program));
+        lines.push(parts::remedy(plan, &parts::numbers(&lacking), program));
     }
     tell(&lines, lacking.is_empty())
 }
 
 /// Films in the plan's directory that are none of its parts.
-fn strays(plan: &Plan) -> Vec<String> {
-    let known =
-        |name: &str| name == plan.manifest.result || plan.manifest.parts.iter().any(|part| part.file == name);
+fn strays(plan: &Plan<Samples>) -> Vec<String> {
+    let known = |name: &str| {
+        name == plan.manifest.result || plan.manifest.work.parts.iter().any(|part| part.file == name)
+    };
     let entries = std::fs::read_dir(plan.directory()).into_iter().flatten().flatten();
     let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
     let mut strays: Vec<String> =
@@ -119,7 +118,7 @@ fn with(mut all: SampleRanges, more: &SampleRanges) -> SampleRanges {
 }
 
 /// Prints the lines in full, however long they are: some are commands.
-fn tell(lines: &[String], is_good: bool) -> Result<ExitCode, Failure> {
+pub(super) fn tell(lines: &[String], is_good: bool) -> Result<ExitCode, Failure> {
     let text: String = lines
         .iter()
         .flat_map(|line| line.split('\n'))

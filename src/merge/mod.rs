@@ -1,6 +1,8 @@
-//! `weekender merge`: adds films of the same picture, or the parts of a plan as they come.
+//! `weekender merge`: adds films of the same picture, or the parts of a plan as they come, and makes an animated PNG of
+//! frames.
 
 mod check;
+mod frames;
 mod parts;
 mod watch;
 
@@ -11,7 +13,7 @@ use crate::failure::{FAILED, Failure};
 use crate::files::check_writable;
 use crate::film::{Description, Film, merge_files};
 use crate::output::write_image;
-use crate::plan::Plan;
+use crate::plan::{AnyPlan, Plan, Samples};
 use crate::recipe::file;
 use crate::saved::same_job;
 use crate::stages::Transfer;
@@ -31,14 +33,14 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
     match (&options.source, options.watch) {
         (MergeSource::Films(films), _) if options.check => check::films(films, &options.program),
         (MergeSource::Films(films), _) => merge_all(films, &options.out),
-        (MergeSource::Plan(path), watch) => {
-            let plan = Plan::load(path).map_err(Failure::input)?;
-            match watch {
-                _ if options.check => check::plan(&plan, &options.program),
-                None => merge_plan(&plan, options),
-                Some(every) => watch::run(&plan, options, every),
-            }
-        }
+        (MergeSource::Plan(path), watch) => match (AnyPlan::load(path).map_err(Failure::input)?, watch) {
+            (AnyPlan::Samples(plan), _) if options.check => check::plan(&plan, &options.program),
+            (AnyPlan::Samples(plan), None) => merge_plan(&plan, options),
+            (AnyPlan::Samples(plan), Some(every)) => watch::run(&plan, options, every),
+            (AnyPlan::Frames(plan), _) if options.check => frames::check(&plan, &options.program),
+            (AnyPlan::Frames(plan), None) => frames::merge(&plan, options),
+            (AnyPlan::Frames(plan), Some(every)) => frames::watch(&plan, options, every),
+        },
     }
 }
 
@@ -54,9 +56,9 @@ fn merge_all(films: &[PathBuf], out: &[PathBuf]) -> Result<ExitCode, Failure> {
 }
 
 /// Merges what is there of a plan, checkpoints of unfinished parts too, and says what is missing.
-fn merge_plan(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> {
+fn merge_plan(plan: &Plan<Samples>, options: &MergeOptions) -> Result<ExitCode, Failure> {
     let mut sum = PlanSum::new(plan).map_err(Failure::input)?;
-    for index in 0..plan.manifest.parts.len() {
+    for index in 0..plan.manifest.work.parts.len() {
         sum.add(index, true).map_err(Failure::run)?;
     }
     let lacking = sum.lacking();
@@ -70,8 +72,7 @@ fn merge_plan(plan: &Plan, options: &MergeOptions) -> Result<ExitCode, Failure> 
     for (index, state) in &lacking {
         console::note(&parts::line(plan, *index, state));
     }
-    console::note("to render what is missing:");
-    console::note(&parts::commands(plan, &lacking, &options.program));
+    console::note(&parts::remedy(plan, &parts::numbers(&lacking), &options.program));
     Ok(ExitCode::from(FAILED))
 }
 

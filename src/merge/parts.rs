@@ -3,7 +3,7 @@
 use super::Lacking;
 use crate::describe::describe;
 use crate::film::{CheckpointError, Description, Film, FilmSum, MergeError, SampleRanges, checkpoint, key};
-use crate::plan::{Commands, Plan};
+use crate::plan::{Commands, Plan, Samples, Work};
 use crate::progressive::Status;
 use crate::saved::same_job;
 use std::path::Path;
@@ -23,21 +23,21 @@ pub(super) enum State {
 
 /// The sum of the parts of a plan.
 pub(super) struct PlanSum<'a> {
-    plan: &'a Plan,
+    plan: &'a Plan<Samples>,
     sum: FilmSum,
     states: Vec<State>,
 }
 
 impl<'a> PlanSum<'a> {
     /// An empty sum.
-    pub fn new(plan: &'a Plan) -> Result<Self, MergeError> {
+    pub fn new(plan: &'a Plan<Samples>) -> Result<Self, MergeError> {
         let settings = plan.job.settings();
         let halves = if settings.estimate_error { 2 } else { 1 };
         let mut description =
             describe(&plan.recipe, plan.stage(), &Film::new(1, 1, 1), &Status::default(), None);
         description.set(key::COMMAND, &plan.manifest.command);
         let sum = FilmSum::new(settings.width, settings.height, halves, description, &plan.path)?;
-        Ok(PlanSum { plan, sum, states: vec![State::Missing; plan.manifest.parts.len()] })
+        Ok(PlanSum { plan, sum, states: vec![State::Missing; plan.manifest.work.parts.len()] })
     }
 
     /// Adds what is there of a part: only a whole one, or also a checkpoint, which [`PlanSum::take_back`] takes away
@@ -46,7 +46,7 @@ impl<'a> PlanSum<'a> {
     /// # Errors
     /// [`MergeError::Lost`]: the sum is then worthless.
     pub fn add(&mut self, index: usize, also_unfinished: bool) -> Result<&State, MergeError> {
-        let part = &self.plan.manifest.parts[index];
+        let part = &self.plan.manifest.work.parts[index];
         let path = self.plan.part_path(part);
         let state = match head_state(self.plan, index) {
             State::Unfinished { missing } if !also_unfinished => State::Unfinished { missing },
@@ -100,7 +100,7 @@ impl<'a> PlanSum<'a> {
 
     /// How much of the picture is there.
     pub fn words(&self) -> String {
-        let [start, end] = self.plan.manifest.samples;
+        let [start, end] = self.plan.manifest.work.samples;
         let samples: &SampleRanges = self.film().samples();
         format!(
             "{} of {} samples per pixel ({samples}); {} of {} parts are whole",
@@ -113,8 +113,8 @@ impl<'a> PlanSum<'a> {
 }
 
 /// What the head of a part's file says about it.
-pub(super) fn head_state(plan: &Plan, index: usize) -> State {
-    let part = &plan.manifest.parts[index];
+pub(super) fn head_state(plan: &Plan<Samples>, index: usize) -> State {
+    let part = &plan.manifest.work.parts[index];
     let path = plan.part_path(part);
     if path.symlink_metadata().is_err() {
         return State::Missing;
@@ -126,8 +126,8 @@ pub(super) fn head_state(plan: &Plan, index: usize) -> State {
 }
 
 /// What is there of a part whose file holds `samples`.
-pub(super) fn state_of(plan: &Plan, index: usize, samples: &SampleRanges) -> State {
-    let part = &plan.manifest.parts[index];
+pub(super) fn state_of(plan: &Plan<Samples>, index: usize, samples: &SampleRanges) -> State {
+    let part = &plan.manifest.work.parts[index];
     if part.is_exceeded_by(samples) {
         let [start, end] = part.samples;
         return State::Wrong(format!(
@@ -142,8 +142,8 @@ pub(super) fn state_of(plan: &Plan, index: usize, samples: &SampleRanges) -> Sta
 }
 
 /// Reads the whole film of a part, and tells what is there of it.
-pub(super) fn checked_state(plan: &Plan, index: usize, recipe: &str) -> State {
-    let path = plan.part_path(&plan.manifest.parts[index]);
+pub(super) fn checked_state(plan: &Plan<Samples>, index: usize, recipe: &str) -> State {
+    let path = plan.part_path(&plan.manifest.work.parts[index]);
     match head_state(plan, index) {
         State::Whole | State::Unfinished { .. } => match checkpoint::check(&path) {
             Ok(head) => match same_job(recipe, head.description.recipe()) {
@@ -169,8 +169,8 @@ fn words(error: &MergeError) -> String {
 }
 
 /// A line on a part that is not whole.
-pub(super) fn line(plan: &Plan, index: usize, state: &State) -> String {
-    let part = &plan.manifest.parts[index];
+pub(super) fn line(plan: &Plan<Samples>, index: usize, state: &State) -> String {
+    let part = &plan.manifest.work.parts[index];
     let ([start, end], file) = (part.samples, &part.file);
     match state {
         State::Whole => format!("part {index}: {file} is whole"),
@@ -183,10 +183,17 @@ pub(super) fn line(plan: &Plan, index: usize, state: &State) -> String {
     }
 }
 
-/// The commands that render what is missing, one a line, without an end of line after the last.
-pub(super) fn commands(plan: &Plan, lacking: &Lacking, program: &str) -> String {
+/// How to render what these parts lack: a heading, and the commands, one a line.
+pub(super) fn remedy<W: Work>(plan: &Plan<W>, parts: &[usize], program: &str) -> String {
     let manifest = plan.path.to_string_lossy();
     let commands = Commands::new(program, &manifest, plan);
-    let lines: Vec<String> = lacking.iter().map(|(index, _)| commands.part_line(*index)).collect();
-    lines.join("\n")
+    let numbers: Vec<String> = parts.iter().map(usize::to_string).collect();
+    let heading = format!("for what is missing (--array={} in Slurm):", numbers.join(","));
+    let lines = parts.iter().map(|index| commands.part_line(*index));
+    [heading].into_iter().chain(lines).collect::<Vec<_>>().join("\n")
+}
+
+/// The numbers of the parts.
+pub(super) fn numbers(lacking: &Lacking) -> Vec<usize> {
+    lacking.iter().map(|(index, _)| *index).collect()
 }

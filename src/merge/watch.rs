@@ -7,7 +7,7 @@ use crate::console;
 use crate::failure::Failure;
 use crate::files::Stamp;
 use crate::interrupt::Interrupt;
-use crate::plan::Plan;
+use crate::plan::{Plan, Samples};
 use crate::terminal::print;
 use std::path::Path;
 use std::process::ExitCode;
@@ -15,8 +15,8 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Pause between two looks at the directory, and at the signals.
-const LOOK: Duration = Duration::from_secs(1);
-const SIGNAL: Duration = Duration::from_millis(100);
+pub(super) const LOOK: Duration = Duration::from_secs(1);
+pub(super) const SIGNAL: Duration = Duration::from_millis(100);
 
 /// A part that is awaited.
 struct Awaited {
@@ -29,11 +29,15 @@ struct Awaited {
 ///
 /// # Errors
 /// [`Failure::Input`] if there is not enough memory; [`Failure::Run`] if the picture cannot be written.
-pub(super) fn run(plan: &Plan, options: &MergeOptions, every: Duration) -> Result<ExitCode, Failure> {
+pub(super) fn run(
+    plan: &Plan<Samples>,
+    options: &MergeOptions,
+    every: Duration,
+) -> Result<ExitCode, Failure> {
     let interrupt = Interrupt::install().map_err(Failure::Run)?;
     let mut sum = PlanSum::new(plan).map_err(Failure::input)?;
     let mut awaited: Vec<Awaited> =
-        (0..plan.manifest.parts.len()).map(|index| Awaited { index, seen: None }).collect();
+        (0..plan.manifest.work.parts.len()).map(|index| Awaited { index, seen: None }).collect();
     let (mut is_news, mut last) = (false, None::<Instant>);
     loop {
         is_news |= look(plan, &mut sum, &mut awaited)?;
@@ -68,16 +72,16 @@ pub(super) fn run(plan: &Plan, options: &MergeOptions, every: Duration) -> Resul
         print(&format!("{}\n{}", sum.words(), wrote(&options.out))).map_err(Failure::Run)?;
         return Ok(ExitCode::SUCCESS);
     }
-    console::note("interrupted; the same command goes on. To render what is missing:");
-    console::note(&parts::commands(plan, &lacking, &options.program));
+    console::note("interrupted; the same command goes on");
+    console::note(&parts::remedy(plan, &parts::numbers(&lacking), &options.program));
     Ok(interrupt.exit_code())
 }
 
 /// Adds the parts that have become whole. Returns whether any file has changed.
-fn look(plan: &Plan, sum: &mut PlanSum, awaited: &mut Vec<Awaited>) -> Result<bool, Failure> {
+fn look(plan: &Plan<Samples>, sum: &mut PlanSum, awaited: &mut Vec<Awaited>) -> Result<bool, Failure> {
     let mut is_news = false;
     for part in awaited.iter_mut() {
-        let path = plan.part_path(&plan.manifest.parts[part.index]);
+        let path = plan.part_path(&plan.manifest.work.parts[part.index]);
         let now = stamp(&path);
         if now.is_none() || now == part.seen {
             continue;
@@ -93,6 +97,6 @@ fn look(plan: &Plan, sum: &mut PlanSum, awaited: &mut Vec<Awaited>) -> Result<bo
 }
 
 /// The file as it is now; `None` if there is none, or if it cannot be looked at.
-fn stamp(path: &Path) -> Option<Stamp> {
+pub(super) fn stamp(path: &Path) -> Option<Stamp> {
     Stamp::of(path).ok().flatten()
 }

@@ -3,11 +3,13 @@
 use super::png;
 use super::{Description, OutputError};
 use crate::files::{self, replace_file};
+use serde::{Deserialize, Serialize};
 use std::io::{self, BufReader, Write};
 use std::path::{Path, PathBuf};
 
 /// Frames per second as a fraction, such as 30000/1001. A PNG holds its inverse, the time of a frame, as two such numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FrameRate {
     /// Numerator, at least 1.
     pub frames: u16,

@@ -1,6 +1,6 @@
 //! The commands of a plan.
 
-use super::manifest::Plan;
+use super::manifest::{Plan, Work};
 use crate::shell;
 
 /// Makes the commands of a plan.
@@ -16,7 +16,7 @@ pub struct Commands<'a> {
 
 impl<'a> Commands<'a> {
     /// The commands of `plan`, which name its manifest as `manifest`.
-    pub fn new(program: &'a str, manifest: &'a str, plan: &'a Plan) -> Self {
+    pub fn new<W: Work>(program: &'a str, manifest: &'a str, plan: &'a Plan<W>) -> Self {
         Commands { program, manifest, flags: &plan.manifest.flags }
     }
 

@@ -2,7 +2,8 @@
 //! without a directory, so the directory can be moved.
 
 use super::commands::Commands;
-use super::manifest::{MANIFEST, Plan, PlanError};
+use super::error::PlanError;
+use super::manifest::{MANIFEST, Plan, Work};
 use crate::files::write_text;
 use crate::shell;
 use std::path::PathBuf;
@@ -23,9 +24,13 @@ pub enum ScriptKind {
 ///
 /// # Errors
 /// [`PlanError::Write`].
-pub fn write_scripts(kind: ScriptKind, plan: &Plan, program: &str) -> Result<Vec<PathBuf>, PlanError> {
+pub fn write_scripts<W: Work>(
+    kind: ScriptKind,
+    plan: &Plan<W>,
+    program: &str,
+) -> Result<Vec<PathBuf>, PlanError> {
     let commands = Commands::new(program, MANIFEST, plan);
-    let last = plan.manifest.parts.len() - 1;
+    let last = plan.manifest.work.count() - 1;
     let (part, merge) =
         (commands.part_line_of("SLURM_ARRAY_TASK_ID"), commands.merge_line(&plan.manifest.result));
     let files = match kind {
@@ -78,7 +83,7 @@ const PARTS: &str = r#"#!/bin/bash
 #SBATCH --open-mode=append
 #SBATCH --requeue
 #SBATCH --signal=B:TERM@120
-# A task that is ended early, by its time limit or a failed node, is queued again and goes on from its last checkpoint.
+# A task that is ended early, by its time limit or a failed node, is queued again and goes on from what it has written.
 child=
 trap '[ -n "$child" ] && kill -TERM "$child" 2>/dev/null' TERM
 @COMMAND@ &
@@ -90,7 +95,7 @@ while kill -0 "$child" 2>/dev/null; do
   wait "$child"
   code=$?
 done
-# 143: SIGTERM came and the checkpoint is written. A task that was cancelled stays cancelled.
+# 143: SIGTERM came, and what was rendered is written. A task that was cancelled stays cancelled.
 task=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
 if [ "$code" -eq 143 ] && scontrol show job "$task" | grep -q 'JobState=RUNNING'; then
   scontrol requeue "$task"
@@ -111,7 +116,7 @@ const PARALLEL: &str = r#"#!/bin/sh
 # --sshlogin a,b, are handed on; the machines must share this directory. To go on after a failure, run it again: parts
 # that are whole end at once, the others go on.
 cd "$(dirname "$0")" || exit
-# The pause leaves time to write the checkpoint.
+# The pause leaves time to write what was rendered.
 seq 0 @LAST@ |
   parallel --jobs 1 --workdir . --joblog parallel.log --line-buffer --termseq TERM,60000,KILL,25 "$@" \
     @COMMAND@ || exit

@@ -3,7 +3,7 @@
 
 pub mod file;
 
-use crate::animation::Keyframe;
+use crate::animation::{CameraPath, Keyframe};
 use crate::memory::{self, MemoryError};
 use crate::render::{JobError, RenderJob, RenderSettings, SAMPLE_LIMIT, TRACING_BYTES_PER_SPHERE};
 use crate::scene::builtin::{BuiltinScene, FIELD_COUNT_LIMITS, field};
@@ -36,6 +36,11 @@ pub struct Recipe {
 }
 
 impl Recipe {
+    /// The picture of a frame.
+    pub fn at_frame(&self, path: &CameraPath, frame: u32) -> Recipe {
+        Recipe { camera: path.camera(frame), keyframes: Vec::new(), ..self.clone() }
+    }
+
     /// The built-in scene of this name; `field:N` is a field of `N` spheres.
     pub fn builtin(name: &str) -> Option<Recipe> {
         Self::find(name).ok()

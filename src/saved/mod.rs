@@ -2,9 +2,11 @@
 //! opens or resumes a file uses this module.
 
 mod difference;
+mod frames;
 mod rescue;
 
 pub use difference::{difference, same_job};
+pub use frames::FrameState;
 pub use rescue::rescue;
 
 use crate::film::{CheckpointError, Description, Film, checkpoint, key};

@@ -16,7 +16,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("recipe", &["animation", "memory", "files", "scene", "stages", "film", "render", "suggest"]),
     ("output", &["memory", "files", "stages", "film"]),
     ("saved", &["files", "stages", "film", "render", "recipe", "output"]),
-    ("plan", &["files", "film", "render", "recipe", "stages", "shell"]),
+    ("plan", &["animation", "files", "film", "output", "render", "recipe", "stages", "shell"]),
     ("chart", &["files"]),
     ("sampling", &["render"]),
     ("kernel", &["scene", "stages", "film", "render", "sampling"]),

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
 mod common;
+mod frames;
 mod info;
 mod merging;
 mod parts;

@@ -55,7 +55,8 @@ fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
         &["version 2", "version 3", program, "another directory"],
     );
     refused("\"plan_version\": 1", "\"plan_version\": 7", &["version 7", "version 1"]);
-    refused("\"block\"", "\"blocks\"", &["plan.json", "blocks"]);
+    refused("\"block\"", "\"blocks\": 1,\n\"block\"", &["plan.json", "blocks"]);
+    refused("\"block\"", "\"blocks\"", &["plan.json", "block"]);
     refused("part-1.exr", "../part-1.exr", &["../part-1.exr"]);
     refused("        4\n", "        5\n", &["5", "comes next"]);
     refused("{", "", &["plan.json"]);

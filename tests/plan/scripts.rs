@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use tempfile::TempDir;
 
+#[cfg(unix)]
 /// A program whose name a shell and make take apart if it is not quoted.
 fn awkward_program(at: &Path) -> String {
     let path = at.join("it's $HOME's weekender");

@@ -1,0 +1,172 @@
+//! The frames of a plan: which of them are there, and the animated PNG of all.
+
+use super::{check, parts, watch, wrote};
+use crate::cli::MergeOptions;
+use crate::console;
+use crate::describe::{SOFTWARE, describe_animation};
+use crate::failure::{FAILED, Failure};
+use crate::files::Stamp;
+use crate::interrupt::Interrupt;
+use crate::output::{OutputFormat, write_animation};
+use crate::plan::{Frames, Plan};
+use crate::saved::FrameState;
+use crate::terminal::print;
+use anyhow::anyhow;
+use std::process::ExitCode;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+/// Reads all frames, and says what is missing.
+///
+/// # Errors
+/// [`Failure::Run`] if standard output cannot be written.
+pub(super) fn check(plan: &Plan<Frames>, program: &str) -> Result<ExitCode, Failure> {
+    let lacking = lacking(plan);
+    let mut lines: Vec<String> = lacking.iter().map(|frame| frame.line(plan)).collect();
+    lines.push(words(plan, lacking.len()));
+    if !lacking.is_empty() {
+        lines.push(parts::remedy(plan, &parts_of(&lacking), program));
+    }
+    check::tell(&lines, lacking.is_empty())
+}
+
+/// Makes the animated PNG if all frames are whole; otherwise says what is missing.
+///
+/// # Errors
+/// [`Failure::Input`] if it cannot be such a file; [`Failure::Run`] if it cannot be written.
+pub(super) fn merge(plan: &Plan<Frames>, options: &MergeOptions) -> Result<ExitCode, Failure> {
+    check_names(options)?;
+    let lacking = lacking(plan);
+    if lacking.is_empty() {
+        return assemble(plan, options);
+    }
+    for frame in &lacking {
+        console::note(&frame.line(plan));
+    }
+    console::note(&words(plan, lacking.len()));
+    console::note(&parts::remedy(plan, &parts_of(&lacking), &options.program));
+    Ok(ExitCode::from(FAILED))
+}
+
+/// Waits until all frames are whole, or until a signal, and tells how many are there; then makes the animated PNG.
+///
+/// # Errors
+/// As [`merge`].
+pub(super) fn watch(
+    plan: &Plan<Frames>,
+    options: &MergeOptions,
+    every: Duration,
+) -> Result<ExitCode, Failure> {
+    check_names(options)?;
+    let interrupt = Interrupt::install().map_err(Failure::Run)?;
+    let mut awaited: Vec<(Frame, Option<Stamp>)> = lacking(plan)
+        .into_iter()
+        .map(|frame| {
+            let seen = watch::stamp(&plan.names().path(frame.number));
+            (frame, seen)
+        })
+        .collect();
+    let (mut told, mut last) = (None, Instant::now());
+    while !awaited.is_empty() && !interrupt.is_set() {
+        if told.is_none() || (told != Some(awaited.len()) && last.elapsed() >= every) {
+            console::note(&words(plan, awaited.len()));
+            (told, last) = (Some(awaited.len()), Instant::now());
+        }
+        let begin = Instant::now();
+        while begin.elapsed() < watch::LOOK && !interrupt.is_set() {
+            sleep(watch::SIGNAL);
+        }
+        awaited.retain_mut(|(frame, seen)| {
+            let now = watch::stamp(&plan.names().path(frame.number));
+            if now.is_none() || now == *seen {
+                return true;
+            }
+            (*seen, frame.state) = (now, state(plan, frame.number));
+            if let FrameState::Wrong(_) = frame.state {
+                console::note(&format!("warning: {}", frame.line(plan)));
+            }
+            frame.state != FrameState::Whole
+        });
+    }
+    if awaited.is_empty() {
+        let _writing = interrupt.while_writing("the animation");
+        return assemble(plan, options);
+    }
+    let lacking: Vec<Frame> = awaited.into_iter().map(|(frame, _)| frame).collect();
+    console::note(&words(plan, lacking.len()));
+    console::note("interrupted; the same command goes on");
+    console::note(&parts::remedy(plan, &parts_of(&lacking), &options.program));
+    Ok(interrupt.exit_code())
+}
+
+/// A frame that is not whole.
+struct Frame {
+    /// The part that renders it.
+    part: usize,
+    number: u32,
+    state: FrameState,
+}
+
+impl Frame {
+    fn line(&self, plan: &Plan<Frames>) -> String {
+        let Frame { part, number, state } = self;
+        match state {
+            FrameState::Wrong(words) => format!("part {part}: {words}"),
+            FrameState::Missing | FrameState::Whole => {
+                let path = plan.names().path(*number);
+                let name = path.file_name().unwrap_or_default().display();
+                format!("part {part}: {name} is missing")
+            }
+        }
+    }
+}
+
+fn state(plan: &Plan<Frames>, number: u32) -> FrameState {
+    let recipe = plan.recipe.at_frame(&plan.camera_path(), number);
+    FrameState::of(&plan.names().path(number), &recipe, SOFTWARE)
+}
+
+/// The frames that are not whole, in order.
+fn lacking(plan: &Plan<Frames>) -> Vec<Frame> {
+    let frames = plan.manifest.work.parts.iter().enumerate();
+    let frames = frames.flat_map(|(part, frames)| frames.range().map(move |number| (part, number)));
+    let frames = frames.map(|(part, number)| Frame { part, number, state: state(plan, number) });
+    frames.filter(|frame| frame.state != FrameState::Whole).collect()
+}
+
+/// The parts that render these frames.
+fn parts_of(frames: &[Frame]) -> Vec<usize> {
+    let mut parts: Vec<usize> = frames.iter().map(|frame| frame.part).collect();
+    parts.dedup();
+    parts
+}
+
+fn words(plan: &Plan<Frames>, lacking: usize) -> String {
+    let count = plan.manifest.work.range().len();
+    format!("{} of {count} frames are whole", count - lacking)
+}
+
+/// Returns an error if the result is not to be an animated PNG.
+fn check_names(options: &MergeOptions) -> Result<(), Failure> {
+    let is_png = |out: &&std::path::PathBuf| matches!(OutputFormat::from_path(out), Ok(OutputFormat::Png));
+    match options.out.iter().find(|out| !is_png(out)) {
+        Some(out) => Err(Failure::Input(anyhow!(
+            "--out is {}, but the frames of an animation make an animated PNG; let the name end in .png",
+            out.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn assemble(plan: &Plan<Frames>, options: &MergeOptions) -> Result<ExitCode, Failure> {
+    let (work, settings, names) = (&plan.manifest.work, plan.job.settings(), plan.names());
+    let description = describe_animation(&plan.recipe, &plan.manifest.command);
+    let first = work.frames[0];
+    for out in &options.out {
+        let files = (0..work.range().len()).map(|index| names.path(first + index as u32));
+        write_animation(out, [settings.width, settings.height], work.rate, files, &description)
+            .map_err(Failure::run)?;
+    }
+    print(&format!("{}\n{}", words(plan, 0), wrote(&options.out))).map_err(Failure::Run)?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,64 @@
+//! Why a plan cannot be used.
+
+use crate::files::{InputError, WriteError};
+use crate::film::checkpoint::SAMPLE_VERSION;
+use crate::recipe::file;
+use crate::render::JobError;
+use std::path::PathBuf;
+
+/// Why a plan cannot be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum PlanError {
+    /// The manifest or its scene cannot be read.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The scene file cannot be read.
+    #[error(transparent)]
+    Scene(#[from] file::FileError),
+    /// The scene cannot be rendered.
+    #[error(transparent)]
+    Job(#[from] JobError),
+    /// The manifest is not one.
+    #[error("{} is not a plan, or is damaged: {what}; make it again with `weekender plan`", path.display())]
+    Damaged {
+        /// The manifest.
+        path: PathBuf,
+        /// What is wrong.
+        what: String,
+    },
+    /// The plan is for another version of the program.
+    #[error(
+        "{} is a plan for samples of version {version}, made by {program}, but this program ({}) traces version {SAMPLE_VERSION}; use {program} on every machine, or plan into another directory with this one",
+        path.display(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
+    )]
+    SampleVersion {
+        /// The manifest.
+        path: PathBuf,
+        /// The version of the samples.
+        version: u32,
+        /// The program that made the plan.
+        program: String,
+    },
+    /// The directory holds another plan.
+    #[error(
+        "{} holds the plan of another picture, or of other parts; plan into another directory, or delete it",
+        path.display()
+    )]
+    Taken {
+        /// The manifest that is there.
+        path: PathBuf,
+    },
+    /// There is no such part.
+    #[error("there is no part {index} in {}: it has the parts 0 to {}", path.display(), count - 1)]
+    NoPart {
+        /// The manifest.
+        path: PathBuf,
+        /// The number that was given.
+        index: u64,
+        /// The number of parts.
+        count: usize,
+    },
+}

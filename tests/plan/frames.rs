@@ -1,0 +1,196 @@
+//! Plans by frames.
+
+use super::common::{ends, run, succeeds, text};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+const SMALL: [&str; 8] = ["--size", "24x14", "--samples", "4", "--device", "cpu", "--threads", "2"];
+
+fn plan(at: &Path, flags: &[&str]) -> String {
+    succeeds(at, &[&["plan", "--out", "p"], &SMALL[..], flags].concat())
+}
+
+/// The frames of one run, by their numbers.
+fn one_run(at: &Path, flags: &[&str]) {
+    succeeds(at, &[&["--batch", "--out", "run"], &SMALL[..], flags].concat());
+}
+
+fn pixels(path: &Path) -> Vec<u8> {
+    let file = std::io::BufReader::new(fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    pixels
+}
+
+fn frame(directory: &Path, number: u32) -> std::path::PathBuf {
+    directory.join(format!("frame-{number:04}.png"))
+}
+
+#[test]
+fn parts_have_the_frames_of_one_run_and_make_its_animation() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let flags = ["--turntable=7", "--fps", "12"];
+    let lines = plan(at, &[&flags[..], &["--parts", "3"]].concat());
+    assert_eq!(lines.lines().count(), 3, "{lines}");
+    for line in lines.lines().rev() {
+        let words = shlex::split(line).unwrap();
+        assert_eq!(words[1], "render-part");
+        succeeds(at, &words.iter().skip(1).map(String::as_str).collect::<Vec<_>>());
+    }
+    one_run(at, &["--turntable=7"]);
+    for number in 0..7 {
+        assert!(pixels(&frame(&at.join("p"), number)) == pixels(&frame(&at.join("run"), number)), "{number}");
+    }
+    assert!(pixels(&frame(&at.join("p"), 0)) != pixels(&frame(&at.join("p"), 3)), "the camera moves");
+    assert!(succeeds(at, &["merge", "p", "--check"]).contains("7 of 7 frames are whole"));
+    succeeds(at, &["merge", "p", "--out", "turn.png"]);
+    let file = std::io::BufReader::new(fs::File::open(at.join("turn.png")).unwrap());
+    let reader = png::Decoder::new(file).read_info().unwrap();
+    assert_eq!(reader.info().animation_control().unwrap().num_frames, 7);
+    let control = reader.info().frame_control().unwrap();
+    assert_eq!((control.delay_num, control.delay_den), (1, 12));
+
+    let again = succeeds(at, &["render-part", "p", "--part", "1", "--device", "cpu"]);
+    assert!(again.contains("0 rendered, 2 already there"), "{again}");
+    let info: Value = serde_json::from_str(&succeeds(at, &["info", "p", "--json"])).unwrap();
+    assert_eq!((&info["frames"], &info["parts"]), (&"0..7".into(), &3.into()));
+    assert_eq!(info["samples_per_pixel"], 4);
+    assert!(succeeds(at, &["info", "p"]).contains("4 per pixel of the frames 0..7 in 3 parts"));
+}
+
+#[test]
+fn keyframes_are_in_the_plan_and_wrong_frames_are_named() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let keyframes = "\
+        [camera]\nlook_from = [0.0, 1.0, 4.0]\nlook_at = [0.0, 0.0, 0.0]\nvfov_degrees = 40.0\n\
+        [[keyframes]]\nframe = 0\n[[keyframes]]\nframe = 9\nlook_from = [3.0, 1.0, 3.0]\n\
+        [materials.m]\nkind = \"lambertian\"\nalbedo = [0.8, 0.3, 0.1]\n\
+        [[spheres]]\ncenter = [0.0, 0.0, 0.0]\nradius = 1.0\nmaterial = \"m\"\n";
+    fs::write(at.join("s.toml"), keyframes).unwrap();
+    let flags = ["--scene", "s.toml", "--frames", "3..9"];
+    plan(at, &[&flags[..], &["--parts", "2"]].concat());
+    // The plan is complete without the scene file that it was made from.
+    fs::remove_file(at.join("s.toml")).unwrap();
+    for part in ["0", "1"] {
+        succeeds(at, &["render-part", "p", "--part", part, "--device", "cpu", "--threads", "2"]);
+    }
+    fs::write(at.join("s.toml"), keyframes).unwrap();
+    one_run(at, &flags);
+    let (planned, run_frames) = (at.join("p"), at.join("run"));
+    for number in 3..9 {
+        assert!(pixels(&frame(&planned, number)) == pixels(&frame(&run_frames, number)), "{number}");
+    }
+    fs::remove_file(frame(&planned, 3)).unwrap();
+    fs::copy(frame(&planned, 7), frame(&planned, 8)).unwrap();
+    let mut bytes = fs::read(frame(&planned, 5)).unwrap();
+    let end = bytes.len() - 20;
+    bytes[end] ^= 1;
+    fs::write(frame(&planned, 5), bytes).unwrap();
+    for arguments in [&["merge", "p", "--check"][..], &["merge", "p", "--out", "a.png"]] {
+        let (out, told) = ends(at, 1, arguments);
+        let all = out + &told;
+        for words in [
+            "part 0: frame-0003.png is missing",
+            "part 0: ",
+            "frame-0005.png",
+            "frame-0008.png is of another picture: camera is",
+            "3 of 6 frames are whole",
+            "--array=0,1 in Slurm",
+            "--part 0",
+        ] {
+            assert!(all.contains(words), "{words}: {all}");
+        }
+    }
+    assert!(!at.join("a.png").exists());
+    for part in ["0", "1"] {
+        succeeds(at, &["render-part", "p", "--part", part, "--device", "cpu", "--threads", "2"]);
+    }
+    succeeds(at, &["merge", "p", "--check"]);
+}
+
+#[test]
+fn a_watch_makes_the_animation_when_the_last_frame_has_come() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, &["--turntable=3", "--parts", "3"]);
+    let mut flags =
+        super::common::command(at, &["merge", "p", "--watch", "--every", "0.1s", "--out", "t.png"]);
+    let mut child = flags.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    for part in ["2", "0"] {
+        succeeds(at, &["render-part", "p", "--part", part, "--device", "cpu"]);
+    }
+    std::thread::sleep(Duration::from_millis(1500));
+    assert!(child.try_wait().unwrap().is_none() && !at.join("t.png").exists());
+    succeeds(at, &["render-part", "p", "--part", "1", "--device", "cpu"]);
+    let begin = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        assert!(begin.elapsed() < Duration::from_secs(60), "the watch does not end");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("3 of 3 frames are whole"));
+    assert!(at.join("t.png").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn make_renders_the_frames_and_the_animation() {
+    if !Command::new("make").arg("--version").output().is_ok_and(|output| output.status.success()) {
+        eprintln!("NOT TESTED: there is no make");
+        return;
+    }
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let flags = ["--turntable=4", "--parts", "2", "--format", "make"];
+    let start = plan(at, &[&flags[..], &["--program", env!("CARGO_BIN_EXE_weekender")]].concat());
+    let made = Command::new("sh").arg("-c").arg(start).current_dir(at).output().unwrap();
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    assert!(at.join("p/animation.png").exists() && frame(&at.join("p"), 3).exists());
+}
+
+#[test]
+fn what_cannot_be_planned_by_frames_is_refused() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    for (flags, parts) in [
+        (&["--turntable=3", "--parts", "4"][..], &["--parts is 4", "3 frames"][..]),
+        (&["--turntable=9", "--parts", "2", "--every", "5s"], &["--every", "--turntable"]),
+        (&["--frames", "0..9", "--parts", "2"], &["--frames", "[[keyframes]]"]),
+        (&["--fps", "9", "--parts", "2"], &["--fps", "--frames"]),
+    ] {
+        let output = run(at, &[&["plan", "--out", "p", "--samples", "4"], flags].concat());
+        let told = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        for part in parts {
+            assert!(told.contains(part), "{part}: {told}");
+        }
+        assert!(!at.join("p").exists());
+    }
+    let sampled = ["plan", "--out", "q", "--sample-range", "4..8", "--turntable=9", "--parts", "2"];
+    assert!(ends(at, 2, &sampled).1.contains("--sample-range"));
+    plan(at, &["--turntable=3", "--parts", "3"]);
+    let (_, told) = ends(at, 2, &["render-part", "p", "--part", "0", "--every", "5s"]);
+    assert!(told.contains("--every") && told.contains("leave it out"), "{told}");
+    let (_, told) = ends(at, 2, &["merge", "p", "--out", "a.exr"]);
+    assert!(told.contains("a.exr") && told.contains(".png"), "{told}");
+    // The directory keeps its plan.
+    for other in
+        [&["--turntable=6", "--parts", "3"][..], &["--parts", "3"], &["--turntable=3", "--parts", "1"]]
+    {
+        let (_, told) = ends(at, 2, &[&["plan", "--out", "p"], &SMALL[..], other].concat());
+        assert!(told.contains("holds the plan of another picture"), "{told}");
+    }
+    plan(at, &["--turntable=3", "--parts", "3", "--format", "parallel"]);
+    let manifest = fs::read_to_string(at.join("p/plan.json")).unwrap();
+    fs::write(at.join("p/plan.json"), manifest.replacen("\"frames\": [\n    0,", "\"frames\": [\n    1,", 1))
+        .unwrap();
+    assert!(ends(at, 2, &["merge", "p", "--check"]).1.contains("plan.json is not a plan"));
+}
