@@ -116,12 +116,12 @@ impl SharedFile {
             let has_shrunk = !minus(&self.held, mine.samples()).is_empty();
             if has_shrunk || !self.may_replace || !self.is_as_seen() {
                 match self.consider(mine, description, same_job) {
-                    Ok(Verdict::Replace) => {}
-                    Ok(Verdict::Added(words)) => {
+                    Ok(Decision::Replace) => {}
+                    Ok(Decision::Added(words)) => {
                         note = Some(words);
                         continue;
                     }
-                    Ok(Verdict::Leave(note)) => {
+                    Ok(Decision::Leave(note)) => {
                         return Ok(SaveOutcome { path: self.path.clone(), note, is_elsewhere: false });
                     }
                     Err(reason) => return self.save_elsewhere(film, description, &reason),
@@ -161,12 +161,12 @@ impl SharedFile {
         mine: &Film,
         description: &Description,
         same_job: &dyn Fn(&str, &str) -> Result<(), String>,
-    ) -> Result<Verdict, String> {
+    ) -> Result<Decision, String> {
         let seen = Stamp::of(&self.path).map_err(|error| error.to_string())?;
         if seen.is_none() {
             // The file was deleted, or it is a device.
             self.seen = None;
-            return Ok(Verdict::Replace);
+            return Ok(Decision::Replace);
         }
         let FilmFile { film: theirs, description: told } =
             checkpoint::load(&self.path).map_err(|error| error.to_string())?;
@@ -179,13 +179,13 @@ impl SharedFile {
         let only_theirs = minus(theirs.samples(), mine.samples());
         if only_theirs.is_empty() {
             (self.seen, self.may_replace) = (seen, true);
-            return Ok(Verdict::Replace);
+            return Ok(Decision::Replace);
         }
         let told = |ranges: &[Range<u64>]| ranges_of(ranges).to_string();
         if minus(mine.samples(), theirs.samples()).is_empty() {
             let is_new = self.may_replace || self.seen != seen;
             (self.seen, self.may_replace) = (seen, false);
-            return Ok(Verdict::Leave(is_new.then(|| {
+            return Ok(Decision::Leave(is_new.then(|| {
                 format!(
                     "{} already holds all samples of this run, and also {}, so it is left unchanged",
                     self.path.display(),
@@ -208,7 +208,7 @@ impl SharedFile {
             }
         }
         (self.seen, self.may_replace) = (seen, true);
-        Ok(Verdict::Added(format!(
+        Ok(Decision::Added(format!(
             "another run has written {} in the meantime; its samples {} are kept too",
             self.path.display(),
             told(&only_theirs)
@@ -259,7 +259,7 @@ impl SharedFile {
 }
 
 /// What to do about a file that another run has written.
-enum Verdict {
+enum Decision {
     /// Replace it: this run's film contains all of it.
     Replace,
     /// Replace it: this run's film now includes its samples.
@@ -319,7 +319,7 @@ mod tests {
             checkpoint::save(&path, &film(&[0..2, theirs]), &description).unwrap();
             let joined = place.joined(&mine).unwrap().unwrap_or_else(|| mine.clone());
             let verdict = place.consider(&joined, &description, &same);
-            assert!(matches!(verdict, Ok(Verdict::Added(_))));
+            assert!(matches!(verdict, Ok(Decision::Added(_))));
         }
         let saved = place.save(&mine, &description, &same).unwrap();
         assert!(!saved.is_elsewhere, "{saved:?}");

@@ -35,12 +35,12 @@ const CELL_LIMIT: usize = 64;
 pub(super) struct Facts {
     /// Indices, ascending, of spheres that are covered by an earlier sphere of the same place and size.
     covered: Vec<u32>,
-    layers: Vec<Layer>,
+    layers: Vec<ThinLayer>,
 }
 
 /// Two spheres with nearly the same surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Layer {
+struct ThinLayer {
     spheres: [u32; 2],
     /// Greatest distance between the surfaces.
     thickness: f64,
@@ -51,7 +51,7 @@ struct Layer {
 /// A layer in which rounding is visible.
 #[derive(Clone, Copy, Debug)]
 struct Unresolved {
-    layer: Layer,
+    layer: ThinLayer,
     /// The thickness that the layer would need.
     limit: f64,
 }
@@ -166,13 +166,13 @@ impl Facts {
         // Where surfaces cross, they differ by no more than this either.
         if thickness < LAYER_SHARE * first.radius.min(second.radius) {
             let opening = ((first.radius - second.radius).abs() - apart).max(0.0);
-            self.layers.push(Layer { spheres, thickness, opening });
+            self.layers.push(ThinLayer { spheres, thickness, opening });
         }
     }
 }
 
 /// Returns `None` if the layer renders correctly.
-fn unresolved(layer: Layer, job: &RenderJob, origin: DVec3) -> Option<Unresolved> {
+fn unresolved(layer: ThinLayer, job: &RenderJob, origin: DVec3) -> Option<Unresolved> {
     let spheres = layer.spheres.map(|index| job.scene().spheres[index as usize]);
     let limits = spheres.map(|Sphere { center, radius, .. }| {
         let coordinate = (center - origin).abs().max_element() + radius;

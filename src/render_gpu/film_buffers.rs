@@ -1,25 +1,19 @@
 //! The film on the device. It stays there from pass to pass. On request it is copied to staging buffers and cleared;
 //! the copy is transferred to the host while the device continues tracing.
 
+use super::arrival::{PIXEL_WORDS, add_rows, view};
 use super::device::Gpu;
 use super::failed;
 use super::layout::{GpuBlock, GpuCounters, GpuDispatch, GpuPixelSum, tile_size};
 use super::schedule::BLOCK_LIMIT;
 use crate::film::{Film, SampleRanges};
 use crate::render::{RenderError, RenderSettings, Stats};
-use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::mpsc::{self, Receiver};
 use std::time::{Duration, Instant};
 
 /// Size of a pixel's sums in bytes.
 const PIXEL_SIZE: u64 = size_of::<GpuPixelSum>() as u64;
-
-/// 64-bit words per pixel, one per channel.
-const PIXEL_WORDS: usize = 3;
-
-/// Pixels that a host thread adds at a time.
-const PIXELS_AT_ONCE: usize = 4096;
 
 /// Unrequested transfers of the film may take at most one part in this many of the time.
 const ARRIVAL_SHARE: u32 = 20;
@@ -291,29 +285,6 @@ impl FilmBuffers {
 
     fn stagings(&self) -> impl Iterator<Item = &wgpu::Buffer> {
         self.slabs.iter().map(|slab| &slab.staging).chain([&self.counters_staging])
-    }
-}
-
-fn view(staging: &wgpu::Buffer) -> Result<wgpu::BufferView, RenderError> {
-    staging.get_mapped_range(..).map_err(|error| failed(format!("reading results: {error}")))
-}
-
-/// Adds a slab's sums, half by half, to the film, starting at row `first_row`.
-fn add_rows(film: &mut Film, first_row: u32, sums: &[u64]) {
-    let start = first_row as usize * film.width() as usize;
-    let halves = film.halves_mut();
-    // Buffer sizes are rounded up to 16 bytes.
-    let words = sums.len() / halves.len() / PIXEL_WORDS * PIXEL_WORDS;
-    for (half, sums) in halves.iter_mut().zip(sums.chunks_exact(words)) {
-        let pixels = &mut half[start..start + words / PIXEL_WORDS];
-        let parts = pixels.par_chunks_mut(PIXELS_AT_ONCE);
-        parts.zip(sums.par_chunks(PIXELS_AT_ONCE * PIXEL_WORDS)).for_each(|(pixels, sums)| {
-            for (pixel, sum) in pixels.iter_mut().zip(sums.as_chunks::<PIXEL_WORDS>().0) {
-                for (mine, theirs) in pixel.0.iter_mut().zip(sum) {
-                    *mine += theirs;
-                }
-            }
-        });
     }
 }
 

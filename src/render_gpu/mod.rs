@@ -5,6 +5,7 @@
 //! film. Sample indices, random numbers and fixed-point sums match the CPU's to the bit.
 
 mod adapter;
+mod arrival;
 mod device;
 mod dispatches;
 mod exported;

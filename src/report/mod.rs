@@ -2,6 +2,7 @@
 
 mod calibration;
 mod candidate;
+mod csv;
 mod data;
 mod figure;
 mod progress;
@@ -233,7 +234,7 @@ impl<'a> Report<'a> {
             calibration: &calibration::calibration(data),
             sampler_ratios: &summary::sampler_ratios(&curves),
         };
-        write_text(&out.join("report.csv"), &table::csv(data))?;
+        write_text(&out.join("report.csv"), &csv::csv(data))?;
         write_text(&out.join("report.md"), &table::markdown(&findings, &self.options.command))?;
         let figure = figure::figure(data, &curves, targets[0]);
         for name in ["error-vs-time.png", "error-vs-time.svg"] {

@@ -1,36 +1,13 @@
-//! `report.md` and `report.csv`.
+//! `report.md`.
 
 use super::calibration::{Calibration, TOLERANCE};
-use super::data::{Curve, Data, Measured};
+use super::data::{Curve, Data};
 use super::summary::{CurvePoint, CurveSummary, SamplerRatio};
 use crate::statistics::fit::Crossing;
 use std::fmt::Write;
 
 /// Backends that others are compared with, if they were measured.
 const BASES: [&str; 2] = ["c89", "scalar"];
-
-/// All measurements, one line for each picture and number of samples.
-pub fn csv(data: &Data) -> String {
-    let mut text = String::from(
-        "scene,backend,sampler,seed,samples,trace_seconds,wall_seconds,device_seconds,mse,rel_mse,flip,mse_estimate,rejected\n",
-    );
-    for run in &data.runs {
-        for point in &run.points {
-            let Measured { samples, trace_seconds, wall_seconds, mse, rel_mse, flip, rejected, .. } = point;
-            let optional = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
-            let (device, estimate) = (optional(point.device_seconds), optional(point.mse_estimate));
-            let curve = &run.curve;
-            // A scene's name may be any file name.
-            let scene = curve.scene.replace([',', '"', '\n'], "_");
-            let _ = writeln!(
-                text,
-                "{scene},{},{},{},{samples},{trace_seconds},{wall_seconds},{device},{mse},{rel_mse},{flip},{estimate},{rejected}",
-                curve.backend, curve.sampler, run.seed
-            );
-        }
-    }
-    text
-}
 
 /// What the tables show.
 pub struct Findings<'a> {

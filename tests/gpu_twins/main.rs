@@ -5,6 +5,7 @@ mod boxes;
 #[path = "../gpu_common/mod.rs"]
 mod gpu_common;
 mod names;
+mod numbers;
 mod surfaces;
 
 use glam::DVec3;
@@ -120,67 +121,6 @@ impl Ulps {
         println!("{what}: {:.1} units of the last place", self.0);
         assert!(self.0 <= limit, "{what}: {} > {limit}", self.0);
     }
-}
-
-#[test]
-fn integers_are_equal_to_the_bit() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    let laws = DielectricLaws::Schlick;
-    let random = |i: u32| {
-        let [a, b, c, d] = pcg4d([i, 1, 2, 3]);
-        let mut words = [0; PROBE_STRIDE];
-        words[..5].copy_from_slice(&[a, b & 1, c, d, i % 50]);
-        words
-    };
-    for (input, output) in run(&mut gpu, laws, Probe::Pcg4d, random) {
-        assert_eq!(output[..4], pcg4d([input[0], input[1], input[2], input[3]]));
-    }
-    for (input, output) in run(&mut gpu, laws, Probe::Sobol, random) {
-        let [seed, half, pixel, counter, bounce] = [0, 1, 2, 3, 4].map(|i| input[i]);
-        let key = pixel_key(seed, half, pixel);
-        let pair = |block: u32| {
-            let u = laine_karras(counter, mix32(key.wrapping_add(block.wrapping_mul(GOLDEN_RATIO))));
-            [u, pascal(u)]
-        };
-        assert_eq!(output[..4], [pair(bounce), pair(bounce.wrapping_add(LENS_BLOCK))].concat());
-    }
-    let sums = |i: u32| {
-        let x = match i {
-            0 => 0.5,
-            1 => 1.5,
-            2 => 2.5,
-            3 => FIXED_POINT_MAX as f32,
-            4 => 3e9,
-            _ => uniform(i, 5)[0] * (1_u32 << (i % 31)) as f32,
-        };
-        let [_, low, high, more] = pcg4d([i, 1, 2, 3]);
-        let mut words = words(&[x]);
-        words[1..4].copy_from_slice(&[low, high, more]);
-        words
-    };
-    for (input, output) in run(&mut gpu, laws, Probe::FixedPoint, sums) {
-        let rounded = f64::from(float(&input, 0)).round_ties_even().min(f64::from(FIXED_POINT_MAX));
-        assert_eq!(f64::from(output[0]), rounded, "{input:?}");
-        let sum = u64::from(input[1]) | u64::from(input[2]) << 32;
-        let sum = sum.wrapping_add(u64::from(input[3]));
-        assert_eq!([output[1], output[2]], [sum as u32, (sum >> 32) as u32]);
-    }
-}
-
-#[test]
-fn sine_and_cosine() {
-    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
-    let mut ulps = Ulps::default();
-    for (input, output) in run(&mut gpu, DielectricLaws::Schlick, Probe::SinCos, |i| {
-        let mut words = [0; PROBE_STRIDE];
-        words[0] = i << 20 | pcg4d([i, 0, 0, 0])[0] >> 12;
-        words
-    }) {
-        assert_eq!(float(&output, 0), unit_float(input[0]));
-        let (sine, cosine) = sin_cos_turns(unit_float(input[0]));
-        ulps.compare(&[float(&output, 1), float(&output, 2)], &[sine, cosine], 0.75);
-    }
-    ulps.within("sin_cos_turns", 4.0);
 }
 
 const BOOK_T_MIN: f32 = weekender::stages::BOOK_T_MIN as f32;

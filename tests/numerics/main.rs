@@ -16,6 +16,7 @@ mod intersection;
 mod layers;
 mod materials;
 mod parity;
+mod reflections;
 mod sampling;
 mod statistics;
 mod stiff;

@@ -1,0 +1,146 @@
+//! A pass over a film: its tiles are traced by all threads, and a pass that breaks off is taken away again.
+
+use super::broadcast::BroadcastScene;
+use super::kernels::Kernel;
+use super::tiles::{Tile, tiles};
+use super::work::{RefillBlock, RefillOrder, TileStats, Work};
+use crate::film::Film;
+use crate::kernel::Real;
+use crate::render::panic_text;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// A job's prepared scene and kernel in one of the two precisions.
+pub(super) enum Prepared {
+    Single(Box<BroadcastScene<f32>>, Kernel<f32>),
+    Double(Box<BroadcastScene<f64>>, Kernel<f64>),
+}
+
+/// What a pass traces, and how.
+#[derive(Clone, Copy)]
+pub(super) struct Pass<'a> {
+    pub side: u32,
+    pub range: &'a Range<u64>,
+    pub cancel: &'a AtomicBool,
+    /// If set, the pass subtracts blocks from the film instead of adding all: the number of blocks by tile.
+    pub taken_away: Option<&'a [u64]>,
+}
+
+/// The outcome of tracing a tile.
+pub(super) struct TracedTile {
+    pub stats: TileStats,
+    /// Blocks whose sums are in the film.
+    pub finished: u64,
+    /// Blocks that the tile has.
+    pub expected: u64,
+    /// The message of the tracer's panic, if it panicked.
+    pub panic: Option<String>,
+}
+
+/// What traces passes.
+#[derive(Clone, Copy)]
+pub(super) struct PassTracer<'a> {
+    pub threads: &'a rayon::ThreadPool,
+    pub prepared: &'a Prepared,
+    /// Tiles left before one in which the tracer panics (fault injection).
+    pub tiles_to_panic: Option<&'a AtomicU64>,
+}
+
+impl PassTracer<'_> {
+    /// Adds a pass to the film's sums. Returns the outcome of each tile, row by row.
+    pub fn trace(&self, pass: Pass, film: &mut Film) -> Vec<TracedTile> {
+        match self.prepared {
+            Prepared::Single(prepared, kernel) => self.trace_with(prepared, kernel, pass, film),
+            Prepared::Double(prepared, kernel) => self.trace_with(prepared, kernel, pass, film),
+        }
+    }
+
+    /// Removes from the film what an incomplete pass has added; `false` if that fails. A sample is a pure function, so
+    /// tracing it again gives the values to subtract. A pass that succeeds pays nothing for this.
+    pub fn take_away(&self, pass: Pass, traced: &[TracedTile], film: &mut Film) -> bool {
+        let added: Vec<u64> = traced.iter().map(|tile| tile.finished).collect();
+        let never = AtomicBool::new(false);
+        let again = self.trace(Pass { taken_away: Some(&added), cancel: &never, ..pass }, film);
+        again.iter().zip(&added).all(|(tile, added)| tile.finished >= *added)
+    }
+
+    fn trace_with<R: Real>(
+        &self,
+        prepared: &BroadcastScene<R>,
+        kernel: &Kernel<R>,
+        pass: Pass,
+        film: &mut Film,
+    ) -> Vec<TracedTile> {
+        let settings = &prepared.prepared.settings;
+        let blocks = RefillBlock::of_range(pass.range.clone(), settings, prepared.prepared.block_limit);
+        let tiles = tiles(film.halves_mut(), settings.width, pass.side);
+        let mut orders: Vec<RefillOrder> = Vec::new();
+        for tile in &tiles {
+            if !orders.iter().any(|order| order.size() == tile.size()) {
+                let [width, height] = tile.size();
+                orders.push(RefillOrder::new(width, height));
+            }
+        }
+        let trace_tile = |(index, tile): (usize, Tile)| {
+            let order = orders.iter().find(|order| order.size() == tile.size()).unwrap_or(&orders[0]);
+            let mut work = Work::new(&blocks, order, tile.corner, tile.rows);
+            let expected = work.expected();
+            if let Some(taken_away) = pass.taken_away {
+                work = work.taking_away(taken_away[index]);
+            } else if self.is_to_panic() {
+                work = work.sabotaged();
+            }
+            let mut traced = TracedTile { stats: TileStats::default(), finished: 0, expected, panic: None };
+            if pass.cancel.load(Ordering::Relaxed) {
+                return traced;
+            }
+            // After a panic `work` is still consistent: the sums that it counts are in the film.
+            match catch_unwind(AssertUnwindSafe(|| kernel(prepared, &mut work))) {
+                Ok(stats) => traced.stats = stats,
+                Err(payload) => traced.panic = Some(panic_text(payload.as_ref()).to_owned()),
+            }
+            traced.finished = work.finished();
+            traced
+        };
+        self.threads.install(|| tiles.into_par_iter().enumerate().map(trace_tile).collect())
+    }
+
+    fn is_to_panic(&self) -> bool {
+        self.tiles_to_panic.is_some_and(|left| left.fetch_sub(1, Ordering::Relaxed) == 0)
+    }
+}
+
+/// Describes the first tile that lacks samples, and why; `None` if the pass is complete.
+pub(super) fn what_is_missing(traced: &[TracedTile], side: u32, width: u32) -> Option<String> {
+    let index = traced.iter().position(|tile| tile.panic.is_some() || tile.finished != tile.expected)?;
+    let TracedTile { finished, expected, panic, .. } = &traced[index];
+    let columns = width.div_ceil(side) as usize;
+    let (x, y) = (index % columns * side as usize, index / columns * side as usize);
+    let why = panic.as_ref().map_or(String::new(), |text| format!("it panicked: {text}; "));
+    Some(format!(
+        "{why}of {expected} blocks of samples in the tile at pixel ({x}, {y}) {finished} were finished"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tile_without_all_its_samples_is_named_by_its_corner() {
+        let tile = |finished| TracedTile { stats: TileStats::default(), finished, expected: 9, panic: None };
+        // Tiles of 8 pixels in a picture of 20: three columns.
+        let mut traced: Vec<TracedTile> = [9, 9, 9, 9, 4, 9].map(tile).into();
+        let told = what_is_missing(&traced, 8, 20).expect("samples are missing");
+        assert_eq!(told, "of 9 blocks of samples in the tile at pixel (8, 8) 4 were finished");
+        assert_eq!(what_is_missing(&traced[..4], 8, 20), None);
+        traced[2].panic = Some("a slip".to_owned());
+        let told = what_is_missing(&traced, 8, 20).expect("a panic");
+        assert!(
+            told.starts_with("it panicked: a slip; of 9 blocks of samples in the tile at pixel (16, 0)"),
+            "{told}"
+        );
+    }
+}
