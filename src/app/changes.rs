@@ -43,7 +43,7 @@ impl Changes {
     /// Undoes the last change.
     pub fn undo(&mut self, document: &mut Document) {
         if let Some(earlier) = self.undo.undo(document) {
-            document.clone_from(earlier);
+            restore(document, earlier);
             self.is_undoing = true;
         }
     }
@@ -51,7 +51,7 @@ impl Changes {
     /// Redoes the change that was undone last.
     pub fn redo(&mut self, document: &mut Document) {
         if let Some(later) = self.undo.redo(document) {
-            document.clone_from(later);
+            restore(document, later);
             self.is_undoing = true;
         }
     }
@@ -80,22 +80,30 @@ impl Changes {
     /// Notes what has changed in this frame. Returns whether the document now needs a different film.
     pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
         let is_by_hand = context.input(|input| input.pointer.any_down());
-        let mut is_other_film = false;
+        let is_other_film = !document.has_same_film(&self.last);
         if *document != self.last {
             // Undo returns to the state before a change, or before a whole gesture.
             if !self.is_in_gesture && !self.is_undoing {
                 self.undo.add_undo(&self.last);
             }
-            is_other_film = !document.has_same_film(&self.last);
             if is_other_film && is_by_hand {
                 self.note_move();
             }
-            self.last = document.clone();
         }
+        self.last.clone_from(document);
         self.is_undoing = false;
         self.is_in_gesture = self.is_moving() || is_by_hand;
         let now = context.input(|input| input.time);
         self.undo.feed_state(now, document);
         is_other_film
+    }
+}
+
+/// Replaces `document` by its state before or after a change. A size that follows the viewport or the book stays.
+fn restore(document: &mut Document, state: &Document) {
+    let before = std::mem::replace(document, state.clone());
+    let follows = !before.has_own_size && !document.has_own_size;
+    if follows && std::sync::Arc::ptr_eq(&before.origin, &document.origin) {
+        document.set_size(before.size());
     }
 }

@@ -71,6 +71,7 @@ impl Facts {
             Command::FullScreen => self.model.is_full_screen,
             Command::Theme(theme) => remembered.theme == theme,
             Command::Device(device) => remembered.device == device,
+            Command::Size(sizing) => !document.has_own_size && remembered.sizing == sizing,
             Command::Stage(stage) => document.stage() == Some(stage),
             Command::Extreme(case) => document.case() == Some(case),
             _ => false,

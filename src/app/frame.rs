@@ -4,6 +4,7 @@ use super::frame_log::FrameTimes;
 use super::input::{self, Keyboard};
 use super::model::Model;
 use super::model::show::Show;
+use super::sizer::Present;
 use super::theme;
 use super::tracer::{Shown, Want};
 use super::window::Window;
@@ -135,11 +136,25 @@ impl Window {
         }
     }
 
+    /// Makes the picture as large as the viewport, unless that would throw away too much.
+    fn follow_size(&mut self, context: &egui::Context) {
+        let (main, view) = (&self.main, &self.model.view);
+        let present = Present {
+            is_documents: main.is_of(&self.model.document),
+            seconds: self.seconds_before.unwrap_or(f64::INFINITY) + main.status().trace.as_secs_f64(),
+            // A reference film has the size that it has.
+            is_needed: self.pending_save.is_some() || self.pending_copy || view.show() == Show::Difference,
+        };
+        let wish = (self.model.remembered.sizing, self.viewport.room_pixels());
+        self.sizer.follow(context, &mut self.model.document, wish, &present);
+    }
+
     /// Notes what has changed and starts the render that this requires.
     fn follow(&mut self, context: &egui::Context) {
         if let Err(reason) = self.spheres.follow(context, &mut self.model) {
             self.toasts.bad(reason);
         }
+        self.follow_size(context);
         if self.changes.follow(context, &self.model.document) {
             self.seconds_before = Some(0.0);
             if let Some(log) = &mut self.frame_log {

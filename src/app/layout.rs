@@ -143,6 +143,7 @@ impl Window {
         edits.into_iter().chain(touch.edit).for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
             self.first_steps.ui(ui, room, &facts, &mut self.commands);
+            self.sizer.ui(ui, room, &mut self.commands);
             self.toasts.ui(ui, room);
         }
         if let Some(text) = widgets::take_told(ui.ctx()) {

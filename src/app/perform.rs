@@ -133,6 +133,11 @@ impl Window {
                 *device = if *device == Device::Gpu { Device::Cpu } else { Device::Gpu };
             }
             Command::Device(device) => self.model.remembered.device = device,
+            Command::Size(sizing) => {
+                self.model.remembered.sizing = sizing;
+                self.model.document.has_own_size = false;
+                self.sizer.ask();
+            }
             Command::PreviousStage => {
                 self.note_step(Step::Leaf);
                 if let Some(stage) = neighbour(self.document(), false) {
@@ -256,7 +261,20 @@ impl Window {
     fn ask_path(&mut self, purpose: Purpose) {
         let name = self.document().name();
         let directory = self.model.remembered.directory.as_deref();
-        self.dialogs.open(Dialog::Path(PathBox::new(purpose, &name, directory)));
+        let mut path_box = PathBox::new(purpose, &name, directory);
+        if matches!(purpose, Purpose::Save(_)) {
+            path_box.say(self.size_words());
+        }
+        self.dialogs.open(Dialog::Path(path_box));
+    }
+
+    /// What is saved now, in words.
+    fn size_words(&self) -> String {
+        let size = self.document().size_words(self.model.remembered.sizing);
+        match self.sizer.offer() {
+            Some([width, height]) => format!("The picture: {size} when it was begun (now {width}x{height})"),
+            None => format!("The picture: {size}"),
+        }
     }
 
     /// Uses a file for the purpose for which it was chosen.

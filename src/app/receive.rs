@@ -87,6 +87,7 @@ impl Window {
         let mut document = Document::new(origin);
         document.camera = recipe.camera;
         document.settings = recipe.settings;
+        document.has_own_size = true;
         if let Content::Picture { samples: Some(samples) } = content {
             // A picture is restored with its stop condition; a film continues.
             document.stop = Stop::at_samples(samples);

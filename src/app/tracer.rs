@@ -1,6 +1,7 @@
 //! The window's side of a progressive render: what is wanted, what is running, and the newest picture as a texture.
 
 use super::model::document::Document;
+use super::preview::{Preview, Previews};
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
@@ -16,14 +17,8 @@ const MOVING_PASS: Duration = Duration::from_millis(10);
 /// Target duration of a pass otherwise.
 const STILL_PASS: Duration = Duration::from_millis(40);
 
-/// Target latency of a preview in seconds, from input to display.
-const PREVIEW_SECONDS: f64 = 0.05;
-
-/// If a preview took longer than this many seconds, the next one is coarser.
-const PREVIEW_SECONDS_LIMIT: f64 = 0.07;
-
-/// The coarsest divisor of previews.
-const DIVISOR_LIMIT: u32 = 8;
+/// The longest wait for a first look at a picture that takes long.
+const LOOK_LIMIT: Duration = Duration::from_millis(300);
 
 /// Samples per pixel that a render started during a pause traces before it stops.
 const PAUSED_SAMPLES: u64 = 8;
@@ -45,19 +40,22 @@ pub struct Want<'a> {
 }
 
 impl Want<'_> {
-    fn plan(&self, is_held: bool) -> Plan {
+    fn plan(&self, is_held: bool, preview: Preview) -> Plan {
         let pass_target = if self.is_moving { MOVING_PASS } else { STILL_PASS };
         let mut stop = self.stop;
         if is_held {
             stop.samples = Some(stop.samples.map_or(PAUSED_SAMPLES, |samples| samples.min(PAUSED_SAMPLES)));
         }
-        Plan { pass_target, ..Plan::until(stop) }
+        let preview = (preview.divisor > 1).then_some(preview.samples);
+        Plan { pass_target, preview, ..Plan::until(stop) }
     }
 }
 
 struct Started {
     document: Document,
-    divisor: u32,
+    preview: Preview,
+    /// A preview of a picture that does not move, which follows at once.
+    is_look: bool,
     run: u64,
     at: Instant,
     is_pictured: bool,
@@ -87,9 +85,7 @@ pub struct Tracer {
     /// The backend and plan last sent to the render thread.
     told: Option<(BackendChoice, Plan)>,
     view: View,
-    /// Pixels per second of the last preview, from request to picture. It includes the cost of drawing the window.
-    preview_speed: Option<f64>,
-    moving_divisor: Option<u32>,
+    previews: Previews,
 }
 
 impl Tracer {
@@ -102,8 +98,7 @@ impl Tracer {
             asked: Instant::now(),
             told: None,
             view: View::Picture,
-            preview_speed: None,
-            moving_divisor: None,
+            previews: Previews::default(),
         })
     }
 
@@ -130,7 +125,9 @@ impl Tracer {
 
     /// Whether the current film is the full-size film of the document.
     pub fn is_full(&self, document: &Document) -> bool {
-        self.started.as_ref().is_some_and(|run| run.divisor == 1 && run.document.has_same_film(document))
+        self.started
+            .as_ref()
+            .is_some_and(|run| run.preview.divisor == 1 && run.document.has_same_film(document))
     }
 
     /// Whether the current film is the document's, at any size.
@@ -191,13 +188,16 @@ impl Tracer {
     /// Continues a film of `document`.
     pub fn go_on_with(&mut self, film: Film, want: &Want<'_>) -> Result<(), String> {
         self.look(&want.view);
-        self.start(want, 1, Some(film))
+        self.start(want, Preview::NONE, Some(film))
     }
 
     /// Takes new results. For a new picture, returns the time at which its render began.
     pub fn poll(&mut self, context: &egui::Context) -> Option<Instant> {
         self.status = Arc::new(self.progressive.status());
         let started = self.started.as_mut()?;
+        if started.preview.divisor == 1 {
+            self.previews.note_speed(&self.status);
+        }
         let mut pictured = None;
         if let Some(picture) = self.progressive.newest_picture()
             && picture.run == started.run
@@ -206,27 +206,23 @@ impl Tracer {
             self.shown = Some(Shown {
                 texture: Texture::new([picture.width, picture.height], &picture.rgb8, earlier),
                 samples: picture.samples_per_pixel,
-                divisor: started.divisor,
+                divisor: started.preview.divisor,
                 document: started.document.clone(),
             });
-            if let Some(divisor) = &mut self.moving_divisor
-                && !started.is_pictured
-            {
-                let took = started.at.elapsed().as_secs_f64().max(1e-3);
-                self.preview_speed = Some(f64::from(picture.width) * f64::from(picture.height) / took);
-                // During a move, previews only get coarser: getting finer again would make them flicker.
-                if took > PREVIEW_SECONDS_LIMIT {
-                    let coarser = f64::from(started.divisor) * (took / PREVIEW_SECONDS).sqrt();
-                    *divisor = (coarser.ceil() as u32).clamp(*divisor, DIVISOR_LIMIT.max(*divisor));
-                }
+            if !started.is_pictured && (self.previews.is_moving() || started.is_look) {
+                let samples = picture.samples_per_pixel as f64;
+                let samples = samples * f64::from(picture.width) * f64::from(picture.height);
+                let seconds = started.at.elapsed().as_secs_f64();
+                self.previews.pictured(&started.document, started.preview.divisor, samples, seconds);
             }
             started.is_pictured = true;
             pictured = Some(started.at);
         }
         // After many samples, the picture changes slowly.
-        let interval = match self.moving_divisor {
-            Some(_) => Duration::ZERO,
-            None => (started.at.elapsed() / 20).min(PICTURE_INTERVAL_LIMIT),
+        let interval = if self.previews.is_moving() {
+            Duration::ZERO
+        } else {
+            (started.at.elapsed() / 20).min(PICTURE_INTERVAL_LIMIT)
         };
         if self.asked.elapsed() >= interval || !started.is_pictured {
             self.progressive.ask_for_picture();
@@ -244,18 +240,14 @@ impl Tracer {
     /// Why the document cannot be rendered; the current render continues.
     pub fn want(&mut self, want: &Want<'_>) -> Result<(), String> {
         self.look(&want.view);
-        if !want.is_moving {
-            self.moving_divisor = None;
-        }
-        let divisor = if want.is_moving { self.divisor(want.document) } else { 1 };
-        if want.is_moving {
-            self.moving_divisor = Some(divisor);
-        }
-        let is_at_it = self
-            .started
-            .as_ref()
-            .is_some_and(|run| run.document.has_same_film(want.document) && run.divisor <= divisor);
-        if is_at_it {
+        let preview = if want.is_moving {
+            self.previews.follow_move(want.document)
+        } else {
+            self.previews.end_move();
+            Preview::NONE
+        };
+        let mine = self.started.as_ref().filter(|run| run.document.has_same_film(want.document));
+        if mine.is_some_and(|run| run.preview.divisor <= preview.divisor || self.is_looking(run)) {
             self.adjust(want);
             return Ok(());
         }
@@ -264,19 +256,40 @@ impl Tracer {
         if want.is_moving && is_unseen && self.status.phase.is_working() {
             return Ok(());
         }
-        self.start(want, divisor, None)
+        let look = if want.is_moving || mine.is_some() { None } else { self.first_look(want) };
+        self.start(want, look.unwrap_or(preview), None)?;
+        if let Some(run) = &mut self.started {
+            run.is_look = look.is_some();
+        }
+        Ok(())
     }
 
-    fn start(&mut self, want: &Want<'_>, divisor: u32, film: Option<Film>) -> Result<(), String> {
-        let job = want.document.job(divisor).map_err(|error| error.to_string())?;
-        let plan = want.plan(want.is_paused);
+    /// Whether this render is a first look that has not been seen and will be soon.
+    fn is_looking(&self, run: &Started) -> bool {
+        let is_early = run.at.elapsed() < LOOK_LIMIT && self.status.phase.is_working();
+        run.is_look && !run.is_pictured && is_early
+    }
+
+    /// What to show before the first samples of another picture. The same picture at another size is on the screen
+    /// already, and a GPU is fast or has to compile first.
+    fn first_look(&self, want: &Want<'_>) -> Option<Preview> {
+        let is_cpu = matches!(want.backend, BackendChoice::Cpu(_) | BackendChoice::Reference { .. });
+        let is_there = |shown: &Shown| shown.document.is_same_at_another_size(want.document);
+        let is_new = is_cpu && !self.shown.as_ref().is_some_and(is_there);
+        self.previews.first_look(want.document).filter(|_| is_new)
+    }
+
+    fn start(&mut self, want: &Want<'_>, preview: Preview, film: Option<Film>) -> Result<(), String> {
+        let job = want.document.job(preview.divisor).map_err(|error| error.to_string())?;
+        let plan = want.plan(want.is_paused, preview);
         let request = RenderRequest { film, ..RenderRequest::new(job, want.backend.clone(), plan.clone()) };
         self.progressive.start(request);
         self.progressive.ask_for_picture();
         self.status = Arc::new(self.progressive.status());
         self.started = Some(Started {
             document: want.document.clone(),
-            divisor,
+            preview,
+            is_look: false,
             run: self.status.run,
             at: Instant::now(),
             is_pictured: false,
@@ -288,11 +301,9 @@ impl Tracer {
 
     /// Changes backend or plan and keeps the film.
     fn adjust(&mut self, want: &Want<'_>) {
-        let is_held = self.started.as_mut().is_some_and(|run| {
-            run.is_held &= want.is_paused;
-            run.is_held
-        });
-        let plan = want.plan(is_held);
+        let Some(run) = &mut self.started else { return };
+        run.is_held &= want.is_paused;
+        let plan = want.plan(run.is_held, run.preview);
         let Some((told_backend, told_plan)) = &mut self.told else { return };
         if told_backend != want.backend {
             told_backend.clone_from(want.backend);
@@ -302,16 +313,5 @@ impl Tracer {
             told_plan.clone_from(&plan);
             self.progressive.set_plan(plan);
         }
-    }
-
-    /// The divisor of previews, chosen so that the first pass is short.
-    fn divisor(&self, document: &Document) -> u32 {
-        self.moving_divisor.unwrap_or_else(|| {
-            let pixels = f64::from(document.settings.width) * f64::from(document.settings.height);
-            // An estimate for the first preview: the current render must stop first, and drawing takes time too.
-            let speed = self.preview_speed.unwrap_or_else(|| (0.1 * self.status.paths_per_second()).max(1e6));
-            let affordable = (speed * PREVIEW_SECONDS).max(1.0);
-            ((pixels / affordable).sqrt().ceil() as u32).clamp(1, DIVISOR_LIMIT)
-        })
     }
 }

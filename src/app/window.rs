@@ -23,6 +23,7 @@ use super::paths::Paths;
 use super::pixel_values::PixelValues;
 use super::places::Place;
 use super::second::Second;
+use super::sizer::Sizer;
 use super::speed::Speed;
 use super::spheres::Spheres;
 use super::surfaces::Surfaces;
@@ -58,6 +59,7 @@ pub struct Window {
     pub(super) surfaces: Surfaces,
     pub(super) identity: Identity,
     pub(super) speed: Speed,
+    pub(super) sizer: Sizer,
     pub(super) spheres: Spheres,
     pub(super) viewport: Viewport,
     pub(super) inspector: Inspector,
@@ -154,6 +156,7 @@ impl Window {
             surfaces: Surfaces::default(),
             identity: Identity::default(),
             speed: Speed::default(),
+            sizer: Sizer::default(),
             spheres: Spheres::default(),
             viewport: Viewport::default(),
             inspector: Inspector::default(),
@@ -269,6 +272,7 @@ fn document_of(options: &WindowOptions) -> Document {
     let mut document = Document::new(origin);
     document.camera = recipe.camera;
     document.settings = recipe.settings;
+    document.has_own_size |= options.is_size_given || options.resume.is_some();
     document.stop = stop.unwrap_or(document.origin.usual_stop());
     document
 }

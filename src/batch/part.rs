@@ -59,8 +59,8 @@ fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode
         stage: plan.stage(),
         plan: progressive::Plan {
             first_sample: part.samples[0],
-            stop: Stop::at_samples(part.samples[1]),
             pass_target: progressive::Plan::BATCH_PASS,
+            ..progressive::Plan::until(Stop::at_samples(part.samples[1]))
         },
         out: path.clone(),
         checkpoint: Some(path.clone()),

@@ -51,6 +51,8 @@ pub struct WindowOptions {
     pub stage: Option<&'static Stage>,
     /// The scene file that it comes from.
     pub file: Option<PathBuf>,
+    /// Whether a flag gave the picture its size.
+    pub is_size_given: bool,
     /// Whether flags chose or changed the picture.
     pub is_picture_given: bool,
     /// The backend.
@@ -194,6 +196,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         stage: chosen.stage,
         file: file.map(PathBuf::from),
         backend,
+        is_size_given: raw.picture.size.is_some(),
         is_picture_given: raw.picture.is_given() || raw.resume.is_some() || raw.estimate_error.is_some(),
         is_device_given: backend::is_given(&raw.backend),
         resume: raw.resume.clone(),
@@ -276,7 +279,8 @@ fn plan(raw: &RawRender, recipe: &Recipe) -> Plan {
         (None, None) if seconds.is_some() || noise.is_some() => (0, None),
         (None, _) => (0, Some(recipe.samples_per_pixel)),
     };
-    Plan { first_sample, stop: Stop { samples, seconds, noise }, pass_target: Plan::BATCH_PASS }
+    let stop = Stop { samples, seconds, noise };
+    Plan { first_sample, pass_target: Plan::BATCH_PASS, ..Plan::until(stop) }
 }
 
 /// The directory of `--stage all`, which excludes many other flags.

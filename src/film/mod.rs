@@ -16,6 +16,7 @@ mod merge;
 mod ranges;
 mod resolve;
 mod shared_file;
+mod smooth;
 
 pub use checkpoint::{CheckpointError, FilmFile, FilmHead};
 pub use checksum::Checksum;

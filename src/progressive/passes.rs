@@ -25,6 +25,11 @@ impl PassSizer {
         PassSizer { smallest, length: smallest, seconds_per_sample: None }
     }
 
+    /// Begins with a pass of this many samples, a power of two, or of as many as each half needs.
+    pub fn begin_with(self, samples: u64) -> Self {
+        PassSizer { length: samples.clamp(self.smallest, LENGTH_LIMIT), ..self }
+    }
+
     /// Forgets the measured times, because another backend has a different speed.
     pub fn restart(&mut self) {
         self.length = self.smallest;
@@ -100,6 +105,16 @@ mod tests {
     fn passes_double_and_end_at_the_plan() {
         let found = passes(2, SampleRanges::default(), 0..200);
         assert_eq!(found, [0..2, 2..4, 4..8, 8..16, 16..32, 32..64, 64..128, 128..192, 192..200]);
+    }
+
+    #[test]
+    fn the_first_pass_can_be_longer() {
+        let first = |half_count, samples, planned| {
+            PassSizer::new(half_count).begin_with(samples).next(&SampleRanges::default(), planned, None)
+        };
+        assert_eq!(first(1, 4, 0..100), Some(0..4));
+        assert_eq!(first(1, 4, 0..3), Some(0..2), "no more than is planned");
+        assert_eq!(first(2, 1, 0..100), Some(0..2));
     }
 
     #[test]

@@ -51,6 +51,9 @@ pub struct Plan {
     pub stop: Stop,
     /// The duration that a pass should have. Commands are obeyed between passes.
     pub pass_target: Duration,
+    /// For a preview, the samples of its first pass, a power of two. Its pictures are smoothed as long as they have few
+    /// samples.
+    pub preview: Option<u64>,
 }
 
 impl Plan {
@@ -62,7 +65,7 @@ impl Plan {
 
     /// All samples until `stop`, in interactive passes.
     pub fn until(stop: Stop) -> Self {
-        Plan { first_sample: 0, stop, pass_target: Plan::INTERACTIVE_PASS }
+        Plan { first_sample: 0, stop, pass_target: Plan::INTERACTIVE_PASS, preview: None }
     }
 
     /// Samples `0..samples`, without other stop conditions, in interactive passes.

@@ -95,6 +95,11 @@ impl Stage {
         self.section.split('.').next().unwrap_or(self.section)
     }
 
+    /// The width of the book's pictures from its first rays on, pixels: 400, and 1200 in its last chapter.
+    pub fn book_width(&self) -> u32 {
+        if self.next().is_none() { 1200 } else { 400 }
+    }
+
     /// The web address of the stage's section in the book.
     pub fn url(&self) -> String {
         book_url(self.chapter_title, Some(self.section_title))

@@ -5,4 +5,5 @@
 mod common;
 mod failures;
 mod handover;
+mod preview;
 mod stopping;

@@ -116,6 +116,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::Restart => window.status().run > 1,
         Command::SwitchDevice => remembered.device == Device::Gpu,
         Command::Device(device) => remembered.device == device,
+        Command::Size(sizing) => remembered.sizing == sizing && document.settings != before.settings,
         Command::PreviousStage => document.stage() == before.stage().and_then(|stage| stage.previous()),
         Command::NextStage => document.stage() == before.stage().and_then(|stage| stage.next()),
         Command::Stage(stage) => document.stage() == Some(stage),

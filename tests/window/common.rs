@@ -5,7 +5,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
 use std::path::Path;
 use std::time::{Duration, Instant};
-use weekender::app::{Command, Window};
+use weekender::app::{Command, Sizing, Window};
 use weekender::cli::{self, Request};
 
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -13,7 +13,15 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// The usual small picture.
 pub const SMALL: &str = "--stage glass-schlick --size 32x18";
 
+/// A window in which pictures have the size that they have in the book, so that they do not depend on the viewport.
 pub fn window(arguments: &str) -> Window {
+    let mut window = window_of_new_user(arguments);
+    window.remembered_mut().sizing = Sizing::Book;
+    window
+}
+
+/// A window with the settings that it has when it is opened for the first time.
+pub fn window_of_new_user(arguments: &str) -> Window {
     let words = std::iter::once("weekender").chain(arguments.split_whitespace());
     match cli::parse(words.map(Into::into)).unwrap() {
         Request::Window(options) => Window::new(*options, None).unwrap(),

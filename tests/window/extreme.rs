@@ -6,8 +6,7 @@ use weekender::app::Command;
 use weekender::stress::shown_cases;
 
 fn make_small(harness: &mut egui_kittest::Harness<'_, weekender::app::Window>) {
-    let settings = &mut harness.state_mut().document_mut().settings;
-    (settings.width, settings.height) = (30, 20);
+    harness.state_mut().document_mut().give_size([30, 20]);
 }
 
 #[test]

@@ -21,8 +21,7 @@ const FOLDED: [&str; 3] = ["Seed", "Time", "Save PNG"];
 /// The first window of a new user, with a small picture.
 fn first() -> Harness<'static, Window> {
     let mut first = window("");
-    let settings = &mut first.document_mut().settings;
-    (settings.width, settings.height) = (64, 36);
+    first.document_mut().give_size([64, 36]);
     opened(first)
 }
 

@@ -111,3 +111,12 @@ fn the_bytes_of_a_pixel_are_those_of_its_row() {
         }
     }
 }
+
+#[test]
+fn a_picture_that_takes_long_is_looked_at_first() {
+    let mut harness = open("--stage book --size 3200x1800 --device cpu --samples 2");
+    until(&mut harness, "a picture", |window| window.shown().is_some());
+    let (samples, divisor) = harness.state().shown().unwrap();
+    assert!(divisor > 1 && samples >= 1, "{samples} samples, 1/{divisor}");
+    until(&mut harness, "the picture itself", has_samples(2));
+}

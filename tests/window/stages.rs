@@ -28,8 +28,7 @@ fn every_stage_is_compared_with_another() {
     harness.key_press(Key::C);
     for stage in Stage::ALL {
         send(&mut harness, Command::Stage(stage));
-        harness.state_mut().document_mut().settings.width = 32;
-        harness.state_mut().document_mut().settings.height = 18;
+        harness.state_mut().document_mut().give_size([32, 18]);
         until(&mut harness, stage.id, |window| window.has_other_picture());
         assert!(harness.state().is_comparing());
     }

@@ -19,7 +19,7 @@ fn colour_at(harness: &mut Harness<'_, Window>, at: Pos2) -> [u8; 3] {
 fn show(harness: &mut Harness<'_, Window>, stage: &'static Stage) {
     send(harness, Command::Stage(stage));
     let document = harness.state_mut().document_mut();
-    (document.settings.width, document.settings.height) = (64, 36);
+    document.give_size([64, 36]);
     document.camera.vfov_degrees = 60.0;
     document.stop = Stop::at_samples(16);
     harness.step();

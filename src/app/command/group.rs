@@ -32,7 +32,8 @@ impl Command {
             | Command::GoOn
             | Command::Restart
             | Command::SwitchDevice
-            | Command::Device(_) => Group::Render,
+            | Command::Device(_)
+            | Command::Size(_) => Group::Render,
             Command::PreviousStage
             | Command::NextStage
             | Command::Stage(_)

@@ -7,6 +7,7 @@ mod words;
 use super::model::device::Device;
 use super::model::remembered::Theme;
 use super::model::show::Show;
+use super::model::sizing::Sizing;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
@@ -165,6 +166,8 @@ pub enum Command {
     SwitchDevice,
     /// Render with this device.
     Device(Device),
+    /// Render at the size of the viewport or the book.
+    Size(Sizing),
     /// Go to the previous stage.
     PreviousStage,
     /// Go to the next stage.
@@ -213,6 +216,7 @@ impl Command {
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Pause, GoOn, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
+        all.extend(self::Sizing::ALL.map(Size));
         all.extend([PreviousStage, NextStage, Code, Book, Companion]);
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
         all.push(BookArithmetic);

@@ -1,6 +1,7 @@
 //! The commands in words.
 
 use super::Command;
+use crate::app::model::sizing::Sizing;
 use crate::output::OutputFormat;
 
 impl Command {
@@ -60,6 +61,8 @@ impl Command {
             Command::Restart => "Start again".into(),
             Command::SwitchDevice => "Switch between CPU and GPU".into(),
             Command::Device(device) => format!("Trace on {}", device.label()),
+            Command::Size(Sizing::Viewport) => "Size of the viewport".into(),
+            Command::Size(Sizing::Book) => "Size in the book".into(),
             Command::PreviousStage => "Previous stage".into(),
             Command::NextStage => "Next stage".into(),
             Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
@@ -142,6 +145,14 @@ impl Command {
             Command::Restart => "Discard all samples and render from the beginning",
             Command::SwitchDevice => "The same picture continues on the other device",
             Command::Device(device) => device.help(),
+            Command::Size(Sizing::Viewport) => {
+                "Render the largest picture that fits, one of its pixels per pixel of the screen; it has the \
+                 aspect ratio of the book's picture, so that both show the same"
+            }
+            Command::Size(Sizing::Book) => {
+                "Render as many pixels as the book does, such as 400x225; a scene that is not in the book has the \
+                 size that it defines"
+            }
             Command::PreviousStage => "One step back in the book",
             Command::NextStage => "One step forward in the book",
             Command::Stage(stage) => stage.what_is_new,

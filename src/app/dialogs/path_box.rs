@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 pub struct PathBox {
     purpose: Purpose,
     text: String,
+    /// What is saved, in words.
+    about: String,
     is_new: bool,
     /// Can be upgraded as long as the system's dialog is open.
     browsing: Weak<()>,
@@ -51,7 +53,13 @@ impl PathBox {
     }
 
     fn of(purpose: Purpose, path: &Path) -> Self {
-        PathBox { purpose, text: path.display().to_string(), is_new: true, browsing: Weak::new() }
+        let text = path.display().to_string();
+        PathBox { purpose, text, about: String::new(), is_new: true, browsing: Weak::new() }
+    }
+
+    /// Says what is saved, in these words.
+    pub fn say(&mut self, about: String) {
+        self.about = about;
     }
 
     /// Handles a name from the system's dialog, which has already asked before it returned the name of an existing
@@ -64,6 +72,9 @@ impl PathBox {
     pub(super) fn ui(&mut self, ui: &mut Ui, browsed: &Answers<(Purpose, Chosen)>) -> Outcome {
         ui.set_width(ui.available_width());
         ui.heading(self.purpose.title());
+        if !self.about.is_empty() {
+            ui.label(RichText::new(&self.about).color(ui.visuals().weak_text_color()));
+        }
         ui.add_space(6.0);
         let mut edit = egui::TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY);
         if !self.purpose.is_saving() {

@@ -21,14 +21,20 @@ pub struct Document {
     pub camera: Camera,
     /// Size, depth, sampler, seed, halves.
     pub settings: RenderSettings,
+    /// The size is the picture's own: it follows neither the viewport nor the book.
+    pub has_own_size: bool,
     /// When the render ends.
     pub stop: Stop,
 }
 
 impl PartialEq for Document {
-    /// Origins and scenes are immutable, so comparing their addresses is enough.
+    /// Origins and scenes are immutable, so comparing their addresses is enough. A size that follows the viewport or
+    /// the book is none of the user's changes.
     fn eq(&self, other: &Self) -> bool {
-        self.has_same_film(other) && self.camera == other.camera && self.stop == other.stop
+        Arc::ptr_eq(&self.origin, &other.origin)
+            && Arc::ptr_eq(&self.checked, &other.checked)
+            && (self.camera, self.stop, self.has_own_size) == (other.camera, other.stop, other.has_own_size)
+            && self.chosen_settings() == other.chosen_settings()
     }
 }
 
@@ -41,14 +47,22 @@ impl Document {
     /// An unchanged document of `origin`.
     pub fn of(origin: Arc<Origin>) -> Self {
         let Recipe { camera, settings, .. } = origin.recipe;
-        Document { stop: origin.usual_stop(), checked: Arc::clone(&origin.scene), camera, settings, origin }
+        Document {
+            stop: origin.usual_stop(),
+            checked: Arc::clone(&origin.scene),
+            has_own_size: origin.keeps_size(),
+            camera,
+            settings,
+            origin,
+        }
     }
 
-    /// Resets everything to the origin's values.
+    /// Resets everything to the origin's values. A size that follows the viewport or the book stays.
     pub fn reset(&mut self) {
-        let Recipe { camera, settings, .. } = self.origin.recipe;
-        (self.camera, self.settings, self.stop) = (camera, settings, self.origin.usual_stop());
-        self.checked = Arc::clone(&self.origin.scene);
+        let before = std::mem::replace(self, Document::of(Arc::clone(&self.origin)));
+        if !before.has_own_size && !self.has_own_size {
+            self.set_size(before.size());
+        }
     }
 
     /// The scene, as edited.

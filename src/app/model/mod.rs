@@ -11,6 +11,7 @@ pub mod further;
 pub mod origin;
 pub mod remembered;
 pub mod show;
+pub mod sizing;
 pub mod tone;
 pub mod view;
 

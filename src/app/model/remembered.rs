@@ -2,6 +2,7 @@
 
 use super::device::{self, Device};
 use super::first_steps::FirstSteps;
+use super::sizing::Sizing;
 use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use glam::DVec3;
@@ -83,6 +84,8 @@ pub struct Remembered {
     pub has_packet: bool,
     /// Whether the code of the stage is shown.
     pub has_code: bool,
+    /// The size of pictures that have no size of their own.
+    pub sizing: Sizing,
     /// The device that traces.
     pub device: Device,
     /// Lanes per packet; `None` for as many as a register holds.
@@ -109,6 +112,7 @@ impl Default for Remembered {
             has_plot: false,
             has_packet: false,
             has_code: false,
+            sizing: Sizing::Viewport,
             device: Device::Cpu,
             lanes: None,
             threads: None,

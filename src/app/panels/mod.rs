@@ -45,7 +45,9 @@ pub fn ui(
     group(ui, ("Stop", !is_new), Some(&stop::RESET), document, |ui, document| {
         stop::ui(ui, &mut document.stop, facts);
     });
-    group(ui, ("Output", !is_new), None, document, |ui, _| output::ui(ui, commands));
+    group(ui, ("Output", !is_new), Some(&output::RESET), document, |ui, document| {
+        output::ui(ui, document, facts, commands);
+    });
 }
 
 /// A collapsible group of controls, at first open or folded. `reset` is `None` if the stage has no values for the group.

@@ -5,25 +5,30 @@ use crate::app::facts::Facts;
 use crate::app::model::device::{Device, core_count, lane_counts};
 use crate::app::model::document::Document;
 use crate::app::model::remembered::Remembered;
-use crate::app::widgets::{About, check, control, explained, under_name, whole, whole_number};
-use crate::render::{DEPTH_LIMIT, RenderSettings, SIZE_LIMIT, SamplerKind};
+use crate::app::widgets::{About, check, control, whole};
+use crate::render::{DEPTH_LIMIT, RenderSettings, SamplerKind};
 use crate::stages::Shading;
-use eframe::egui::{self, ComboBox, Ui, vec2};
+use eframe::egui::{self, ComboBox, Ui};
 
 pub(super) const RESET: Reset = Reset { is_changed, reset };
 
 fn is_changed(document: &Document) -> bool {
-    document.settings != document.origin.recipe.settings
+    document.settings != of_origin(document)
 }
 
 fn reset(document: &mut Document) {
-    document.settings = document.origin.recipe.settings;
+    document.settings = of_origin(document);
+}
+
+/// The origin's settings at the present size, which belongs to another group.
+fn of_origin(document: &Document) -> RenderSettings {
+    let RenderSettings { width, height, .. } = document.settings;
+    RenderSettings { width, height, ..document.origin.recipe.settings }
 }
 
 pub(super) fn ui(ui: &mut Ui, settings: &mut RenderSettings, remembered: &mut Remembered, facts: &Facts) {
     device(ui, &mut remembered.device);
     lanes_and_threads(ui, remembered);
-    size(ui, settings);
     let rules = facts.document().rules();
     let shading = rules.shading;
     let no_rays = facts.no_rays();
@@ -120,30 +125,5 @@ fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
                 }
             })
             .response
-    });
-}
-
-fn size(ui: &mut Ui, settings: &mut RenderSettings) {
-    let about = About::new("Size", "Width and height, pixels");
-    under_name(ui, about, |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            let size = vec2((ui.available_width() - 4.0) / 2.0, ui.spacing().interact_size.y);
-            let mut all: Option<egui::Response> = None;
-            for (name, pixels) in [("Width", &mut settings.width), ("Height", &mut settings.height)] {
-                let (mut count, range) = (u64::from(*pixels), 1..=u64::from(SIZE_LIMIT));
-                let response = whole_number(ui, (name, size), &mut count, range, |drag| drag.speed(2.0));
-                *pixels = u32::try_from(count).unwrap_or(SIZE_LIMIT);
-                let help = format!("{name}, pixels");
-                let response = explained(ui, response, About::new(name, &help));
-                all = Some(match all {
-                    Some(earlier) => earlier.union(response),
-                    None => response,
-                });
-            }
-            all
-        })
-        .inner
-        .unwrap_or_else(|| ui.label(""))
     });
 }

@@ -103,7 +103,7 @@ impl Paths {
     }
 
     /// Takes recorded paths. Lists them again if a change affects the random numbers; if only the camera moves, the
-    /// existing paths stay.
+    /// existing paths stay. In a picture of another size they are those of the pixel at the same place.
     pub fn follow(&mut self, document: &Document, context: &egui::Context) {
         while let Some(listed) = self.answers.take() {
             self.learn(listed);
@@ -113,13 +113,9 @@ impl Paths {
         if self.is_waiting || (is_same_scene && listed.document.settings == document.settings) {
             return;
         }
-        let [x, y] = listed.pixel;
-        if x < document.settings.width && y < document.settings.height {
-            let before = Document { camera: listed.document.camera, ..document.clone() };
-            self.list(&before, [x, y], context);
-        } else {
-            self.forget();
-        }
+        let (pixel, sizes) = (listed.pixel, [listed.document.size(), document.size()]);
+        let before = Document { camera: listed.document.camera, ..document.clone() };
+        self.list(&before, at_same_place(pixel, sizes), context);
     }
 
     /// The number of listed paths.
@@ -152,5 +148,27 @@ impl Paths {
     /// The explained ray, counted from 1, and the number of rays of its path.
     pub fn position(&self) -> Option<[usize; 2]> {
         self.selected().map(|path| [self.ray + 1, path.steps.len()])
+    }
+}
+
+/// The pixel of a picture of another size that contains the middle of this one.
+fn at_same_place(pixel: [u32; 2], [before, after]: [[u32; 2]; 2]) -> [u32; 2] {
+    [0, 1].map(|axis| {
+        let middle = 2 * u64::from(pixel[axis]) + 1;
+        let place = middle * u64::from(after[axis]) / (2 * u64::from(before[axis]).max(1));
+        u32::try_from(place).unwrap_or(u32::MAX).min(after[axis].saturating_sub(1))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_is_found_again_at_another_size() {
+        assert_eq!(at_same_place([5, 7], [[32, 18], [32, 18]]), [5, 7]);
+        assert_eq!(at_same_place([31, 0], [[32, 18], [320, 180]]), [315, 5]);
+        assert_eq!(at_same_place([315, 5], [[320, 180], [32, 18]]), [31, 0]);
+        assert_eq!(at_same_place([31, 17], [[32, 18], [1, 1]]), [0, 0]);
     }
 }

@@ -6,6 +6,7 @@ mod selection;
 
 pub use paint::Pictures;
 pub use placement::Placement;
+use placement::whole_pixels;
 
 use super::command::Command;
 use super::facts::Facts;
@@ -44,6 +45,8 @@ pub struct Viewport {
     menu_at: Option<Pos2>,
     /// The area of the viewport when it was last drawn.
     room: Option<Rect>,
+    /// The room for the picture when it was last drawn, pixels of the screen.
+    room_pixels: [u32; 2],
     /// The selected sphere in the picture.
     selection: Selection,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
@@ -85,6 +88,11 @@ impl Viewport {
         self.room
     }
 
+    /// The room for the picture when it was last drawn, pixels of the screen.
+    pub fn room_pixels(&self) -> [u32; 2] {
+        self.room_pixels
+    }
+
     /// Draws the picture and handles input on it.
     pub fn ui(
         &mut self,
@@ -103,7 +111,9 @@ impl Viewport {
         let (size, pixels) =
             (vec2(settings.width as f32, settings.height as f32), [settings.width, settings.height]);
         let margin = if facts.model.remembered.has_panels { 10.0 } else { 0.0 };
-        let rect = self.placement.place(room.shrink(margin), size, ui.ctx().pixels_per_point());
+        let scale = ui.ctx().pixels_per_point();
+        let rect = self.placement.place(room.shrink(margin), size, scale);
+        self.room_pixels = whole_pixels(room.shrink(margin), scale);
 
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = facts.model.view.mode() == Some(Mode::Wipe);

@@ -92,7 +92,9 @@ impl Placement {
         self.times = match self.zoom {
             Zoom::Fit => {
                 self.pan = Vec2::ZERO;
-                fitting
+                // A picture made for this room may leave less than a pixel of it free, which is not worth a filter.
+                let is_made_for_it = fitting >= 1.0 && (fitting - 1.0) * size.max_elem() < 1.5;
+                if is_made_for_it { 1.0 } else { fitting }
             }
             Zoom::Times(times) => times,
         };
@@ -113,6 +115,14 @@ impl Placement {
             ((along.y * size[1] as f32) as u32).min(size[1] - 1),
         ])
     }
+}
+
+/// Width and height of a room in whole pixels of the screen.
+pub fn whole_pixels(room: Rect, pixels_per_point: f32) -> [u32; 2] {
+    // Widths in points are often not exact, such as those of panels.
+    const ROUNDING: f32 = 0.01;
+    let pixels = room.size() * pixels_per_point + Vec2::splat(ROUNDING);
+    [pixels.x.max(0.0) as u32, pixels.y.max(0.0) as u32]
 }
 
 #[cfg(test)]
@@ -161,6 +171,26 @@ mod tests {
             let off = (under(&placement, ROOM.center()) - before) * placement.times();
             assert!(off.length() < 1.5, "{factor}: off by {off} points");
         }
+    }
+
+    #[test]
+    fn a_picture_made_for_the_room_is_drawn_pixel_by_pixel() {
+        for scale in [1.0, 1.25, 1.5, 2.0] {
+            for off in [0.0, 0.3, 0.77] {
+                let room = Rect::from_min_size(pos2(244.4, 37.1), vec2(780.3 + off, 600.0));
+                let [width, _] = whole_pixels(room, scale);
+                let size = vec2(width as f32, (width as f32 * 9.0 / 16.0).round());
+                let mut placement = Placement::default();
+                let rect = placement.place(room, size, scale);
+                assert_eq!(placement.times(), 1.0, "{scale} {off}");
+                let corner = rect.min.to_vec2() * scale;
+                assert!((corner - corner.round()).length() < 1e-2, "{corner}");
+                assert!((rect.size() * scale - size).length() < 1e-2);
+            }
+        }
+        let mut smaller = Placement::default();
+        smaller.place(ROOM, vec2(790.0, 444.0), 1.0);
+        assert!(smaller.times() > 1.01, "a smaller picture is enlarged");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::shared::{Picture, Shared};
 use super::{EndReason, Factory, PassSizer, Phase, Plan, Status, View};
 use crate::backends::BackendChoice;
 use crate::film::{Film, SampleRanges};
-use crate::render::{RenderError, RenderJob, Renderer};
+use crate::render::{RenderError, RenderJob, Renderer, TileOccupancy};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -46,7 +46,7 @@ impl Render {
         cancel: Arc<AtomicBool>,
     ) -> Self {
         let mut render = Render {
-            sizer: PassSizer::new(film.halves().len()),
+            sizer: PassSizer::new(film.halves().len()).begin_with(plan.preview.unwrap_or(1)),
             next_history_samples: (film.sample_count() + 1).next_power_of_two(),
             estimated_samples: 0,
             estimated_at: Instant::now(),
@@ -237,8 +237,19 @@ impl Render {
                 width: self.film.width(),
                 height: self.film.height(),
                 samples_per_pixel: samples,
-                rgb8: view.resolve(&self.film, self.job.rules().transfer, occupancy.as_ref()),
+                rgb8: self.resolve(view, occupancy.as_ref()),
             });
+        }
+    }
+
+    /// Resolves the film. A preview is smoothed; heat maps show what is there.
+    fn resolve(&self, view: &View, occupancy: Option<&TileOccupancy>) -> Vec<u8> {
+        let transfer = self.job.rules().transfer;
+        match view {
+            View::Picture | View::Exposed(_) if self.plan.preview.is_some() => {
+                view.resolve(&self.film.smoothed(), transfer, occupancy)
+            }
+            _ => view.resolve(&self.film, transfer, occupancy),
         }
     }
 }

@@ -1,0 +1,194 @@
+//! The size of the picture: that of the viewport, the book's, or its own.
+
+use super::document::Document;
+use super::origin::{Origin, Source};
+use crate::render::{RenderSettings, SIZE_LIMIT};
+use crate::stages::Shading;
+use serde::{Deserialize, Serialize};
+
+/// What decides the size of pictures that have no size of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Sizing {
+    /// As large as fits into the viewport, one pixel of the picture per pixel of the screen.
+    #[default]
+    Viewport,
+    /// As large as in the book. Scenes that are not in the book have the size that they define.
+    Book,
+}
+
+impl Sizing {
+    /// All of them.
+    pub const ALL: [Sizing; 2] = [Sizing::Viewport, Sizing::Book];
+
+    /// The name in the panel.
+    pub fn name(self) -> &'static str {
+        match self {
+            Sizing::Viewport => "Viewport",
+            Sizing::Book => "Book",
+        }
+    }
+}
+
+impl Origin {
+    /// Whether its pictures have a size of their own: files do, and stages without rays, whose pixels are the lesson.
+    pub fn keeps_size(&self) -> bool {
+        let is_file = matches!(self.source, Source::File(_) | Source::Embedded);
+        is_file || self.recipe.rules.shading == Shading::ImageGradient
+    }
+
+    /// The width and height that the scene defines, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        let RenderSettings { width, height, .. } = self.recipe.settings;
+        [width, height]
+    }
+
+    /// Width and height in the book, pixels; for other scenes, the size that they define.
+    pub fn book_size(&self) -> [u32; 2] {
+        match self.stage() {
+            Some(stage) if !self.keeps_size() => scaled(self.size(), stage.book_width()),
+            _ => self.size(),
+        }
+    }
+
+    /// The largest size of the scene's aspect ratio in a room of `room` pixels. `None` if there is no room.
+    pub fn size_in(&self, room: [u32; 2]) -> Option<[u32; 2]> {
+        let ([wide, high], [width, height]) = (self.size().map(u64::from), room.map(u64::from));
+        let width = width.min(height * wide / high).min(u64::from(SIZE_LIMIT));
+        let size = scaled(self.size(), u32::try_from(width).unwrap_or(SIZE_LIMIT));
+        (width > 0).then_some([size[0], size[1].min(room[1]).min(SIZE_LIMIT)])
+    }
+}
+
+/// A size of the same aspect ratio with another width.
+fn scaled([wide, high]: [u32; 2], width: u32) -> [u32; 2] {
+    let height = f64::from(width) * f64::from(high) / f64::from(wide);
+    [width, (height.round() as u32).max(1)]
+}
+
+impl Document {
+    /// Width and height, pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.settings.width, self.settings.height]
+    }
+
+    /// Sets width and height, pixels; the picture still follows the viewport or the book if it does so now.
+    pub fn set_size(&mut self, [width, height]: [u32; 2]) {
+        (self.settings.width, self.settings.height) = (width, height);
+    }
+
+    /// Gives the picture this width and height, pixels, whatever size the viewport or the book has.
+    pub fn give_size(&mut self, size: [u32; 2]) {
+        self.set_size(size);
+        self.has_own_size = true;
+    }
+
+    /// The size that the picture should have: its own, or else that of `sizing`. `room` is the room for it in the
+    /// viewport, pixels of the screen. `None` if there is no room.
+    pub fn fitting_size(&self, sizing: Sizing, room: [u32; 2]) -> Option<[u32; 2]> {
+        match sizing {
+            _ if self.has_own_size => Some(self.size()),
+            Sizing::Viewport => self.origin.size_in(room),
+            Sizing::Book => Some(self.origin.book_size()),
+        }
+    }
+
+    /// The settings that the user chose: without a size that follows the viewport or the book.
+    pub(super) fn chosen_settings(&self) -> RenderSettings {
+        let [width, height] = if self.has_own_size { self.size() } else { [0; 2] };
+        RenderSettings { width, height, ..self.settings }
+    }
+
+    /// Whether the documents differ in nothing but their size, if at all.
+    pub fn is_same_at_another_size(&self, other: &Document) -> bool {
+        let mut resized = self.clone();
+        resized.set_size(other.size());
+        resized.has_same_film(other)
+    }
+
+    /// The size in words, and what has decided it.
+    pub fn size_words(&self, sizing: Sizing) -> String {
+        let [width, height] = self.size();
+        let whose = match sizing {
+            _ if self.has_own_size => "",
+            Sizing::Viewport => ", as in the viewport",
+            Sizing::Book if self.stage().is_some() => ", as in the book",
+            Sizing::Book => ", as the scene defines it",
+        };
+        format!("{width}x{height}{whose}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::Stage;
+
+    fn stage(id: &str) -> Document {
+        Document::new(Origin::of_stage(Stage::find(id).unwrap()))
+    }
+
+    #[test]
+    fn the_picture_is_as_large_as_its_aspect_ratio_allows() {
+        let document = stage("metal");
+        for (room, size) in [
+            ([1037, 900], [1037, 583]),
+            ([3000, 583], [1036, 583]),
+            ([1600, 900], [1600, 900]),
+            ([1, 1], [1, 1]),
+            ([100_000, 100_000], [16_384, 9216]),
+        ] {
+            let found = document.fitting_size(Sizing::Viewport, room).unwrap();
+            assert_eq!(found, size, "{room:?}");
+            assert!(found[0] <= room[0] && found[1] <= room[1]);
+        }
+        assert_eq!(document.fitting_size(Sizing::Viewport, [0, 500]), None);
+        assert_eq!(document.fitting_size(Sizing::Viewport, [500, 0]), None);
+    }
+
+    #[test]
+    fn in_the_book_pictures_are_400_wide_and_the_last_one_1200() {
+        for (id, size) in [("metal", [400, 225]), ("three-spheres", [400, 225]), ("book", [1200, 675])] {
+            assert_eq!(stage(id).fitting_size(Sizing::Book, [999, 999]), Some(size), "{id}");
+        }
+    }
+
+    #[test]
+    fn pictures_whose_pixels_are_the_lesson_and_files_keep_their_size() {
+        let tiny = stage("ppm-tiny");
+        assert_eq!(tiny.fitting_size(Sizing::Viewport, [1000, 1000]), Some([16, 9]));
+        assert_eq!(tiny.fitting_size(Sizing::Book, [1000, 1000]), Some([16, 9]));
+        let recipe = Stage::find("metal").unwrap().recipe();
+        let file = Document::new(Origin::new(recipe, Source::File("metal.toml".into())));
+        assert_eq!(file.fitting_size(Sizing::Viewport, [1000, 1000]), Some([480, 270]));
+        let mut own = stage("metal");
+        own.give_size([64, 36]);
+        assert_eq!(own.fitting_size(Sizing::Viewport, [1000, 1000]), Some([64, 36]));
+        own.reset();
+        assert_eq!(own.fitting_size(Sizing::Book, [1000, 1000]), Some([400, 225]), "after a reset");
+    }
+
+    #[test]
+    fn only_a_size_of_its_own_is_a_change() {
+        let document = stage("metal");
+        let mut other = document.clone();
+        other.set_size([1037, 583]);
+        assert!(other == document && !other.has_same_film(&document));
+        assert!(other.is_same_at_another_size(&document));
+        other.give_size([1037, 583]);
+        assert!(other != document);
+        let mut turned = document.clone();
+        turned.camera.vfov_degrees += 1.0;
+        assert!(turned != document && !turned.is_same_at_another_size(&document));
+    }
+
+    #[test]
+    fn a_size_says_where_it_comes_from() {
+        let mut document = stage("metal");
+        document.set_size([1037, 583]);
+        assert_eq!(document.size_words(Sizing::Viewport), "1037x583, as in the viewport");
+        document.set_size([400, 225]);
+        assert_eq!(document.size_words(Sizing::Book), "400x225, as in the book");
+        document.give_size([64, 36]);
+        assert_eq!(document.size_words(Sizing::Viewport), "64x36");
+    }
+}

@@ -1,0 +1,173 @@
+//! Keeps the picture as large as the viewport, unless that would throw away a picture that took long.
+
+use super::command::Command;
+use super::model::document::Document;
+use super::model::sizing::Sizing;
+use eframe::egui::{self, Align2, Context, Rect, Ui, vec2};
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// A new size counts once it has stayed the same for so long: a window that is resized has many sizes.
+const SETTLE: Duration = Duration::from_millis(250);
+
+/// A picture that was traced for longer than this many seconds is kept.
+const LONG_SECONDS: f64 = 10.0;
+
+/// After this many changes of the size within [`RESTLESS`] the picture is kept, so that a panel whose height depends on
+/// the render cannot start it again for ever.
+const CHANGES: usize = 6;
+
+const RESTLESS: Duration = Duration::from_secs(15);
+
+/// The picture that a change of the size would throw away.
+pub struct Present {
+    /// It is the document's; otherwise a new picture is rendered anyway.
+    pub is_documents: bool,
+    /// Seconds of tracing in it; infinite if they are not known.
+    pub seconds: f64,
+    /// Something that is shown or about to be saved needs this size.
+    pub is_needed: bool,
+}
+
+/// What to do about a picture that does not have the size of the viewport.
+#[derive(Debug, PartialEq)]
+enum Verdict {
+    /// Render it at the new size.
+    Change,
+    /// Look again after this time.
+    Wait(Duration),
+    /// Show it scaled, and offer to render it at the new size.
+    Keep,
+}
+
+/// Follows the size of the viewport.
+#[derive(Default)]
+pub struct Sizer {
+    /// The size that fits, and since when.
+    fitting: Option<([u32; 2], Instant)>,
+    /// When the size was changed without the user's asking, oldest first.
+    changes: VecDeque<Instant>,
+    is_asked: bool,
+    offer: Option<[u32; 2]>,
+}
+
+impl Sizer {
+    /// The user wants the size that the picture should have, whatever is lost.
+    pub fn ask(&mut self) {
+        self.is_asked = true;
+    }
+
+    /// The size that fits, if the picture was kept at another one.
+    pub fn offer(&self) -> Option<[u32; 2]> {
+        self.offer
+    }
+
+    /// Changes the size of the document if it should have another one. `room` is the room for the picture, pixels of
+    /// the screen.
+    pub fn follow(
+        &mut self,
+        context: &Context,
+        document: &mut Document,
+        (sizing, room): (Sizing, [u32; 2]),
+        present: &Present,
+    ) {
+        let is_asked = std::mem::take(&mut self.is_asked);
+        self.offer = None;
+        let Some(wanted) = document.fitting_size(sizing, room) else { return };
+        let now = Instant::now();
+        let since = match self.fitting {
+            Some((fitting, since)) if fitting == wanted => since,
+            _ => now,
+        };
+        self.fitting = Some((wanted, since));
+        if wanted == document.size() {
+            return;
+        }
+        self.changes.retain(|change| now.duration_since(*change) < RESTLESS);
+        let is_by_hand = context.input(|input| input.pointer.any_down());
+        // The book's size changes only when the user chooses it or another picture.
+        let verdict = if is_asked || sizing == Sizing::Book {
+            Verdict::Change
+        } else {
+            verdict(present, now.duration_since(since), is_by_hand, self.changes.len())
+        };
+        match verdict {
+            Verdict::Change => {
+                if present.is_documents && !is_asked {
+                    self.changes.push_back(now);
+                }
+                document.set_size(wanted);
+            }
+            Verdict::Wait(time) => context.request_repaint_after(time),
+            Verdict::Keep => self.offer = Some(wanted),
+        }
+    }
+
+    /// Draws the offer, if there is one, in the lower right corner of `over`.
+    pub fn ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
+        let Some([width, height]) = self.offer else { return };
+        egui::Area::new(egui::Id::unique("size offer"))
+            .pivot(Align2::RIGHT_BOTTOM)
+            .fixed_pos(over.right_bottom() - vec2(12.0, 12.0))
+            .constrain_to(over)
+            .show(ui.ctx(), |ui| {
+                let help = "The viewport has another size now. The picture is only scaled, because its samples would be \
+                            lost; this renders it anew, one pixel of the picture per pixel of the screen";
+                if ui.button(format!("Render at {width}x{height}")).on_hover_text(help).clicked() {
+                    commands.push(Command::Size(Sizing::Viewport));
+                }
+            });
+    }
+}
+
+/// What to do about a picture when another size fits for `settled`, after `changes` changes of the size. `is_by_hand` says
+/// that a button of the mouse is down.
+fn verdict(present: &Present, settled: Duration, is_by_hand: bool, changes: usize) -> Verdict {
+    if !present.is_documents {
+        Verdict::Change
+    } else if is_by_hand || settled < SETTLE {
+        Verdict::Wait(SETTLE.saturating_sub(settled).max(Duration::from_millis(16)))
+    } else if present.is_needed || present.seconds > LONG_SECONDS || changes >= CHANGES {
+        Verdict::Keep
+    } else {
+        Verdict::Change
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const YOUNG: Present = Present { is_documents: true, seconds: 2.0, is_needed: false };
+    const LONG: Duration = Duration::from_secs(1);
+
+    #[test]
+    fn what_took_long_or_is_needed_is_kept() {
+        let keep = |present: &Present| verdict(present, LONG, false, 0) == Verdict::Keep;
+        assert!(!keep(&YOUNG));
+        assert!(keep(&Present { seconds: 11.0, ..YOUNG }));
+        assert!(keep(&Present { seconds: f64::INFINITY, ..YOUNG }), "nobody knows how long it took");
+        assert!(keep(&Present { is_needed: true, ..YOUNG }));
+        assert!(
+            !keep(&Present { is_documents: false, seconds: 11.0, is_needed: false }),
+            "it is lost anyway"
+        );
+    }
+
+    #[test]
+    fn a_window_that_is_being_resized_is_waited_for() {
+        let short = Duration::from_millis(100);
+        assert_eq!(verdict(&YOUNG, short, false, 0), Verdict::Wait(Duration::from_millis(150)));
+        assert!(matches!(verdict(&YOUNG, LONG, true, 0), Verdict::Wait(_)), "the mouse drags an edge");
+        assert_eq!(verdict(&YOUNG, LONG, false, 0), Verdict::Change);
+        let old = Present { seconds: 99.0, ..YOUNG };
+        assert!(matches!(verdict(&old, short, false, 0), Verdict::Wait(_)), "nothing flickers");
+        assert_eq!(verdict(&Present { is_documents: false, ..YOUNG }, short, true, 0), Verdict::Change);
+    }
+
+    #[test]
+    fn a_size_that_never_settles_is_not_followed_for_ever() {
+        assert_eq!(verdict(&YOUNG, LONG, false, CHANGES - 1), Verdict::Change);
+        assert_eq!(verdict(&YOUNG, LONG, false, CHANGES), Verdict::Keep);
+    }
+}
