@@ -272,7 +272,7 @@ impl Window {
     fn size_words(&self) -> String {
         let size = self.document().size_words(self.model.remembered.sizing);
         match self.sizer.offer() {
-            Some([width, height]) => format!("The picture: {size} when it was begun (now {width}x{height})"),
+            Some([width, height]) => format!("The picture: {size} when it began (now {width}x{height})"),
             None => format!("The picture: {size}"),
         }
     }

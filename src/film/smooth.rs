@@ -26,30 +26,44 @@ impl Film {
         let side = SIDE * FEW / samples.max(FEW);
         let width = self.width as usize;
         for half in &mut smooth.halves {
-            for row in half.chunks_exact_mut(width.max(1)) {
-                filter(row, 1, side);
+            for row in half.chunks_exact_mut(width) {
+                along(row, side);
             }
-            for column in 0..width {
-                filter(&mut half[column..], width, side);
-            }
+            down(half, width, side);
         }
         smooth
     }
 }
 
-/// Averages each `stride`th of `sums` with its neighbours. The first and the last one are their own neighbours.
-fn filter(sums: &mut [PixelSum], stride: usize, side: u64) {
-    let Some(mut before) = sums.first().map(|sum| sum.0) else { return };
-    let last = (sums.len() - 1) / stride * stride;
-    for place in (0..=last).step_by(stride) {
-        let (here, after) = (sums[place].0, sums[(place + stride).min(last)].0);
-        let average = |channel: usize| {
-            let sides = before[channel] + after[channel];
-            (here[channel] * (WHOLE - 2 * side) + sides * side + WHOLE / 2) / WHOLE
-        };
-        sums[place].0 = [average(0), average(1), average(2)];
+/// Averages the pixels of a row with those beside them. The first and the last one are their own neighbours.
+fn along(row: &mut [PixelSum], side: u64) {
+    let Some(mut before) = row.first().copied() else { return };
+    for x in 0..row.len() {
+        let here = row[x];
+        row[x] = average([before, here, row.get(x + 1).copied().unwrap_or(here)], side);
         before = here;
     }
+}
+
+/// Averages the pixels of rows of this width with those above and below.
+fn down(rows: &mut [PixelSum], width: usize, side: u64) {
+    let mut before = rows[..width].to_vec();
+    for start in (0..rows.len()).step_by(width) {
+        for (x, above) in before.iter_mut().enumerate() {
+            let here = rows[start + x];
+            let below = rows.get(start + width + x).copied().unwrap_or(here);
+            rows[start + x] = average([*above, here, below], side);
+            *above = here;
+        }
+    }
+}
+
+/// The mean of a pixel and its two neighbours, each of which has the weight `side`.
+fn average([before, here, after]: [PixelSum; 3], side: u64) -> PixelSum {
+    PixelSum([0, 1, 2].map(|channel| {
+        let sides = before.0[channel] + after.0[channel];
+        (here.0[channel] * (WHOLE - 2 * side) + sides * side + WHOLE / 2) / WHOLE
+    }))
 }
 
 #[cfg(test)]

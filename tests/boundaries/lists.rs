@@ -336,7 +336,9 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("toasts", &["theme"]),
     ("places", &["model"]),
     ("changes", &["model"]),
-    ("tracer", &["model", "texture"]),
+    ("sizer", &["model", "command"]),
+    ("preview", &["model"]),
+    ("tracer", &["model", "texture", "preview"]),
     ("layers", &["model", "texture"]),
     ("second", &["model", "answers", "tracer"]),
     ("identity", &["model", "answers", "tracer"]),
@@ -389,6 +391,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "surfaces",
             "identity",
             "speed",
+            "sizer",
             "files",
             "inspector",
             "tone",
@@ -424,7 +427,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "window",
         ],
     ),
-    ("frame", &["model", "theme", "frame_log", "tracer", "input", "window"]),
+    ("frame", &["model", "theme", "frame_log", "tracer", "sizer", "input", "window"]),
     ("mod", &["model", "command", "theme", "window"]),
 ];
 
