@@ -17,9 +17,12 @@ const PATIENCE: f64 = 0.1;
 /// all of them with one: the eye sees noise in each pixel, but does not miss the pixels of a picture that moves.
 const SAMPLES: u64 = 4;
 
-/// The coarsest divisor of previews, and the length in pixels that the longer side keeps in large pictures.
+/// The longer side of a preview keeps this many pixels as long as it can have fewer samples instead.
+const LONGER_SIDE: u32 = 140;
+
+/// The coarsest divisor of previews, and the pixels that the longer side keeps in large pictures in any case.
 const DIVISOR: u32 = 8;
-const LONGER_SIDE: u32 = 160;
+const LEAST_SIDE: u32 = 100;
 
 /// Samples per second that are expected of a CPU before anything has been traced.
 const USUAL_SPEED: f64 = 3e6;
@@ -88,12 +91,17 @@ impl Previews {
     fn choose(&self, document: &Document) -> Preview {
         let begin = SHARE * self.render_speed.unwrap_or(USUAL_SPEED);
         let affordable = (self.speed.unwrap_or(begin) * SECONDS).max(1.0);
-        let samples = if document.rules().shading == Shading::Path { SAMPLES } else { 1 };
-        let divisor = (pixels(document) * samples as f64 / affordable).sqrt().ceil() as u32;
-        let divisor = divisor.clamp(1, coarsest(document));
-        let per_pixel = affordable * f64::from(divisor).powi(2) / pixels(document);
-        let samples = 1 << (per_pixel as u64).clamp(1, samples).ilog2();
-        Preview { divisor, samples }
+        let most = if document.rules().shading == Shading::Path { SAMPLES } else { 1 };
+        let with = |samples: u64| {
+            let divisor = (pixels(document) * samples as f64 / affordable).sqrt().ceil() as u32;
+            Preview { divisor: divisor.clamp(1, coarsest(document)), samples }
+        };
+        let fine = (longer_side(document) / LONGER_SIDE).max(1);
+        let mut preview = with(most);
+        while preview.samples > 1 && preview.divisor > fine {
+            preview = with(preview.samples / 2);
+        }
+        preview
     }
 
     /// Notes that the first picture of a preview has come, with `samples` samples of all pixels together, after this many
@@ -119,9 +127,12 @@ fn pixels(document: &Document) -> f64 {
     document.size().map(f64::from).into_iter().product()
 }
 
+fn longer_side(document: &Document) -> u32 {
+    document.size().into_iter().max().unwrap_or(1)
+}
+
 fn coarsest(document: &Document) -> u32 {
-    let longer = document.size().into_iter().max().unwrap_or(1);
-    DIVISOR.max(longer / LONGER_SIDE)
+    DIVISOR.max(longer_side(document) / LEAST_SIDE)
 }
 
 #[cfg(test)]
@@ -155,9 +166,11 @@ mod tests {
         let slow = at_speed(2e5).choose(&document("book", [1024, 576]));
         assert_eq!(slow, Preview { divisor: 8, samples: 1 });
         let less = at_speed(4e5).choose(&document("book", [1024, 576]));
-        assert_eq!(less, Preview { divisor: 8, samples: 2 });
-        let large = at_speed(2e5).choose(&document("book", [3840, 2160]));
-        assert_eq!(large.divisor, 24, "160 by 90 pixels are left");
+        assert_eq!(less, Preview { divisor: 6, samples: 1 });
+        let more = at_speed(1e6).choose(&document("book", [1024, 576]));
+        assert_eq!(more, Preview { divisor: 7, samples: 4 });
+        let large = at_speed(2e4).choose(&document("book", [3840, 2160]));
+        assert_eq!(large, Preview { divisor: 38, samples: 1 }, "100 pixels are left");
     }
 
     #[test]
@@ -172,10 +185,10 @@ mod tests {
         for _ in 0..3 {
             previews.pictured(&document, 8, 1e4, 0.2);
         }
-        assert_eq!(previews.follow_move(&document), Preview { divisor: 8, samples: 1 });
+        assert_eq!(previews.follow_move(&document), Preview { divisor: 10, samples: 1 });
         previews.end_move();
         previews.pictured(&document, 8, 1e6, 0.05);
-        assert!(previews.follow_move(&document).divisor < 8, "another move");
+        assert!(previews.follow_move(&document).divisor < 10, "another move");
     }
 
     #[test]

@@ -125,10 +125,13 @@ impl Sizer {
 fn verdict(present: &Present, settled: Duration, is_by_hand: bool, changes: usize) -> Verdict {
     if !present.is_documents {
         Verdict::Change
-    } else if is_by_hand || settled < SETTLE {
-        Verdict::Wait(SETTLE.saturating_sub(settled).max(Duration::from_millis(16)))
+    } else if settled < SETTLE {
+        Verdict::Wait(SETTLE - settled)
     } else if present.is_needed || present.seconds > LONG_SECONDS || changes >= CHANGES {
+        // Also while a button of the mouse is down, which may be pressing the offer.
         Verdict::Keep
+    } else if is_by_hand {
+        Verdict::Wait(SETTLE)
     } else {
         Verdict::Change
     }
@@ -147,7 +150,9 @@ mod tests {
         assert!(!keep(&YOUNG));
         assert!(keep(&Present { seconds: 11.0, ..YOUNG }));
         assert!(keep(&Present { seconds: f64::INFINITY, ..YOUNG }), "nobody knows how long it took");
-        assert!(keep(&Present { is_needed: true, ..YOUNG }));
+        let needed = Present { is_needed: true, ..YOUNG };
+        assert!(keep(&needed));
+        assert_eq!(verdict(&needed, LONG, true, 0), Verdict::Keep, "the mouse presses the offer");
         assert!(
             !keep(&Present { is_documents: false, seconds: 11.0, is_needed: false }),
             "it is lost anyway"

@@ -5,7 +5,7 @@ use super::preview::{Preview, Previews};
 use super::texture::Texture;
 use crate::backends::BackendChoice;
 use crate::film::Film;
-use crate::progressive::{Plan, Progressive, RenderRequest, Status, Stop, View};
+use crate::progressive::{Picture, Plan, Progressive, RenderRequest, Status, Stop, View};
 use eframe::egui;
 use std::io;
 use std::sync::Arc;
@@ -16,6 +16,12 @@ const MOVING_PASS: Duration = Duration::from_millis(10);
 
 /// Target duration of a pass otherwise.
 const STILL_PASS: Duration = Duration::from_millis(40);
+
+/// A smooth preview stays until the picture itself has this many samples per pixel: fewer are confetti.
+const CLEARER_SAMPLES: u64 = 8;
+
+/// The longest time for which a preview stays on the screen when there is something newer.
+const PREVIEW_LIMIT: Duration = Duration::from_millis(500);
 
 /// The longest wait for a first look at a picture that takes long.
 const LOOK_LIMIT: Duration = Duration::from_millis(300);
@@ -75,11 +81,18 @@ pub struct Shown {
     pub document: Document,
 }
 
+/// Whether a smooth preview looks better than this picture, whose render began so long ago.
+fn is_confetti(picture: &Picture, began: Duration) -> bool {
+    picture.samples_per_pixel < CLEARER_SAMPLES && began < PREVIEW_LIMIT
+}
+
 /// A render thread and its latest results.
 pub struct Tracer {
     progressive: Progressive,
     started: Option<Started>,
     shown: Option<Shown>,
+    /// A picture that waits until it is clearer than the preview on the screen.
+    early: Option<Picture>,
     status: Arc<Status>,
     asked: Instant,
     /// The backend and plan last sent to the render thread.
@@ -94,6 +107,7 @@ impl Tracer {
             progressive: Progressive::spawn()?,
             started: None,
             shown: None,
+            early: None,
             status: Arc::default(),
             asked: Instant::now(),
             told: None,
@@ -199,9 +213,15 @@ impl Tracer {
             self.previews.note_speed(&self.status);
         }
         let mut pictured = None;
-        if let Some(picture) = self.progressive.newest_picture()
-            && picture.run == started.run
-        {
+        let newest = self.progressive.newest_picture().or(self.early.take());
+        let newest = newest.filter(|picture| picture.run == started.run);
+        let is_preview = |shown: &Shown| {
+            shown.divisor > started.preview.divisor && shown.document.has_same_film(&started.document)
+        };
+        let has_preview = self.shown.as_ref().is_some_and(is_preview) && self.status.phase.is_working();
+        if has_preview && newest.as_ref().is_some_and(|picture| is_confetti(picture, started.at.elapsed())) {
+            self.early = newest;
+        } else if let Some(picture) = newest {
             let earlier = self.shown.take().map(|shown| shown.texture);
             self.shown = Some(Shown {
                 texture: Texture::new([picture.width, picture.height], &picture.rgb8, earlier),
@@ -313,5 +333,20 @@ impl Tracer {
             told_plan.clone_from(&plan);
             self.progressive.set_plan(plan);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_preview_stays_until_the_picture_is_clear_or_late() {
+        let picture =
+            |samples_per_pixel| Picture { run: 1, width: 1, height: 1, samples_per_pixel, rgb8: vec![0; 3] };
+        let soon = Duration::from_millis(100);
+        assert!(is_confetti(&picture(2), soon));
+        assert!(!is_confetti(&picture(8), soon));
+        assert!(!is_confetti(&picture(2), PREVIEW_LIMIT));
     }
 }
