@@ -55,7 +55,7 @@ fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts, commands: &mut Ve
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let width = (ui.available_width() - 8.0) / 3.0;
-        let button = |name: &str, is_on| egui::Button::selectable(is_on, name).min_size(vec2(width, 0.0));
+        let button = |name: &str, is_on| egui::Button::new(name).selected(is_on).min_size(vec2(width, 0.0));
         for sizing in Sizing::ALL {
             let command = Command::Size(sizing);
             let response = ui.add(button(sizing.name(), facts.is_on(command)));
