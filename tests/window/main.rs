@@ -3,6 +3,7 @@
 
 mod commands;
 mod common;
+mod crop;
 mod device;
 mod edits;
 mod extreme;
@@ -17,6 +18,7 @@ mod preview;
 mod recent;
 mod remembered;
 mod resuming;
+mod slots;
 mod snapshots;
 mod stages;
 mod surfaces;

@@ -97,6 +97,11 @@ impl Document {
         if is_new { format!("{name}{CHANGED}") } else { name.clone() }
     }
 
+    /// Pixels across and down.
+    pub fn size(&self) -> [u32; 2] {
+        [self.settings.width, self.settings.height]
+    }
+
     /// Width divided by height.
     pub fn aspect(&self) -> f64 {
         f64::from(self.settings.width) / f64::from(self.settings.height)
