@@ -205,9 +205,7 @@ impl Facts {
                 no("No part of the picture is marked; choose Crop and drag over the picture first")
             }
             Command::Wipe | Command::WipeDifference
-                if self.model.view.compared_slot().is_none()
-                    && document.stage().is_none()
-                    && !document.origin.is_other_by_the_book() =>
+                if document.stage().is_none() && !document.origin.is_other_by_the_book() =>
             {
                 no("There is nothing to compare this picture with; choose a stage of the book")
             }

@@ -185,7 +185,9 @@ impl Window {
         let has_second = self.second.follow(context, view, &want);
         let live = (document, &self.main);
         let subject = Subject::new(view, live, self.seconds_before, &self.keeper.thread);
-        if let Some(kept) = view.slots.shown() {
+        // The picture that a key would flip to is made before it is asked for.
+        let next = || view.slots.other().and_then(|number| view.slots.get(number)).map(|slot| &slot.kept);
+        if let Some(kept) = view.slots.shown().or_else(next) {
             self.keeper.picture.follow(context, kept, &view.of_film(self.second.film()));
         }
         let is_live_moving = is_moving && !subject.is_kept();

@@ -83,14 +83,13 @@ impl Window {
             Command::PreviousRay => self.paths.step(false),
             Command::Show(show) => self.model.view.choose(show),
             Command::Wipe => {
-                let usual = if self.document().stage().is_none() { With::Book } else { With::Stage };
-                let with = self.model.view.compared_slot().map_or(usual, With::Slot);
+                let with = if self.document().stage().is_none() { With::Book } else { With::Stage };
                 self.model.view.toggle(Mode::Wipe, with);
             }
             Command::WipeDifference => {
                 let view = &mut self.model.view;
-                let usual = if view.with() == With::Book { With::Book } else { With::Stage };
-                view.toggle(Mode::Difference, view.compared_slot().map_or(usual, With::Slot));
+                let with = if view.with() == With::Book { With::Book } else { With::Stage };
+                view.toggle(Mode::Difference, with);
             }
             Command::BookArithmetic => self.model.view.toggle(Mode::Wipe, With::Book),
             Command::Keep

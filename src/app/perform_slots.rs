@@ -83,7 +83,7 @@ impl Window {
 
     /// Takes the answers about slots.
     pub(super) fn receive_for_slots(&mut self) {
-        while let Some(outcome) = self.keeper.take_copied() {
+        while let Some(outcome) = self.keeper.copied.take() {
             match outcome {
                 Ok(copied) => self.put(copied),
                 Err(reason) => self.toasts.bad(format!("Not kept: {reason}")),

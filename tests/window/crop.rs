@@ -1,7 +1,7 @@
 //! A part of the picture that is marked, copied and saved.
 
 use crate::common::{copied, drag_from, has_samples, name_file, open, painted, save, send, until};
-use eframe::egui::{Key, Modifiers, Pos2, vec2};
+use eframe::egui::{self, Key, Pos2, vec2};
 use egui_kittest::Harness;
 use std::time::Duration;
 use weekender::app::{Command, Window};
@@ -41,7 +41,8 @@ fn a_part_is_marked_copied_and_saved() {
         (0..6).all(|y| (0..10).all(|x| pixel(x, y) == whole.get_pixel(x + 6, y + 2).0))
     };
 
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::C);
+    harness.event(egui::Event::Copy);
+    harness.step();
     let picture = copied(&mut harness, Duration::from_secs(60)).unwrap();
     assert_eq!(picture.size, [10, 6]);
     assert!(is_part(&|x, y| {
@@ -71,7 +72,8 @@ fn a_part_is_marked_copied_and_saved() {
     harness.run_steps(2);
     assert_eq!(harness.state().crop(), None);
     assert!(harness.state().disabled_reason(Command::SaveCrop).is_some());
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::C);
+    harness.event(egui::Event::Copy);
+    harness.step();
     assert_eq!(copied(&mut harness, Duration::from_secs(60)).unwrap().size, [32, 18]);
 }
 

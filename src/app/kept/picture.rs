@@ -1,6 +1,6 @@
 //! The picture of a kept film.
 
-use super::KeptThread;
+use super::thread::KeptThread;
 use crate::app::answers::Answers;
 use crate::app::model::kept::Kept;
 use crate::app::texture::Texture;

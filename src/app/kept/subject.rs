@@ -1,6 +1,6 @@
 //! The film on the screen: the live one, or one that was kept.
 
-use super::KeptThread;
+use super::thread::KeptThread;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::view::ViewState;

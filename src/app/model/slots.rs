@@ -6,7 +6,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// What the pictures of all slots may take together, bytes.
-pub const BYTES_LIMIT: u64 = 4 << 30;
+pub const BYTES_LIMIT: u64 = 4_000_000_000;
 
 /// The number of a slot, 1 to 9.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

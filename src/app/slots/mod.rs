@@ -14,7 +14,7 @@ use super::model::slots::SlotNumber;
 use super::tracer::Tracer;
 use crate::film::Film;
 use eframe::egui::Context;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 /// A picture for a slot.
 pub struct Copied {
@@ -49,8 +49,8 @@ pub struct Keeper {
     pub reopened: Answers<Result<Reopened, String>>,
     /// The slots in which the live picture is to be kept once it has samples.
     wanted: Vec<SlotNumber>,
-    /// The slots for which a copy is being made.
-    awaited: Vec<SlotNumber>,
+    /// The slots for which a copy is being made. Each can be upgraded as long as the request is open.
+    awaited: Vec<(SlotNumber, Weak<()>)>,
 }
 
 impl Keeper {
@@ -63,7 +63,8 @@ impl Keeper {
 
     /// Whether a picture is on its way to this slot.
     pub fn is_wanted(&self, number: SlotNumber) -> bool {
-        self.wanted.contains(&number) || self.awaited.contains(&number)
+        let is_it = |(of, request): &(SlotNumber, Weak<()>)| *of == number && request.strong_count() > 0;
+        self.wanted.contains(&number) || self.awaited.iter().any(is_it)
     }
 
     /// Takes the slots that wait for a picture.
@@ -80,7 +81,9 @@ impl Keeper {
         (document, main): (&Document, &Tracer),
         seconds_before: Option<f64>,
     ) {
-        self.awaited.push(number);
+        let request = Arc::new(());
+        self.awaited.retain(|(_, request)| request.strong_count() > 0);
+        self.awaited.push((number, Arc::downgrade(&request)));
         let (document, status) = (document.clone(), Arc::clone(main.status()));
         let answer = self.copied.answer(context);
         main.inspect(move |film| {
@@ -88,17 +91,8 @@ impl Keeper {
                 Ok(film) => Ok(Copied { number, kept: Kept::new(document, film, status, seconds_before) }),
                 Err(error) => Err(error.to_string()),
             });
+            drop(request);
         });
-    }
-
-    /// Takes the next picture that was copied.
-    pub fn take_copied(&mut self) -> Option<Result<Copied, String>> {
-        let outcome = self.copied.take()?;
-        match &outcome {
-            Ok(copied) => self.awaited.retain(|number| *number != copied.number),
-            Err(_) => self.awaited.clear(),
-        }
-        Some(outcome)
     }
 
     /// Copies a kept film to go on with.

@@ -1,8 +1,10 @@
 //! Marks a part of the picture: drags of its edges, its inside and anew, and how it looks.
 
 use super::paint::badge;
+use crate::app::command::Command;
 use crate::app::model::crop::Crop;
 use crate::app::theme;
+use crate::output::OutputFormat;
 use eframe::egui::{
     Align2, Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, TextStyle,
     Ui, pos2, vec2,
@@ -170,6 +172,13 @@ pub(super) fn paint(ui: &Ui, painter: &Painter, rect: Rect, size: [u32; 2], crop
         (pos2(part.center().x, part.top().max(seen.top()) + 8.0), Align2::CENTER_TOP)
     };
     badge(ui, painter, at, anchor, &words, &font);
+    let keys = |command: Command| command.keys(ui.ctx()).unwrap_or_default();
+    let hint = format!(
+        "{} copies it, {} saves it as PNG, Escape leaves",
+        keys(Command::CopyPicture),
+        keys(Command::Save(OutputFormat::Png))
+    );
+    badge(ui, painter, seen.left_bottom() + vec2(8.0, -8.0), Align2::LEFT_BOTTOM, &hint, &font);
 }
 
 #[cfg(test)]

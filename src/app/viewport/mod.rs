@@ -318,6 +318,12 @@ impl Viewport {
         touch: &mut Touch,
     ) {
         ui.set_width(menu::MENU_WIDTH);
+        if facts.model.view.crop.is_some() {
+            for command in [Command::CopyCrop, Command::SaveCrop, Command::Crop] {
+                menu::item(ui, facts, commands, command);
+            }
+            return;
+        }
         if facts.model.view.slots.looked().is_some() {
             for command in [Command::LookLive, Command::Swap, Command::OpenSlot, Command::DeleteSlot] {
                 menu::item(ui, facts, commands, command);
