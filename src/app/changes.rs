@@ -77,6 +77,12 @@ impl Changes {
         self.last = document.clone();
     }
 
+    /// Accepts a replaced document that comes with its film, as one step to undo.
+    pub fn step_to(&mut self, document: &Document) {
+        self.undo.add_undo(&self.last);
+        self.last = document.clone();
+    }
+
     /// Notes what has changed in this frame. Returns whether the document now needs a different film.
     pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
         let is_by_hand = context.input(|input| input.pointer.any_down());

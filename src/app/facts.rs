@@ -6,7 +6,8 @@ use super::model::device::Device;
 use super::model::document::Document;
 use super::model::further::Further;
 use super::model::show::Show;
-use super::model::view::Mode;
+use super::model::slots::SlotNumber;
+use super::model::view::{Mode, With};
 use crate::progressive::{Phase, Status};
 use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
@@ -38,6 +39,21 @@ impl Facts {
         &self.model.document
     }
 
+    /// The document of the picture on the screen, which may be one that was kept.
+    pub fn shown(&self) -> &Document {
+        self.model.view.shown_document(self.document())
+    }
+
+    /// The name of the picture on the screen.
+    pub fn title(&self) -> String {
+        let Model { view, document, .. } = &self.model;
+        match view.slots.looked() {
+            Some(number) => view.slots.title(number),
+            None if view.compared_slot().is_some() => format!("live: {}", document.title()),
+            None => document.title(),
+        }
+    }
+
     /// How a render that has ended can go on.
     pub fn further(&self) -> Option<Further> {
         self.document().further(&self.status).filter(|_| !self.model.is_paused)
@@ -59,9 +75,18 @@ impl Facts {
         let Model { view, remembered, document, .. } = &self.model;
         match command {
             Command::Show(show) => view.show() == show && (show != Show::Picture || view.mode().is_none()),
-            Command::Wipe => view.mode() == Some(Mode::Wipe) && !view.is_by_book(),
-            Command::BookArithmetic => view.mode().is_some() && view.is_by_book(),
-            Command::WipeDifference => view.mode() == Some(Mode::Difference),
+            Command::Wipe => view.mode() == Some(Mode::Wipe) && view.with() == With::Stage,
+            Command::BookArithmetic => view.mode().is_some() && view.with() == With::Book,
+            Command::WipeDifference => {
+                view.mode() == Some(Mode::Difference) && view.compared_slot().is_none()
+            }
+            Command::SlotWipe => view.mode() == Some(Mode::Wipe) && view.compared_slot().is_some(),
+            Command::SlotDifference => {
+                view.mode() == Some(Mode::Difference) && view.compared_slot().is_some()
+            }
+            Command::Look(number) => view.slots.looked() == Some(number),
+            Command::LookLive => view.slots.is_used() && view.slots.looked().is_none(),
+            Command::Crop => view.crop.is_some(),
             Command::Controls => remembered.has_controls,
             Command::Info => remembered.has_info,
             Command::Plot => remembered.has_plot,
@@ -78,6 +103,14 @@ impl Facts {
         }
     }
 
+    /// Whether menus list the command: those for empty slots are left out.
+    pub fn is_listed(&self, command: Command) -> bool {
+        match command {
+            Command::Look(number) | Command::KeepIn(number) => self.model.view.slots.get(number).is_some(),
+            _ => true,
+        }
+    }
+
     /// The commands for the files that were opened or saved last, newest first.
     pub fn recent(&self) -> impl Iterator<Item = Command> {
         (0..self.model.remembered.recent.len()).map(Command::Recent)
@@ -91,6 +124,11 @@ impl Facts {
 
     /// The name of a command, with the file that it opens.
     pub fn name(&self, command: Command) -> String {
+        if let Command::Look(number) = command
+            && let Some(slot) = self.model.view.slots.get(number)
+        {
+            return format!("{}: {}", command.name(), slot.name);
+        }
         let Some(path) = self.path(command) else { return command.name() };
         let name = path.file_name().unwrap_or(path.as_os_str()).display();
         let is_same = |other: &&PathBuf| other.file_name() == path.file_name();
@@ -121,6 +159,9 @@ impl Facts {
             Command::NextRay | Command::PreviousRay if !self.has_paths => {
                 no("No paths are listed; point at a pixel and press T first")
             }
+            Command::ListPaths if self.model.view.slots.looked().is_some() => {
+                no("A slot is shown, whose paths are not at hand; press Escape to return to the live picture")
+            }
             Command::ListPaths if !self.has_pixel => no("Move the pointer over the picture first"),
             Command::GoOn if self.further().is_none() => {
                 no("The render has not ended, or more samples would change nothing")
@@ -150,6 +191,20 @@ impl Facts {
             Command::CopyPlot | Command::SavePlot if self.status.history.is_empty() => {
                 no("No error has been estimated yet")
             }
+            Command::Keep
+            | Command::KeepIn(_)
+            | Command::Look(_)
+            | Command::LookLive
+            | Command::Swap
+            | Command::SlotWipe
+            | Command::SlotDifference
+            | Command::OnlyNoise
+            | Command::OpenSlot
+            | Command::DeleteSlot
+            | Command::BringBackSlot => self.useless_slot(command),
+            Command::CopyCrop | Command::SaveCrop if self.model.view.crop.flatten().is_none() => {
+                no("No part of the picture is marked; choose Crop and drag over the picture first")
+            }
             Command::Wipe | Command::WipeDifference
                 if document.stage().is_none() && !document.origin.is_other_by_the_book() =>
             {
@@ -164,10 +219,61 @@ impl Facts {
         }
     }
 
+    /// Why a command for slots has nothing to do now, if so.
+    fn useless_slot(&self, command: Command) -> Option<String> {
+        let no = |reason: &str| Some(reason.to_owned());
+        let slots = &self.model.view.slots;
+        match command {
+            Command::Keep | Command::KeepIn(_) if let Some(number) = slots.looked() => Some(format!(
+                "Slot {number} is shown, which is kept already; press Escape to return to the live picture"
+            )),
+            Command::Keep if slots.first_free().is_none() => {
+                no("All nine slots are in use; delete one, or replace one with Shift, Alt and its digit")
+            }
+            Command::Look(number) if slots.get(number).is_none() => {
+                Some(format!("Slot {number} is empty; press M to keep the picture in the first free slot"))
+            }
+            Command::LookLive if slots.looked().is_none() => no("The live picture is already shown"),
+            Command::BringBackSlot => {
+                slots.gone().is_none().then(|| "No slot has been deleted or replaced yet".to_owned())
+            }
+            Command::Keep | Command::KeepIn(_) | Command::Look(_) | Command::LookLive => None,
+            _ => match slots.chosen() {
+                None => no("No picture is kept; press M to keep this one"),
+                Some(number) if matches!(command, Command::SlotWipe | Command::SlotDifference) => {
+                    self.incomparable_slot(number)
+                }
+                Some(number) if command == Command::OnlyNoise => {
+                    let is_live = slots.looked().is_none_or(|looked| looked == number);
+                    let is_early = is_live && self.status.samples_per_pixel == 0;
+                    let early = || "Nothing has been traced yet; try again in a moment".to_owned();
+                    self.incomparable_slot(number).or_else(|| is_early.then(early))
+                }
+                Some(_) => None,
+            },
+        }
+    }
+
+    /// Why the picture on the screen cannot be compared with a slot's, if so. A slot that is shown itself is compared with
+    /// the live picture.
+    pub fn incomparable_slot(&self, number: SlotNumber) -> Option<String> {
+        let slots = &self.model.view.slots;
+        let is_own = slots.looked() == Some(number);
+        let mine = if is_own { self.document() } else { self.shown() }.size();
+        let theirs = slots.get(number)?.kept.size();
+        (mine != theirs).then(|| {
+            let ([a, b], [x, y]) = (theirs, mine);
+            format!(
+                "Slot {number} is {a}x{b} and the picture is {x}x{y}; set the picture to that size, or only look at \
+                 the slot (Alt+{number})"
+            )
+        })
+    }
+
     /// Why a view has nothing to show now, if so.
     pub fn useless_show(&self, show: Show) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
-        let (settings, shading) = (self.document().settings, self.document().rules().shading);
+        let (settings, shading) = (self.shown().settings, self.shown().rules().shading);
         match show {
             Show::Error if !settings.estimate_error => no("The film has one half; switch on Estimate error"),
             Show::Difference => match &self.model.view.reference {
@@ -183,6 +289,9 @@ impl Facts {
             }
             Show::Bounces if shading != Shading::Path => {
                 no("In this stage rays end at their first hit, so each path is one ray")
+            }
+            Show::Occupancy if self.model.view.slots.looked().is_some() => {
+                no("A slot keeps no lanes; press Escape to return to the live picture")
             }
             Show::Occupancy => match self.model.remembered.device {
                 Device::Gpu => no("The graphics adapter traces without packets; switch to the CPU"),

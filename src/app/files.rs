@@ -2,11 +2,13 @@
 //! separate thread reads.
 
 use super::answers::Answers;
+use super::kept::Subject;
+use super::model::crop::Crop;
 use super::model::document::Document;
-use super::tracer::Tracer;
 use crate::describe::describe;
 use crate::files::replace_file;
-use crate::output::{OutputFormat, write_image};
+use crate::film::{Film, key};
+use crate::output::{Description, OutputFormat, write_image, write_part};
 use crate::progressive::{FilmIdentity, ReferenceMeans};
 use crate::recipe::file;
 use crate::render::RenderJob;
@@ -45,33 +47,22 @@ pub struct Files {
     pub opened: Answers<Result<Opened, NotOpened>>,
     /// Films to resume.
     pub resumed: Answers<Result<Resumed, String>>,
-    /// Pictures for the clipboard, and their samples per pixel.
-    pub copied: Answers<(ColorImage, u64)>,
+    /// Pictures for the clipboard, and what they are, in words.
+    pub copied: Answers<(ColorImage, String)>,
     /// Films to compare with.
     pub references: Answers<Result<(PathBuf, ReferenceMeans), String>>,
 }
 
 impl Files {
-    /// Writes the film of `document` at the next end of a pass. `seconds_before` is the tracing time of the samples
-    /// from before this render, if known.
-    pub fn save(
-        &self,
-        context: &Context,
-        (document, main): (&Document, &Tracer),
-        seconds_before: Option<f64>,
-        (format, path): (OutputFormat, PathBuf),
-    ) {
-        let mut recipe = document.recipe();
-        let stage = document.stage().filter(|_| !document.has_changed_scene());
-        let status = main.status().clone();
+    /// Writes the film on the screen at the next end of a pass.
+    pub fn save(&self, context: &Context, subject: &Subject<'_>, (format, path): (OutputFormat, PathBuf)) {
+        let (transfer, describe) = (subject.document().rules().transfer, describer(subject));
         let answer = self.saved.answer(context);
-        main.inspect(move |film| {
-            recipe.samples_per_pixel = film.sample_count().max(1);
-            let description = describe(&recipe, stage, film, &status, seconds_before);
+        subject.inspect(move |film| {
             answer.give(if film.sample_count() == 0 {
                 Err("nothing has been traced yet; try again in a moment".to_owned())
             } else if OutputFormat::from_path(&path).is_ok_and(|of_name| of_name == format) {
-                write_image(&path, film, recipe.rules.transfer, &description)
+                write_image(&path, film, transfer, &describe(film))
                     .map(|()| path)
                     .map_err(|error| error.to_string())
             } else {
@@ -80,13 +71,37 @@ impl Files {
         });
     }
 
-    /// Resolves the film of `document` as it is saved with 8 bits, at the next end of a pass.
-    pub fn copy(&self, context: &Context, document: &Document, main: &Tracer) {
-        let transfer = document.rules().transfer;
+    /// Writes a part of the picture on the screen as PNG.
+    pub fn save_crop(&self, context: &Context, subject: &Subject<'_>, crop: Crop, path: PathBuf) {
+        let (transfer, describe) = (subject.document().rules().transfer, describer(subject));
+        let answer = self.saved.answer(context);
+        subject.inspect(move |film| {
+            let mut description = describe(film);
+            description.set(key::CROP, crop.words());
+            let part = crop.within([film.width(), film.height()]);
+            answer.give(match part {
+                Some(part) => write_part(&path, film, transfer, [part.first, part.size], &description)
+                    .map(|()| path)
+                    .map_err(|error| error.to_string()),
+                None => Err(format!("the crop, {}, is outside of the picture", crop.words())),
+            });
+        });
+    }
+
+    /// Resolves the film on the screen, or a part of it, as it is saved with 8 bits, at the next end of a pass.
+    pub fn copy(&self, context: &Context, subject: &Subject<'_>, crop: Option<Crop>) {
+        let transfer = subject.document().rules().transfer;
         let answer = self.copied.answer(context);
-        main.inspect(move |film| {
-            let size = [film.width(), film.height()].map(|pixels| pixels as usize);
-            answer.give((ColorImage::from_rgb(size, &film.to_rgb8(transfer)), film.sample_count()));
+        subject.inspect(move |film| {
+            let whole = [film.width(), film.height()];
+            let part = crop.and_then(|crop| crop.within(whole));
+            let (what, (first, size)) = match part {
+                Some(part) => (format!("crop: {}", part.words()), (part.first, part.size)),
+                None => (format!("picture: {}x{}", whole[0], whole[1]), ([0, 0], whole)),
+            };
+            let rgb8 = film.part_rgb8(transfer, first, size);
+            let picture = ColorImage::from_rgb(size.map(|pixels| pixels as usize), &rgb8);
+            answer.give((picture, format!("{what}, {} samples per pixel", film.sample_count())));
         });
     }
 
@@ -144,6 +159,18 @@ impl Files {
             let identity = Some(FilmIdentity::of(&read.film));
             Ok((path, ReferenceMeans { identity, ..ReferenceMeans::of(&read.film) }))
         });
+    }
+}
+
+/// What makes the description of the film on the screen.
+fn describer(subject: &Subject<'_>) -> impl FnOnce(&Film) -> Description + Send + 'static {
+    let document = subject.document();
+    let mut recipe = document.recipe();
+    let stage = document.stage().filter(|_| !document.has_changed_scene());
+    let (status, seconds_before) = (subject.status().clone(), subject.seconds_before());
+    move |film| {
+        recipe.samples_per_pixel = film.sample_count().max(1);
+        describe(&recipe, stage, film, &status, seconds_before)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::frame_log::FrameTimes;
 use super::input::{self, Keyboard};
+use super::kept::Subject;
 use super::model::Model;
 use super::model::show::Show;
 use super::sizer::Present;
@@ -96,13 +97,23 @@ impl Window {
         let keyboard = Keyboard {
             had_focus: self.had_focus,
             is_other_view: view.mode().is_some() || view.show() != Show::Picture,
+            is_cropping: view.crop.is_some(),
+            is_at_slot: view.slots.looked().is_some(),
             has_selection: selected.is_some(),
             is_full_screen: *is_full_screen,
             has_first_steps: *has_first_steps,
         };
+        // Escape closes a finding first.
+        if self.keeper.verdict.is_open()
+            && !self.had_focus
+            && context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape))
+        {
+            self.keeper.verdict.close();
+        }
+        let is_at_slot = keyboard.is_at_slot;
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
         let before = self.model.document.camera;
-        if is_free && input::fly(context, &mut self.model.document.camera) {
+        if is_free && !is_at_slot && input::fly(context, &mut self.model.document.camera) {
             self.stop_at_surfaces(&before);
             self.changes.note_move();
         }
@@ -115,7 +126,10 @@ impl Window {
             return;
         }
         let is_clear = |shown: &&Shown| shown.divisor == 1 && shown.samples >= CLEAR_SAMPLES;
-        let mine = self.main.shown().filter(|shown| is_clear(shown) || self.main.status().phase.is_over());
+        let mine = match view.slots.shown() {
+            Some(kept) => self.keeper.picture.shown(kept),
+            None => self.main.shown().filter(|shown| is_clear(shown) || self.main.status().phase.is_over()),
+        };
         let theirs = self.second.shown().filter(|shown| is_clear(shown) || self.second.is_over());
         if let (Some(mine), Some(theirs)) = (mine, theirs) {
             view.divider = mine.texture.most_different_column(&theirs.texture).unwrap_or(view.divider);
@@ -157,6 +171,8 @@ impl Window {
         self.follow_size(context);
         if self.changes.follow(context, &self.model.document) {
             self.seconds_before = Some(0.0);
+            // A change is seen in the live picture.
+            self.model.view.look(None);
             if let Some(log) = &mut self.frame_log {
                 log.changed();
             }
@@ -166,6 +182,7 @@ impl Window {
             context.request_repaint_after(Duration::from_millis(40));
         }
         self.leave_useless_show();
+        self.leave_useless_comparison();
         let Model { document, view, is_paused, .. } = &self.model;
         let want = Want {
             document,
@@ -181,26 +198,36 @@ impl Window {
         };
         self.invalid = outcome.err();
         let has_second = self.second.follow(context, view, &want);
-        self.layers.follow(context, view.show().layer(), document, is_moving);
-        if self.main.has_samples(document)
-            && let Some(named) = self.pending_save.take()
-        {
-            self.files.save(context, (document, &self.main), self.seconds_before, named);
+        let live = (document, &self.main);
+        let subject = Subject::new(view, live, self.seconds_before, &self.keeper.thread);
+        // The picture that a key would flip to is made before it is asked for.
+        let next = || view.slots.other().and_then(|number| view.slots.get(number)).map(|slot| &slot.kept);
+        if let Some(kept) = view.slots.shown().or_else(next) {
+            self.keeper.picture.follow(context, kept, &view.of_film(self.second.film()));
         }
-        if self.pending_copy && self.main.has_samples(document) {
-            self.pending_copy = false;
-            self.files.copy(context, document, &self.main);
+        let is_live_moving = is_moving && !subject.is_kept();
+        self.layers.follow(context, view.show().layer(), subject.document(), is_live_moving);
+        if subject.has_samples() {
+            if let Some(named) = self.pending_save.take() {
+                self.files.save(context, &subject, named);
+            }
+            if let Some((crop, path)) = self.pending_crop.take() {
+                self.files.save_crop(context, &subject, crop, path);
+            }
+            if std::mem::take(&mut self.pending_copy) {
+                self.files.copy(context, &subject, view.crop.flatten());
+            }
         }
         if let Some(words) = self.spheres.told(document, &self.main) {
             self.toasts.good(words);
         }
-        self.inspector.follow(document, &self.main, context);
-        self.tone.follow(document, view.tone.white(), &self.main, context);
+        self.inspector.follow(&subject, context);
+        self.tone.follow(&subject, view.tone.white(), context);
         let is_picture = view.mode().is_none() && view.show() == Show::Picture;
         let area = self.viewport.room().filter(|_| is_picture);
-        self.values.follow(document, self.viewport.placement.rect(), area, &self.main, context);
+        self.values.follow(&subject, self.viewport.placement.rect(), area, context);
         self.surfaces.follow(document, self.main.has_samples(document), context);
-        self.identity.follow(view, &self.main, context);
+        self.identity.follow(view.subtracted(self.second.film()), &subject, context);
         self.paths.follow(document, context);
         let has_packet = self.model.remembered.has_panels && self.model.remembered.has_packet;
         let lanes = has_packet.then(|| self.model.remembered.lanes_in_use());
@@ -209,6 +236,7 @@ impl Window {
         if !has_second {
             self.model.view.end_comparison();
         }
+        self.keep_wanted(context);
     }
 }
 

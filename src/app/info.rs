@@ -5,7 +5,6 @@ use super::facts::Facts;
 use super::menu::item;
 use super::model::document::Document;
 use super::model::show::Show;
-use super::model::view::Mode;
 use super::widgets::{About, control};
 use crate::stages::Stage;
 use crate::stress::Case;
@@ -97,9 +96,9 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
         ui.add(egui::Label::new(text).wrap());
     }
     ui.add_space(10.0);
-    let is_on = facts.model.view.mode().is_some();
     let command = Command::BookArithmetic;
-    let response = ui.add(egui::Button::new(command.name()).selected(is_on)).on_hover_text(command.help());
+    let button = egui::Button::new(command.name()).selected(facts.is_on(command));
+    let response = ui.add(button).on_hover_text(command.help());
     if response.clicked() {
         commands.push(command);
     }
@@ -145,10 +144,8 @@ fn compare_ui(
         ui.add(egui::Label::new(with).wrap());
     }
     ui.horizontal_wrapped(|ui| {
-        for (command, name, mode) in
-            [(Command::Wipe, "Wipe", Mode::Wipe), (Command::WipeDifference, "Difference", Mode::Difference)]
-        {
-            let is_on = view.mode() == Some(mode);
+        for (command, name) in [(Command::Wipe, "Wipe"), (Command::WipeDifference, "Difference")] {
+            let is_on = facts.is_on(command);
             let response = ui.add(egui::Button::new(name).selected(is_on)).on_hover_text(command.help());
             if response.clicked() {
                 commands.push(command);

@@ -20,6 +20,10 @@ pub struct Keyboard {
     pub had_focus: bool,
     /// The window shows something other than the picture.
     pub is_other_view: bool,
+    /// A part of the picture is being marked.
+    pub is_cropping: bool,
+    /// A slot is shown instead of the live picture.
+    pub is_at_slot: bool,
     /// A sphere is selected.
     pub has_selection: bool,
     /// The window is in full-screen mode.
@@ -33,6 +37,7 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     if context.text_edit_focused() {
         return false;
     }
+    context.input_mut(name_digits_by_place);
     let is_focused = context.memory(|memory| memory.focused().is_some());
     let keys_of_controls = [Key::Tab, Key::Space, Key::ArrowLeft, Key::ArrowRight];
     for command in by_modifiers() {
@@ -70,19 +75,36 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     if also(Key::Backspace) {
         commands.push(Command::DeleteSphere);
     }
-    // Escape first leaves a control, then closes the first steps, then deselects, then leaves a comparison or another view, then full-screen mode.
+    // Escape first leaves a control, then closes the first steps, then a crop, then deselects, then leaves a comparison or
+    // another view, then a slot, then full-screen mode.
     if !keyboard.had_focus && also(Key::Escape) {
         if keyboard.has_first_steps {
             commands.push(Command::FirstSteps);
-        } else if keyboard.has_selection {
+        } else if keyboard.is_cropping {
+            commands.push(Command::Crop);
+        } else if keyboard.has_selection && !keyboard.is_at_slot {
             commands.push(Command::Deselect);
         } else if keyboard.is_other_view {
             commands.push(Command::Show(Show::Picture));
+        } else if keyboard.is_at_slot {
+            commands.push(Command::LookLive);
         } else if keyboard.is_full_screen {
             commands.push(Command::FullScreen);
         }
     }
     true
+}
+
+/// With Alt, a digit is known by its place on the keyboard: with Shift as well, it types something else.
+fn name_digits_by_place(input: &mut egui::InputState) {
+    for event in &mut input.events {
+        if let egui::Event::Key { key, physical_key: Some(place), modifiers, .. } = event
+            && modifiers.alt
+            && (Key::Num0..=Key::Num9).contains(place)
+        {
+            *key = *place;
+        }
+    }
 }
 
 /// Takes the events that the window system sends instead of Ctrl+C, and returns how many there were.
@@ -142,7 +164,9 @@ fn by_modifiers() -> Vec<Command> {
     let mut commands: Vec<Command> = Command::all().into_iter().filter(|c| c.shortcut().is_some()).collect();
     commands.sort_by_key(|command| {
         let modifiers = command.shortcut().map_or(Modifiers::NONE, |shortcut| shortcut.modifiers);
-        std::cmp::Reverse(u8::from(modifiers.command) + u8::from(modifiers.shift))
+        std::cmp::Reverse(
+            [modifiers.command, modifiers.shift, modifiers.alt].map(u8::from).iter().sum::<u8>(),
+        )
     });
     commands
 }

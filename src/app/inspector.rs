@@ -1,8 +1,8 @@
 //! The pixel inspector: value, error, and the surface under the pointer.
 
 use super::answers::Answers;
+use super::kept::{FilmId, Subject};
 use super::model::document::Document;
-use super::tracer::Tracer;
 use super::widgets::compact;
 use crate::film::to_byte;
 use crate::layers::Layer;
@@ -34,8 +34,8 @@ pub struct Pixel {
 pub struct Inspector {
     hovered: Option<[u32; 2]>,
     pixel: Option<Pixel>,
-    /// The pixel and sample count of the last query.
-    asked: Option<([u32; 2], u64)>,
+    /// The pixel, the film and its sample count of the last query.
+    asked: Option<([u32; 2], FilmId, u64)>,
     /// Can be upgraded as long as the query waits for the film.
     waiting: Weak<()>,
     answers: Answers<Pixel>,
@@ -66,21 +66,21 @@ impl Inspector {
 
     /// Takes the film's answer and queries the film again if there may be news. If the film is gone or has no samples,
     /// the last known pixel stays.
-    pub fn follow(&mut self, document: &Document, main: &Tracer, context: &egui::Context) {
+    pub fn follow(&mut self, subject: &Subject<'_>, context: &egui::Context) {
         while let Some(pixel) = self.answers.take() {
             self.pixel = Some(pixel);
         }
         let Some(at) = self.hovered else { return };
-        let samples = main.shown().map_or(0, |shown| shown.samples);
+        let wanted = Some((at, subject.film_id(), subject.shown_samples()));
         let is_waiting = self.waiting.strong_count() > 0;
-        if is_waiting || self.asked == Some((at, samples)) || !main.is_full(document) {
+        if is_waiting || self.asked == wanted || !subject.is_full() {
             return;
         }
         let question = Arc::new(());
         self.waiting = Arc::downgrade(&question);
-        self.asked = Some((at, samples));
-        let (transfer, answer) = (document.rules().transfer, self.answers.answer(context));
-        main.inspect(move |film| {
+        self.asked = wanted;
+        let (transfer, answer) = (subject.document().rules().transfer, self.answers.answer(context));
+        subject.inspect(move |film| {
             let [x, y] = at;
             if x < film.width() && y < film.height() && film.sample_count() > 0 {
                 let index = y as usize * film.width() as usize + x as usize;

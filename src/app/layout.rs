@@ -1,7 +1,9 @@
 //! Where everything is drawn in a frame: panels, the viewport, what lies over it, and dialogs.
 
+use super::facts::Facts;
 use super::model::Model;
 use super::model::first_steps::Step;
+use super::model::view::{Mode, ViewState};
 use super::places::Place;
 use super::viewport::{Handle, Pictures};
 use super::window::Window;
@@ -31,6 +33,7 @@ impl Window {
             code,
             commands,
             spheres,
+            keeper,
             is_new,
             ..
         } = self;
@@ -41,20 +44,24 @@ impl Window {
         let is_narrow = ui.available_width() < NARROW;
         let layer = view.show().layer();
         let has = &facts.model.remembered;
-        let mut info = |ui: &mut egui::Ui, commands: &mut Vec<_>| {
+        let mut info = |ui: &mut egui::Ui, view: &mut ViewState, commands: &mut Vec<_>| {
             info::ui(ui, &mut view.is_with_next, &facts, commands);
             tone.ui(ui, view, &facts);
             let value =
                 inspector.pixel().and_then(|pixel| layers.value_at(pixel.at)).filter(|_| layer.is_some());
             let other = view.subtracted(second.film()).zip(inspector.pixel());
             let other = other.and_then(|(film, pixel)| film.mean(pixel.at));
-            inspector.ui(ui, facts.document(), value, other);
+            inspector.ui(ui, facts.shown(), value, other);
             paths.ui(ui, facts.document());
         };
         if has.has_panels {
             Place::Menu.begin(ui);
             menu::ui(ui, is_narrow, &facts, commands);
             status_bar::ui(ui, &facts);
+            if view.slots.is_used() {
+                Place::Slots.begin(ui);
+                keeper.strip.ui(ui, &mut view.slots, &facts, commands);
+            }
             if has.has_plot {
                 Place::Plot.begin(ui);
                 plot::ui(ui, &mut document.stop.noise, &facts, commands);
@@ -87,37 +94,44 @@ impl Window {
                     }
                     if has_info_below {
                         Place::Info.begin(ui);
-                        info(ui, commands);
+                        info(ui, view, commands);
                     }
                 });
             }
             if has.has_info && !is_narrow {
                 let panel = egui::Panel::right("info").default_size(256.0).size_range(190.0..=420.0);
                 Place::Info.begin(ui);
-                scrolling(ui, panel, |ui| info(ui, commands));
+                scrolling(ui, panel, |ui| info(ui, view, commands));
             }
         }
         let before = document.camera;
         let same = identity.is_same().then(|| "identical to the bit".to_owned());
         let divider = view.divider;
         let touch = egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
-            let has_film = main.shown().is_some();
+            let kept = view.slots.shown();
+            let shown = match kept {
+                Some(kept) => keeper.picture.shown_mut(kept),
+                None => main.shown_mut(),
+            };
+            let has_film = shown.is_some();
+            let inside = surfaces.inside(document).filter(|_| kept.is_none());
+            let compared = view.compared_slot().map(|number| view.slots.title(number));
             let pictures = Pictures {
                 main: match layer.and_then(|layer| layers.shown_mut(layer)) {
                     Some(layer) => Some((&mut layer.texture, layer.divisor)),
-                    None => main.shown_mut().map(|shown| (&mut shown.texture, shown.divisor)),
+                    None => shown.map(|shown| (&mut shown.texture, shown.divisor)),
                 },
                 has_film,
                 second: second.shown_mut().map(|shown| {
-                    let title = shown.document.title();
+                    let title = compared.unwrap_or_else(|| shown.document.title());
                     (&mut shown.texture, shown.divisor, title)
                 }),
-                paths,
+                paths: kept.is_none().then_some(&*paths),
                 values,
-                notices: surfaces.inside(document).into_iter().chain(same).collect(),
+                notices: slot_notice(&facts).into_iter().chain(inside).chain(same).collect(),
             };
             let (camera, divider) = (&mut document.camera, &mut view.divider);
-            let handle = Handle { camera, divider, selected };
+            let handle = Handle { camera, divider, selected, crop: &mut view.crop };
             viewport.ui(ui, handle, pictures, &facts, commands)
         });
         let touch = touch.inner;
@@ -150,10 +164,23 @@ impl Window {
             self.toasts.good(text);
         }
         self.check.ui(ui.ctx());
+        self.keeper.verdict.ui(ui.ctx());
         if let Some((purpose, path)) = self.dialogs.ui(ui, &facts, &mut self.commands) {
             let context = ui.ctx().clone();
             self.use_path(&context, purpose, path);
         }
+    }
+}
+
+/// Which slot is shown or subtracted. The titles of a wipe say it themselves.
+fn slot_notice(facts: &Facts) -> Option<String> {
+    let view = &facts.model.view;
+    match (view.mode(), view.compared_slot()) {
+        (Some(Mode::Difference), Some(number)) => {
+            Some(format!("A: {}    B: {}", facts.title(), view.slots.title(number)))
+        }
+        (None, _) => view.slots.looked().map(|_| format!("{} (Escape returns)", facts.title())),
+        _ => None,
     }
 }
 

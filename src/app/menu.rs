@@ -58,7 +58,8 @@ fn menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
             let height = (ui.ctx().content_rect().height() - 60.0).max(100.0);
             egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
                 let mut last = None;
-                for command in Command::all().into_iter().filter(|command| command.group() == group) {
+                let listed = |command: &Command| command.group() == group && facts.is_listed(*command);
+                for command in Command::all().into_iter().filter(listed) {
                     let section = section(command);
                     if last.is_some_and(|last| last != section) {
                         ui.separator();
@@ -94,7 +95,11 @@ fn recent(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
 fn section(command: Command) -> u8 {
     match command {
         Command::Save(_) | Command::SaveScene => 1,
-        Command::CopyPicture | Command::CopyCommand => 2,
+        Command::CopyPicture
+        | Command::Crop
+        | Command::CopyCrop
+        | Command::SaveCrop
+        | Command::CopyCommand => 2,
         Command::LoadReference => 3,
         Command::Quit => 4,
         Command::Home | Command::ResetAll => 1,
@@ -112,6 +117,10 @@ fn section(command: Command) -> u8 {
         | Command::NextPanel
         | Command::FullScreen => 3,
         Command::Theme(_) => 4,
+        Command::LookLive | Command::Look(_) => 1,
+        Command::SlotWipe | Command::SlotDifference | Command::OnlyNoise | Command::OpenSlot => 2,
+        Command::KeepIn(_) => 3,
+        Command::DeleteSlot | Command::BringBackSlot => 4,
         Command::Device(_) | Command::Extreme(_) => 1,
         _ => 0,
     }

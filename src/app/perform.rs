@@ -10,12 +10,13 @@ use super::model::origin::{Origin, Source};
 use super::model::remembered::Bookmark;
 use super::model::show::Show;
 use super::model::tone::Tone;
-use super::model::view::Mode;
+use super::model::view::{Mode, With};
 use super::places;
 use super::plot;
 use super::theme;
 use super::window::Window;
 use crate::gallery::Figure;
+use crate::output::OutputFormat;
 use crate::stages::Stage;
 use eframe::egui::{self, ViewportCommand};
 use std::path::PathBuf;
@@ -39,6 +40,10 @@ impl Window {
         match command {
             Command::Open => self.ask_path(Purpose::Open),
             Command::Recent(place) => self.open_recent(context, place),
+            // While a part of the picture is marked, it is what is saved.
+            Command::Save(OutputFormat::Png) if self.model.view.crop.flatten().is_some() => {
+                self.ask_path(Purpose::SaveCrop)
+            }
             Command::Save(format) => self.ask_path(Purpose::Save(format)),
             Command::SaveScene => self.ask_path(Purpose::SaveScene),
             Command::LoadReference => self.ask_path(Purpose::ReferenceFilm),
@@ -78,14 +83,29 @@ impl Window {
             Command::PreviousRay => self.paths.step(false),
             Command::Show(show) => self.model.view.choose(show),
             Command::Wipe => {
-                let is_by_book = self.document().stage().is_none();
-                self.model.view.toggle(Mode::Wipe, is_by_book);
+                let with = if self.document().stage().is_none() { With::Book } else { With::Stage };
+                self.model.view.toggle(Mode::Wipe, with);
             }
             Command::WipeDifference => {
-                let is_by_book = self.model.view.is_by_book();
-                self.model.view.toggle(Mode::Difference, is_by_book);
+                let view = &mut self.model.view;
+                let with = if view.with() == With::Book { With::Book } else { With::Stage };
+                view.toggle(Mode::Difference, with);
             }
-            Command::BookArithmetic => self.model.view.toggle(Mode::Wipe, true),
+            Command::BookArithmetic => self.model.view.toggle(Mode::Wipe, With::Book),
+            Command::Keep
+            | Command::KeepIn(_)
+            | Command::Look(_)
+            | Command::LookLive
+            | Command::Swap
+            | Command::SlotWipe
+            | Command::SlotDifference
+            | Command::OnlyNoise
+            | Command::OpenSlot
+            | Command::DeleteSlot
+            | Command::BringBackSlot
+            | Command::Crop
+            | Command::CopyCrop
+            | Command::SaveCrop => self.perform_on_slots(context, command),
             Command::Brighter => self.model.view.tone.expose(Tone::STEP),
             Command::Darker => self.model.view.tone.expose(-Tone::STEP),
             Command::NoExposure => self.model.view.tone.exposure = 0.0,
@@ -258,8 +278,11 @@ impl Window {
         }
     }
 
-    fn ask_path(&mut self, purpose: Purpose) {
-        let name = self.document().name();
+    pub(super) fn ask_path(&mut self, purpose: Purpose) {
+        let mut name = self.subject().document().name();
+        if purpose == Purpose::SaveCrop {
+            name.push_str("-crop");
+        }
         let directory = self.model.remembered.directory.as_deref();
         let mut path_box = PathBox::new(purpose, &name, directory);
         if matches!(purpose, Purpose::Save(_)) {
@@ -282,8 +305,11 @@ impl Window {
         match purpose {
             Purpose::Open => self.files.open(context, path),
             Purpose::Save(format) => self.pending_save = Some((format, path)),
+            Purpose::SaveCrop => {
+                self.pending_crop = self.model.view.crop.flatten().map(|crop| (crop, path));
+            }
             Purpose::SaveScene => {
-                self.files.save_scene(context, path, self.document());
+                self.files.save_scene(context, path, self.subject().document());
             }
             Purpose::SavePlot => {
                 self.files.save_text(context, &path, &plot::csv(&self.main.status().history));
@@ -294,21 +320,23 @@ impl Window {
 
     fn copy_command(&mut self, context: &egui::Context) {
         // As many as a picture saved now would have.
-        let samples = match self.main.status().samples_per_pixel {
-            samples @ 1.. if self.main.is_full(self.document()) => samples,
-            _ => self.document().stop.samples.unwrap_or(self.document().origin.recipe.samples_per_pixel),
+        let subject = self.subject();
+        let document = subject.document();
+        let samples = match subject.samples() {
+            samples @ 1.. if subject.is_full() => samples,
+            _ => document.stop.samples.unwrap_or(document.origin.recipe.samples_per_pixel),
         };
         let device = self.model.remembered.device;
         // Software adapters are used only if they are named.
         let is_gpu = matches!(device, Device::Gpu | Device::Both);
         let adapter = device::adapter().ok().filter(|adapter| is_gpu && adapter.is_software);
         let adapter = adapter.map(|adapter| adapter.name.as_str());
-        let line = self.document().command_line(samples.max(1), device.name(), adapter);
+        let line = document.command_line(samples.max(1), device.name(), adapter);
         context.copy_text(line);
-        let document = self.document();
         let is_in_no_file = document.has_changed_scene()
             || matches!(document.origin.source, Source::Embedded | Source::Extreme(_));
-        self.toasts.good(if is_in_no_file && document.checked.file().is_none() {
+        let is_lost = is_in_no_file && document.checked.file().is_none();
+        self.toasts.good(if is_lost {
             "Copied; the scene has no file yet: save the scene file, which the command reads"
         } else {
             "Copied: the command line that renders this picture"

@@ -1,9 +1,8 @@
 //! The numbers of pixels, drawn in them when they are large.
 
 use super::answers::Answers;
-use super::model::document::Document;
+use super::kept::{FilmId, Subject};
 use super::model::tone::Tone;
-use super::tracer::Tracer;
 use super::widgets::compact;
 use crate::progressive::luminance;
 use eframe::egui::{self, Align2, Color32, Rect, TextStyle, Ui, vec2};
@@ -24,8 +23,8 @@ struct Part {
 #[derive(Default)]
 pub struct PixelValues {
     part: Option<Part>,
-    /// Run, samples and pixels of the last query.
-    asked: Option<(u64, u64, [[u32; 2]; 2])>,
+    /// Film, samples and pixels of the last query.
+    asked: Option<(FilmId, u64, [[u32; 2]; 2])>,
     /// Can be upgraded as long as the query waits for the film.
     waiting: Weak<()>,
     answers: Answers<Part>,
@@ -34,24 +33,16 @@ pub struct PixelValues {
 impl PixelValues {
     /// Takes the film's answer, and asks again if other pixels are visible or have changed. The picture is drawn at `rect`;
     /// `area` is the viewport.
-    pub fn follow(
-        &mut self,
-        document: &Document,
-        rect: Rect,
-        area: Option<Rect>,
-        main: &Tracer,
-        context: &egui::Context,
-    ) {
+    pub fn follow(&mut self, subject: &Subject<'_>, rect: Rect, area: Option<Rect>, context: &egui::Context) {
         while let Some(part) = self.answers.take() {
             self.part = Some(part);
         }
-        let size = [document.settings.width, document.settings.height];
-        let visible = area.and_then(|area| visible(rect, area, size));
-        let Some([first, end]) = visible.filter(|_| main.has_samples(document)) else {
+        let visible = area.and_then(|area| visible(rect, area, subject.document().size()));
+        let Some([first, end]) = visible.filter(|_| subject.has_samples()) else {
             (self.part, self.asked) = (None, None);
             return;
         };
-        let question = (main.status().run, main.status().samples_per_pixel, [first, end]);
+        let question = (subject.film_id(), subject.samples(), [first, end]);
         if self.asked == Some(question) || self.waiting.strong_count() > 0 {
             return;
         }
@@ -59,7 +50,7 @@ impl PixelValues {
         self.waiting = Arc::downgrade(&guard);
         self.asked = Some(question);
         let answer = self.answers.answer(context);
-        main.inspect(move |film| {
+        subject.inspect(move |film| {
             let means = (first[1]..end[1].min(film.height()))
                 .flat_map(|y| (first[0]..end[0].min(film.width())).map(move |x| [x, y]))
                 .map(|[x, y]| film.mean(y as usize * film.width() as usize + x as usize))

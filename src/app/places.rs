@@ -20,10 +20,12 @@ pub enum Place {
     Code,
     /// The lanes of a packet.
     Packet,
+    /// The strip of slots.
+    Slots,
 }
 
 impl Place {
-    const ALL: [Place; 7] = [
+    const ALL: [Place; 8] = [
         Place::FirstSteps,
         Place::Menu,
         Place::Controls,
@@ -31,6 +33,7 @@ impl Place {
         Place::Plot,
         Place::Code,
         Place::Packet,
+        Place::Slots,
     ];
 
     fn is_shown(self, model: &Model) -> bool {
@@ -45,6 +48,7 @@ impl Place {
                     Place::Plot => remembered.has_plot,
                     Place::Code => remembered.has_code,
                     Place::Packet => remembered.has_packet,
+                    Place::Slots => model.view.slots.is_used(),
                 }
     }
 

@@ -3,6 +3,8 @@
 use super::command::Command;
 use super::model::remembered::Remembered;
 use super::model::show::Show;
+use super::model::slots::SlotNumber;
+use super::tracer::Shown;
 use super::window::Window;
 use crate::progressive::Status;
 use eframe::egui;
@@ -28,9 +30,37 @@ impl Window {
         self.main.shown().map(|shown| (shown.samples, shown.divisor))
     }
 
-    /// The colour of a pixel of the displayed picture.
+    /// The colour of a pixel of the displayed picture, which may be that of a slot.
     pub fn shown_pixel(&self, at: [u32; 2]) -> Option<[u8; 3]> {
-        self.main.shown().and_then(|shown| shown.texture.colour(at))
+        self.on_screen().and_then(|shown| shown.texture.colour(at))
+    }
+
+    fn on_screen(&self) -> Option<&Shown> {
+        match self.model.view.slots.shown() {
+            Some(kept) => self.keeper.picture.shown(kept),
+            None => self.main.shown(),
+        }
+    }
+
+    /// The slot that is shown instead of the live picture.
+    pub fn looked(&self) -> Option<SlotNumber> {
+        self.model.view.slots.looked()
+    }
+
+    /// The name of a slot in use, and the samples per pixel of its picture.
+    pub fn slot(&self, number: SlotNumber) -> Option<(&str, u64)> {
+        self.model.view.slots.get(number).map(|slot| (slot.name.as_str(), slot.kept.samples()))
+    }
+
+    /// Whether the last two pictures that were compared differ only by noise: the verdict in a few words, and the text of
+    /// `weekender compare`. `None` while it is awaited.
+    pub fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {
+        self.keeper.verdict.words()
+    }
+
+    /// The part of the picture that is marked: its first column and row, and its size.
+    pub fn crop(&self) -> Option<[[u32; 2]; 2]> {
+        self.model.view.crop.flatten().map(|crop| [crop.first, crop.size])
     }
 
     /// Whether the displayed picture is of the current document.

@@ -43,11 +43,11 @@ impl Window {
             Some(Err(reason)) => self.toasts.bad(format!("Not checked: {reason}")),
             None => {}
         }
-        while let Some((picture, samples)) = self.files.copied.take() {
-            let [width, height] = picture.size;
-            self.toasts.good(format!("Copied the picture: {width}x{height}, {samples} samples per pixel"));
+        while let Some((picture, what)) = self.files.copied.take() {
+            self.toasts.good(format!("Copied the {what}"));
             context.copy_image(picture);
         }
+        self.receive_for_slots();
         while let Some(outcome) = self.files.resumed.take() {
             match outcome {
                 Ok(resumed) => self.go_on(resumed),

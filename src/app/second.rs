@@ -1,8 +1,10 @@
-//! The second picture for the wipe and the difference: another stage, or the same picture by the book's own
-//! arithmetic.
+//! The second picture for the wipe and the difference: another stage, the same picture by the book's own arithmetic, or a
+//! picture that was kept.
 
 use super::answers::Answers;
+use super::kept::KeptPicture;
 use super::model::document::Document;
+use super::model::kept::Kept;
 use super::model::origin::Origin;
 use super::model::view::{Mode, Other, ViewState, differ_in_camera};
 use super::tracer::{Shown, Tracer, Want};
@@ -17,6 +19,8 @@ pub struct Second {
     /// `None` until a second picture is needed.
     tracer: Option<Tracer>,
     of: Option<(Other, Arc<Origin>)>,
+    /// The picture, if it was kept.
+    picture: KeptPicture,
     /// Its film when it was last read.
     film: Option<Arc<ReferenceMeans>>,
     films: Answers<(Arc<Origin>, ReferenceMeans)>,
@@ -27,17 +31,24 @@ pub struct Second {
 impl Second {
     /// The newest second picture.
     pub fn shown_mut(&mut self) -> Option<&mut Shown> {
-        self.tracer.as_mut().and_then(Tracer::shown_mut)
+        match &self.of {
+            Some((Other::Kept(kept), _)) => self.picture.shown_mut(kept),
+            _ => self.tracer.as_mut().and_then(Tracer::shown_mut),
+        }
     }
 
     /// The newest second picture.
     pub fn shown(&self) -> Option<&Shown> {
-        self.tracer.as_ref().and_then(Tracer::shown)
+        match &self.of {
+            Some((Other::Kept(kept), _)) => self.picture.shown(kept),
+            _ => self.tracer.as_ref().and_then(Tracer::shown),
+        }
     }
 
     /// Whether the second picture is complete.
     pub fn is_over(&self) -> bool {
-        self.tracer.as_ref().is_some_and(|tracer| tracer.status().phase.is_over())
+        matches!(self.of, Some((Other::Kept(_), _)))
+            || self.tracer.as_ref().is_some_and(|tracer| tracer.status().phase.is_over())
     }
 
     /// Its film, while the difference is shown.
@@ -47,8 +58,7 @@ impl Second {
 
     /// Whether a picture of the current comparison is available.
     pub fn has_picture(&self, document: &Document, view: &ViewState) -> bool {
-        let shown = self.tracer.as_ref().and_then(Tracer::shown);
-        match (view.compared(document), &self.of, shown) {
+        match (view.compared(document), &self.of, self.shown()) {
             (Some(wanted), Some((kept, origin)), Some(shown)) => {
                 wanted == *kept && Arc::ptr_eq(origin, &shown.document.origin)
             }
@@ -85,8 +95,14 @@ impl Second {
                 tracer.abandon();
             }
             self.film = None;
+            // A kept picture may have been deleted.
+            self.of = self.of.take().filter(|(other, _)| !matches!(other, Other::Kept(_)));
             return false;
         };
+        if let Other::Kept(kept) = other {
+            self.follow_kept(context, view, kept);
+            return true;
+        }
         let document = self.document_of(other, want.document);
         if self.tracer.is_none() {
             // Without a thread there is no second picture, but everything else works.
@@ -119,12 +135,34 @@ impl Second {
         is_possible
     }
 
+    /// Shows a picture that was kept.
+    fn follow_kept(&mut self, context: &Context, view: &ViewState, kept: Arc<Kept>) {
+        if let Some(tracer) = &mut self.tracer {
+            tracer.abandon();
+        }
+        self.picture.follow(context, &kept, &view.tone.of_picture());
+        let is_difference = view.mode() == Some(Mode::Difference);
+        self.film = kept.known_means().filter(|_| is_difference).cloned();
+        if is_difference && self.film.is_none() && self.waiting.strong_count() == 0 {
+            let question = Arc::new(());
+            self.waiting = Arc::downgrade(&question);
+            let (kept, context) = (Arc::clone(&kept), context.clone());
+            self.picture.run(move || {
+                kept.means();
+                drop(question);
+                context.request_repaint();
+            });
+        }
+        let origin = Arc::clone(&kept.document.origin);
+        self.of = Some((Other::Kept(kept), origin));
+    }
+
     fn document_of(&mut self, other: Other, mine: &Document) -> Document {
         if self.of.as_ref().is_none_or(|(kept, _)| *kept != other) {
             (self.of, self.film) = (None, None);
         }
         let (_, origin) = self.of.get_or_insert_with(|| {
-            let origin = Arc::new(other.origin());
+            let origin = other.origin();
             (other, origin)
         });
         let (theirs, base) = (&origin.recipe, &mine.origin.recipe);

@@ -2,12 +2,11 @@
 
 use super::answers::Answers;
 use super::facts::Facts;
-use super::model::document::Document;
+use super::kept::{FilmId, Subject};
 use super::model::show::Show;
 use super::model::tone::Tone;
 use super::model::view::{Mode, ViewState};
 use super::theme;
-use super::tracer::Tracer;
 use super::widgets::{About, compact, number, slider, under_name};
 use crate::film::Histogram;
 use eframe::egui::{
@@ -31,8 +30,8 @@ const CHANNELS: [Color32; 3] =
 pub struct ToneUi {
     is_open: bool,
     histogram: Option<Histogram>,
-    /// Run, samples and white of the last query, and when it was made.
-    asked: Option<(u64, u64, f64, Instant)>,
+    /// Film, samples and white of the last query, and when it was made.
+    asked: Option<(FilmId, u64, f64, Instant)>,
     /// Can be upgraded as long as the query waits for the film.
     waiting: Weak<()>,
     answers: Answers<Histogram>,
@@ -40,16 +39,16 @@ pub struct ToneUi {
 
 impl ToneUi {
     /// Takes the film's answer, and asks again if the picture has changed.
-    pub fn follow(&mut self, document: &Document, white: f64, main: &Tracer, context: &egui::Context) {
+    pub fn follow(&mut self, subject: &Subject<'_>, white: f64, context: &egui::Context) {
         while let Some(histogram) = self.answers.take() {
             self.histogram = Some(histogram);
         }
-        let (run, samples) = (main.status().run, main.status().samples_per_pixel);
-        if !self.is_open || !main.has_samples(document) || self.waiting.strong_count() > 0 {
+        let (film, samples) = (subject.film_id(), subject.samples());
+        if !self.is_open || !subject.has_samples() || self.waiting.strong_count() > 0 {
             return;
         }
-        if let Some((asked_run, asked_samples, asked_white, at)) = self.asked {
-            let is_same_picture = asked_run == run && asked_white == white;
+        if let Some((asked_film, asked_samples, asked_white, at)) = self.asked {
+            let is_same_picture = asked_film == film && asked_white == white;
             let wait = INTERVAL.saturating_sub(at.elapsed());
             if is_same_picture && asked_samples == samples {
                 return;
@@ -61,9 +60,9 @@ impl ToneUi {
         }
         let question = Arc::new(());
         self.waiting = Arc::downgrade(&question);
-        self.asked = Some((run, samples, white, Instant::now()));
+        self.asked = Some((film, samples, white, Instant::now()));
         let answer = self.answers.answer(context);
-        main.inspect(move |film| {
+        subject.inspect(move |film| {
             let histogram = Histogram::of(film, white);
             // Dropped first: the answer wakes a frame, which may ask the next question.
             drop(question);

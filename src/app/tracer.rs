@@ -151,11 +151,7 @@ impl Tracer {
 
     /// Sets the view for pictures.
     fn look(&mut self, view: &View) {
-        let is_same = match (&self.view, view) {
-            (View::Difference(old), View::Difference(new)) => Arc::ptr_eq(old, new),
-            (old, new) => old == new,
-        };
-        if !is_same {
+        if !self.view.is_same(view) {
             self.view = view.clone();
             self.progressive.set_view(view.clone());
             self.progressive.ask_for_picture();

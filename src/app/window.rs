@@ -13,6 +13,7 @@ use super::identity::Identity;
 use super::inspector::Inspector;
 use super::layers::Layers;
 use super::model::Model;
+use super::model::crop::Crop;
 use super::model::device::{Device, DeviceOptions};
 use super::model::document::Document;
 use super::model::origin::{Origin, Source};
@@ -24,6 +25,7 @@ use super::pixel_values::PixelValues;
 use super::places::Place;
 use super::second::Second;
 use super::sizer::Sizer;
+use super::slots::Keeper;
 use super::speed::Speed;
 use super::spheres::Spheres;
 use super::surfaces::Surfaces;
@@ -53,6 +55,7 @@ pub struct Window {
     pub(super) changes: Changes,
     pub(super) main: Tracer,
     pub(super) second: Second,
+    pub(super) keeper: Keeper,
     pub(super) layers: Layers,
     pub(super) tone: ToneUi,
     pub(super) values: PixelValues,
@@ -77,6 +80,8 @@ pub struct Window {
     pub(super) pending_resume: Option<(PathBuf, RenderJob)>,
     /// A save that waits until the full-size film has samples.
     pub(super) pending_save: Option<(OutputFormat, PathBuf)>,
+    /// A part of the picture to save once the full-size film has samples.
+    pub(super) pending_crop: Option<(Crop, PathBuf)>,
     /// The picture is to be copied once the full-size film has samples.
     pub(super) pending_copy: bool,
     /// A film to continue, until the tracer takes it.
@@ -150,6 +155,7 @@ impl Window {
             },
             main: Tracer::new().context("cannot start the render thread")?,
             second: Second::default(),
+            keeper: Keeper::default(),
             layers: Layers::default(),
             tone: ToneUi::default(),
             values: PixelValues::default(),
@@ -171,6 +177,7 @@ impl Window {
             commands: Vec::new(),
             pending_resume,
             pending_save: None,
+            pending_crop: None,
             pending_copy: false,
             pending_film: None,
             seconds_before: Some(0.0),

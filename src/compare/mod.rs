@@ -11,6 +11,7 @@ mod verdict;
 pub use non_finite::NonFinite;
 pub use paired::{PairedSamples, PairedSums};
 pub use side::Side;
+pub use text::told;
 pub use verdict::{Comparison, Evidence, ROUNDING_BIAS, compare};
 
 use crate::cli::{CompareOptions, JsonTarget};
@@ -90,7 +91,25 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
         check_writable(path)?;
     }
     let (sides, paired) = sides(options)?;
+    let comparison = compare_sides(&sides, paired)?;
+    let text = text::told(&sides, &comparison);
+    print_beside(options.json.as_ref(), &text)?;
     let [a, b] = &sides;
+    if let Some(path) = &options.heat_map {
+        replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
+    }
+    if let Some(target) = &options.json {
+        write_json(&comparison_json(&sides, &comparison), target)?;
+    }
+    Ok(if comparison.is_equal() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Compares two pictures, with a note on their jobs if that explains the result.
+///
+/// # Errors
+/// If their sizes differ.
+pub fn compare_sides(sides: &[Side; 2], paired: Option<PairedSamples>) -> Result<Comparison> {
+    let [a, b] = sides;
     if (a.width, a.height) != (b.width, b.height) {
         bail!(
             "{} has {}x{} pixels and {} has {}x{}; render both at the same size",
@@ -104,15 +123,7 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
     }
     let mut comparison = compare(a, b, paired);
     comparison.notes.extend(note_on_jobs(a, b));
-    let text = text::told(&sides, &comparison);
-    print_beside(options.json.as_ref(), &text)?;
-    if let Some(path) = &options.heat_map {
-        replace_file(path, |writer| heat_map::write(a, b, &comparison.test, writer))?;
-    }
-    if let Some(target) = &options.json {
-        write_json(&comparison_json(&sides, &comparison), target)?;
-    }
-    Ok(if comparison.is_equal() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(comparison)
 }
 
 /// Both sides. If backends render both, also their comparison sample by sample.

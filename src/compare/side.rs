@@ -10,6 +10,7 @@ use crate::render::{RenderJob, RenderSettings, Renderer};
 use crate::saved::{OpenError, Saved};
 use anyhow::{Context, Result};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// One of the two pictures.
@@ -30,7 +31,7 @@ pub struct Side {
     /// See [`crate::output::ReadPicture::limit`].
     pub limit: f64,
     /// The film, if the picture is one.
-    pub film: Option<Film>,
+    pub film: Option<Arc<Film>>,
     /// The film's job.
     pub job: Option<RenderJob>,
     /// The recipe that the file contains.
@@ -77,7 +78,8 @@ impl Side {
     }
 
     /// The side of a film.
-    pub fn of_film(name: String, about: String, film: Film) -> Self {
+    pub fn of_film(name: String, about: String, film: impl Into<Arc<Film>>) -> Self {
+        let film = film.into();
         let (width, height) = (film.width(), film.height());
         let pixels = (0..width as usize * height as usize).map(|pixel| film.mean(pixel)).collect();
         let limit = f64::INFINITY;
@@ -93,6 +95,16 @@ impl Side {
             job: None,
             recipe: None,
         }
+    }
+
+    /// The side of a film that the program itself has rendered from `recipe`.
+    ///
+    /// # Errors
+    /// If a comparison of this size does not fit into memory.
+    pub fn of_rendered(name: String, recipe: Recipe, film: Arc<Film>) -> Result<Self> {
+        check_memory(film.width(), film.height(), 0)?;
+        let about = format!("film, {}", about_film(&film, Some(&recipe)));
+        Ok(Side { job: recipe.job().ok(), recipe: Some(recipe), ..Side::of_film(name, about, film) })
     }
 }
 

@@ -6,7 +6,7 @@ use super::verdict::{Comparison, Evidence};
 use crate::statistics::blocks::SUM_DEVIATIONS;
 
 /// The full text of a comparison.
-pub(super) fn told(sides: &[Side; 2], comparison: &Comparison) -> String {
+pub fn told(sides: &[Side; 2], comparison: &Comparison) -> String {
     let mut text = String::new();
     let mut line = |label: &str, content: &str| text.push_str(&format!("{label:<11} {content}\n"));
     line("first", &format!("{}: {}", sides[0].name, sides[0].about));

@@ -73,7 +73,7 @@ pub fn compare(a: &Side, b: &Side, paired: Option<PairedSamples>) -> Comparison 
     let known = |x: f64| if x < limit { x } else { f64::NAN };
     let difference: Vec<[f64; 3]> =
         a.pixels.iter().zip(&b.pixels).map(|(a, b)| [0, 1, 2].map(|i| known(b[i]) - known(a[i]))).collect();
-    let films = a.film.as_ref().zip(b.film.as_ref());
+    let films = a.film.as_deref().zip(b.film.as_deref());
     let variances = films.and_then(|(a, b)| Variances::of(a, b));
     let steps = added(a.steps.as_ref(), b.steps.as_ref());
     let evidence = if variances.is_some() { Evidence::Halves } else { Evidence::Spread };

@@ -23,6 +23,8 @@ pub mod key {
     pub const SAMPLES: &str = "Samples";
     /// Seconds of tracing.
     pub const SECONDS: &str = "Seconds";
+    /// Which part of the picture the file holds: its size, and its first column and row.
+    pub const CROP: &str = "Crop";
     /// The number of the frame in an animation.
     pub const FRAME: &str = "Frame";
     /// The command that rendered it.

@@ -79,6 +79,19 @@ impl Film {
         Ok(Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 })
     }
 
+    /// A copy, or an error if there is not enough memory.
+    ///
+    /// # Errors
+    /// [`FilmError::Memory`], before any memory is allocated.
+    pub fn try_clone(&self) -> Result<Self, FilmError> {
+        let mut copy = Film::try_new(self.width, self.height, self.halves.len())?;
+        for (sums, own) in copy.halves.iter_mut().zip(&self.halves) {
+            sums.copy_from_slice(own);
+        }
+        (copy.samples, copy.rejected) = (self.samples.clone(), self.rejected);
+        Ok(copy)
+    }
+
     /// Assembles a film from parts that were read from a file.
     ///
     /// # Errors

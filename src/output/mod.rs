@@ -159,6 +159,22 @@ pub fn write_image_as(
     Ok(())
 }
 
+/// Writes the part of a film's picture that begins at column and row `first` and has `size` pixels, as an 8-bit PNG.
+///
+/// # Errors
+/// [`OutputError::Write`]; an existing file is then unchanged.
+pub fn write_part(
+    path: &Path,
+    film: &Film,
+    transfer: Transfer,
+    [first, size]: [[u32; 2]; 2],
+    description: &Description,
+) -> Result<(), OutputError> {
+    let rgb8 = film.part_rgb8(transfer, first, size);
+    replace_file(path, |writer| png::write_bytes(size, &rgb8, description, writer))?;
+    Ok(())
+}
+
 /// Reads the description of a picture. The first bytes of the file tell its format; the name does not matter.
 ///
 /// # Errors

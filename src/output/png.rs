@@ -12,7 +12,22 @@ pub(super) fn write(
     form: PngForm,
     writer: &mut impl Write,
 ) -> io::Result<()> {
-    with_first_error(writer, |writer| encode(film, transfer, description, form, writer))
+    let size = [film.width(), film.height()];
+    with_first_error(writer, |writer| {
+        encode(size, description, form, writer, |rows| write_rows(film, transfer, rows))
+    })
+}
+
+/// Writes a picture of `size` pixels from its bytes, three per pixel.
+pub(super) fn write_bytes(
+    size: [u32; 2],
+    rgb8: &[u8],
+    description: &Description,
+    writer: &mut impl Write,
+) -> io::Result<()> {
+    with_first_error(writer, |writer| {
+        encode(size, description, PngForm::Fast, writer, |rows| rows.write_all(rgb8))
+    })
 }
 
 /// Runs an encoder. An error of the file system stays whole; the encoder would keep only its text.
@@ -53,14 +68,14 @@ impl<W: Write> Write for FirstError<W> {
     }
 }
 
-fn encode(
-    film: &Film,
-    transfer: Transfer,
+fn encode<W: Write>(
+    [width, height]: [u32; 2],
     description: &Description,
     form: PngForm,
-    writer: &mut impl Write,
+    writer: &mut W,
+    write: impl FnOnce(&mut ::png::StreamWriter<'_, &mut W>) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut encoder = ::png::Encoder::new(writer, film.width(), film.height());
+    let mut encoder = ::png::Encoder::new(writer, width, height);
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_depth(::png::BitDepth::Eight);
     encoder.set_compression(match form {
@@ -69,7 +84,7 @@ fn encode(
     });
     let mut writer = begin(encoder, description)?;
     let mut rows = writer.stream_writer()?;
-    write_rows(film, transfer, &mut rows)?;
+    write(&mut rows)?;
     rows.finish()?;
     writer.finish()?;
     Ok(())

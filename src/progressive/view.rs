@@ -102,13 +102,16 @@ impl View {
         }
     }
 
+    /// Whether `other` shows the same. References are compared by their addresses.
+    pub fn is_same(&self, other: &View) -> bool {
+        match (self, other) {
+            (View::Difference(mine), View::Difference(theirs)) => Arc::ptr_eq(mine, theirs),
+            (mine, theirs) => mine == theirs,
+        }
+    }
+
     /// Resolves the film in this view: three bytes per pixel, top row first.
-    pub(super) fn resolve(
-        &self,
-        film: &Film,
-        transfer: Transfer,
-        occupancy: Option<&TileOccupancy>,
-    ) -> Vec<u8> {
+    pub fn resolve(&self, film: &Film, transfer: Transfer, occupancy: Option<&TileOccupancy>) -> Vec<u8> {
         let scale = self.scale().unwrap_or(HeatScale::ERROR);
         let width = film.width() as usize;
         let heat = |value: &dyn Fn(usize) -> f64| -> Vec<u8> {

@@ -74,6 +74,38 @@ pub fn until_seen(harness: &mut Harness<'_, Window>, text: &str) {
     }
 }
 
+/// Whether this text is drawn over the picture.
+pub fn painted(harness: &Harness<'_, Window>, text: &str) -> bool {
+    harness.output().shapes.iter().any(|clipped| {
+        matches!(&clipped.shape, egui::Shape::Text(painted) if painted.galley.text().contains(text))
+    })
+}
+
+/// Draws frames until this text is drawn over the picture.
+pub fn until_painted(harness: &mut Harness<'_, Window>, text: &str) {
+    let begin = Instant::now();
+    while !painted(harness, text) {
+        assert!(begin.elapsed() < PATIENCE, "never drawn: {text}");
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+}
+
+/// The picture that a command for the clipboard holds, after at most this many frames.
+pub fn copied(harness: &mut Harness<'_, Window>, patience: Duration) -> Option<egui::ColorImage> {
+    let begin = Instant::now();
+    while begin.elapsed() < patience {
+        for command in &harness.output().platform_output.commands {
+            if let egui::OutputCommand::CopyImage(image) = command {
+                return Some(image.clone());
+            }
+        }
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+    None
+}
+
 /// Whether the screen shows the document's picture at full size with at least this many samples per pixel.
 pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
     move |window| {

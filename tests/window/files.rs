@@ -1,6 +1,6 @@
 //! Saving, opening, dropping and copying.
 
-use crate::common::{SMALL, has_samples, name_file, open, save, send, until};
+use crate::common::{SMALL, has_samples, name_file, open, painted, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
@@ -181,11 +181,6 @@ fn an_identical_film_is_said_to_be_identical() {
     until(&mut harness, "the end", has_samples(40));
     let path = directory.path().join("same.exr");
     save(&mut harness, Command::Save(OutputFormat::Exr), &path);
-    let painted = |harness: &egui_kittest::Harness<'_, weekender::app::Window>, text: &str| {
-        harness.output().shapes.iter().any(|clipped| {
-            matches!(&clipped.shape, egui::Shape::Text(painted) if painted.galley.text().contains(text))
-        })
-    };
     name_file(&mut harness, Command::LoadReference, &path);
     until(&mut harness, "the difference", |window| window.show() == weekender::app::Show::Difference);
     for _ in 0..200 {

@@ -3,6 +3,7 @@
 
 mod commands;
 mod common;
+mod crop;
 mod device;
 mod edits;
 mod extreme;
@@ -18,6 +19,7 @@ mod recent;
 mod remembered;
 mod resuming;
 mod size;
+mod slots;
 mod snapshots;
 mod stages;
 mod surfaces;

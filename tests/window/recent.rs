@@ -1,11 +1,11 @@
 //! The files that were opened or saved last, and the picture on the clipboard.
 
-use crate::common::{SMALL, control, has_samples, open, save, send, until};
-use eframe::egui::{self, Key, Modifiers, OutputCommand};
+use crate::common::{SMALL, control, copied, has_samples, open, save, send, until};
+use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use weekender::app::{Command, Window};
 use weekender::output::OutputFormat;
 use weekender::stages::Stage;
@@ -68,21 +68,6 @@ fn a_file_that_is_gone_is_dropped_from_the_list() {
     assert!(harness.state().messages().contains(&told), "{:?}", harness.state().messages());
     assert_eq!(harness.state_mut().remembered_mut().recent, paths[..1]);
     assert_eq!(harness.state().document().stage(), Some(&Stage::ALL[0]), "what was shown stays");
-}
-
-/// The picture that a command for the clipboard holds, after at most this many frames.
-fn copied(harness: &mut Harness<'_, Window>, patience: Duration) -> Option<egui::ColorImage> {
-    let begin = Instant::now();
-    while begin.elapsed() < patience {
-        for command in &harness.output().platform_output.commands {
-            if let OutputCommand::CopyImage(image) = command {
-                return Some(image.clone());
-            }
-        }
-        std::thread::sleep(Duration::from_millis(2));
-        harness.step();
-    }
-    None
 }
 
 #[test]

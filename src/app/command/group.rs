@@ -11,6 +11,9 @@ impl Command {
             | Command::Save(_)
             | Command::SaveScene
             | Command::CopyPicture
+            | Command::Crop
+            | Command::CopyCrop
+            | Command::SaveCrop
             | Command::CopyCommand
             | Command::LoadReference
             | Command::CopyPlot
@@ -28,6 +31,17 @@ impl Command {
             | Command::FocusSphere
             | Command::LookAtSphere
             | Command::ResetSpheres => Group::Spheres,
+            Command::Keep
+            | Command::KeepIn(_)
+            | Command::Look(_)
+            | Command::LookLive
+            | Command::Swap
+            | Command::SlotWipe
+            | Command::SlotDifference
+            | Command::OnlyNoise
+            | Command::OpenSlot
+            | Command::DeleteSlot
+            | Command::BringBackSlot => Group::Slots,
             Command::Pause
             | Command::GoOn
             | Command::Restart

@@ -17,8 +17,20 @@ const fn ctrl_shift(key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
 }
 
-/// With Ctrl, these keys select the views in order.
-const VIEW_KEYS: [Key; 9] =
+const fn shift(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::SHIFT, key))
+}
+
+const fn alt(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::ALT, key))
+}
+
+const fn shift_alt(key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(Modifiers::SHIFT.plus(Modifiers::ALT), key))
+}
+
+/// With Ctrl, these keys select the views in order; with Alt, the slots.
+const DIGITS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 impl Command {
@@ -57,10 +69,18 @@ impl Command {
             Command::PreviousSphere => key(Key::Comma),
             Command::Show(show) => {
                 let place = Show::ALL.iter().position(|other| *other == show)?;
-                ctrl(*VIEW_KEYS.get(place)?)
+                ctrl(*DIGITS.get(place)?)
             }
             Command::Wipe => key(Key::C),
             Command::WipeDifference => key(Key::X),
+            Command::Keep => key(Key::M),
+            Command::KeepIn(number) => shift_alt(DIGITS[number.index()]),
+            Command::Look(number) => alt(DIGITS[number.index()]),
+            Command::LookLive => alt(Key::Num0),
+            Command::Swap => key(Key::J),
+            Command::SlotWipe => shift(Key::C),
+            Command::SlotDifference => shift(Key::X),
+            Command::OnlyNoise => shift(Key::N),
             Command::Brighter => key(Key::Plus),
             Command::Darker => key(Key::Minus),
             Command::NoExposure => key(Key::Num0),

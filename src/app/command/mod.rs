@@ -8,6 +8,7 @@ use super::model::device::Device;
 use super::model::remembered::Theme;
 use super::model::show::Show;
 use super::model::sizing::Sizing;
+use super::model::slots::SlotNumber;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
@@ -23,6 +24,8 @@ pub enum Group {
     Spheres,
     /// What the window shows.
     View,
+    /// Pictures that are kept.
+    Slots,
     /// Pause, restart and devices.
     Render,
     /// The stages of the book.
@@ -35,11 +38,12 @@ pub enum Group {
 
 impl Group {
     /// The menus, in order.
-    pub const ALL: [Group; 8] = [
+    pub const ALL: [Group; 9] = [
         Group::File,
         Group::Edit,
         Group::Spheres,
         Group::View,
+        Group::Slots,
         Group::Render,
         Group::Stage,
         Group::Extreme,
@@ -53,6 +57,7 @@ impl Group {
             Group::Edit => "Edit",
             Group::Spheres => "Spheres",
             Group::View => "View",
+            Group::Slots => "Slots",
             Group::Render => "Render",
             Group::Stage => "Stage",
             Group::Extreme => "Extreme scenes",
@@ -74,6 +79,12 @@ pub enum Command {
     SaveScene,
     /// Copy the picture to the clipboard.
     CopyPicture,
+    /// Mark a part of the picture to copy or save, or stop that.
+    Crop,
+    /// Copy the marked part of the picture.
+    CopyCrop,
+    /// Save the marked part of the picture.
+    SaveCrop,
     /// Copy the command line to the clipboard.
     CopyCommand,
     /// Load a film to compare with.
@@ -154,6 +165,28 @@ pub enum Command {
     NextRay,
     /// Explain the previous ray of the highlighted path.
     PreviousRay,
+    /// Keep the picture in the first free slot.
+    Keep,
+    /// Keep the picture in this slot.
+    KeepIn(SlotNumber),
+    /// Show the picture of this slot.
+    Look(SlotNumber),
+    /// Show the live picture.
+    LookLive,
+    /// Show what was shown before: the live picture or a slot.
+    Swap,
+    /// Compare with the chosen slot on both sides of a divider.
+    SlotWipe,
+    /// Show a heat map of the difference from the chosen slot.
+    SlotDifference,
+    /// Say whether the picture and the chosen slot differ only by noise.
+    OnlyNoise,
+    /// Go on from the picture of the chosen slot.
+    OpenSlot,
+    /// Empty the chosen slot.
+    DeleteSlot,
+    /// Put back the picture that was deleted or replaced last.
+    BringBackSlot,
     /// Use this colour theme.
     Theme(Theme),
     /// Pause or continue.
@@ -195,7 +228,18 @@ impl Command {
     pub fn all() -> Vec<Command> {
         use Command::*;
         let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
-        all.extend([SaveScene, CopyPicture, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
+        all.extend([
+            SaveScene,
+            CopyPicture,
+            Crop,
+            CopyCrop,
+            SaveCrop,
+            CopyCommand,
+            LoadReference,
+            CopyPlot,
+            SavePlot,
+            Quit,
+        ]);
         all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
         all.extend([AddSphere, DuplicateSphere, DeleteSphere, NextSphere, PreviousSphere, Deselect]);
         all.extend([FocusSphere, LookAtSphere, ResetSpheres]);
@@ -214,6 +258,11 @@ impl Command {
             FullScreen,
         ]);
         all.extend(self::Theme::ALL.map(Theme));
+        all.extend([Keep, Swap, LookLive]);
+        all.extend(SlotNumber::ALL.map(Look));
+        all.extend([SlotWipe, SlotDifference, OnlyNoise, OpenSlot]);
+        all.extend(SlotNumber::ALL.map(KeepIn));
+        all.extend([DeleteSlot, BringBackSlot]);
         all.extend([Pause, GoOn, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
         all.extend(self::Sizing::ALL.map(Size));
@@ -227,8 +276,8 @@ impl Command {
 
     /// Whether the command opens a dialog first.
     pub fn opens_dialog(self) -> bool {
-        use Command::{Help, LoadReference, Open, Palette, Save, SavePlot, SaveScene};
-        matches!(self, Open | Save(_) | SaveScene | SavePlot | LoadReference | Palette | Help)
+        use Command::{Help, LoadReference, Open, Palette, Save, SaveCrop, SavePlot, SaveScene};
+        matches!(self, Open | Save(_) | SaveCrop | SaveScene | SavePlot | LoadReference | Palette | Help)
     }
 }
 

@@ -15,6 +15,9 @@ impl Command {
             Command::Save(OutputFormat::Exr) => "Save film (EXR checkpoint)…".into(),
             Command::SaveScene => "Save scene file…".into(),
             Command::CopyPicture => "Copy picture".into(),
+            Command::Crop => "Crop…".into(),
+            Command::CopyCrop => "Copy the crop".into(),
+            Command::SaveCrop => "Save the crop as PNG…".into(),
             Command::CopyCommand => "Copy as command".into(),
             Command::LoadReference => "Load reference film…".into(),
             Command::CopyPlot => "Copy error against time".into(),
@@ -55,6 +58,17 @@ impl Command {
             Command::FullScreen => "Full screen".into(),
             Command::NextRay => "Next ray of the path".into(),
             Command::PreviousRay => "Previous ray of the path".into(),
+            Command::Keep => "Keep this picture".into(),
+            Command::KeepIn(number) => format!("Keep in slot {number}"),
+            Command::Look(number) => format!("Look at slot {number}"),
+            Command::LookLive => "Look at the live picture".into(),
+            Command::Swap => "Flip between two pictures".into(),
+            Command::SlotWipe => "Wipe against the slot".into(),
+            Command::SlotDifference => "Difference from the slot".into(),
+            Command::OnlyNoise => "Is it only noise?".into(),
+            Command::OpenSlot => "Go on from the slot".into(),
+            Command::DeleteSlot => "Delete the slot".into(),
+            Command::BringBackSlot => "Bring back the slot".into(),
             Command::Theme(theme) => format!("{} theme", theme.name()),
             Command::Pause => "Pause or go on".into(),
             Command::GoOn => "Go on after the end".into(),
@@ -92,6 +106,11 @@ impl Command {
             Command::Recent(_) => "Open a file that was opened or saved before",
             Command::SaveScene => "Scene, camera and settings as text",
             Command::CopyPicture => "To the clipboard at full size, with 8 bits per channel as it is saved",
+            Command::Crop => {
+                "Mark a part of the picture, to copy or save it at the film's pixels; the film stays whole"
+            }
+            Command::CopyCrop => "The marked part of the picture, to the clipboard with 8 bits per channel",
+            Command::SaveCrop => "The marked part of the picture with 8 bits per channel and a description",
             Command::CopyCommand => {
                 "The command line that renders this picture; on the CPU it is the same to the bit"
             }
@@ -139,6 +158,28 @@ impl Command {
             Command::FullScreen => "Fill the whole screen with the window",
             Command::NextRay => "Go on along the highlighted path, with the reason for the next direction",
             Command::PreviousRay => "Go back along the highlighted path, towards the camera",
+            Command::Keep => {
+                "A copy with all its samples, in the first free slot, to look at and compare with"
+            }
+            Command::KeepIn(_) => {
+                "A copy of this picture with all its samples; one that is there is replaced"
+            }
+            Command::Look(_) => "Show the kept picture instead of the live one; Escape returns",
+            Command::LookLive => "Leave the slot that is shown; Escape does this too",
+            Command::Swap => "Show the live picture and the slot looked at last in turn, or two slots",
+            Command::SlotWipe => "Drag a divider between the shown picture and the one in the chosen slot",
+            Command::SlotDifference => {
+                "Where the shown picture and the chosen slot's differ, with the values"
+            }
+            Command::OnlyNoise => {
+                "Test whether the shown picture and the chosen slot's differ by more than noise, as \
+                 \"weekender compare\" does"
+            }
+            Command::OpenSlot => {
+                "Restore the chosen slot's scene, camera, settings and samples; Undo returns"
+            }
+            Command::DeleteSlot => "Empty the chosen one; its picture can be brought back until the next",
+            Command::BringBackSlot => "The picture that was deleted or replaced last, to its old place",
             Command::Theme(_) => "Colours of the window",
             Command::Pause => "Pause or resume tracing; no samples are lost",
             Command::GoOn => "To about half the error, or to twice the samples or seconds; no sample is lost",

@@ -19,7 +19,7 @@ const MOUSE: [(&str, &str); 15] = [
     ("T; Alt and click", "list the paths of a pixel"),
     ("W A S D, Q E", "fly; with Shift fast"),
     ("Drop a file", "open a picture, film or scene"),
-    ("Escape", "leave a control, a comparison or a view, full screen"),
+    ("Escape", "leave a control, a crop, a comparison, a view, a slot, full screen"),
 ];
 
 /// Windows narrower than this many points get only one column.
@@ -28,7 +28,7 @@ const TWO_COLUMNS: f32 = 640.0;
 /// The groups of each column; `None` stands for the mouse actions.
 const COLUMNS: [&[Option<Group>]; 2] = [
     &[None, Some(Group::File), Some(Group::Edit), Some(Group::Spheres)],
-    &[Some(Group::View), Some(Group::Render), Some(Group::Stage), Some(Group::Help)],
+    &[Some(Group::View), Some(Group::Slots), Some(Group::Render), Some(Group::Stage), Some(Group::Help)],
 ];
 
 pub(super) fn ui(ui: &mut Ui, height: f32) -> Outcome {
@@ -64,8 +64,15 @@ fn section(ui: &mut Ui, group: Option<Group>) {
             None => MOUSE.into_iter().for_each(|(keys, what)| row(keys, what)),
             Some(group) => {
                 for command in Command::all().into_iter().filter(|command| command.group() == group) {
-                    if let Some(keys) = command.keys(&context) {
-                        row(&keys, command.name().trim_end_matches('…'));
+                    let Some(keys) = command.keys(&context) else { continue };
+                    match command {
+                        // One line for all nine slots.
+                        Command::Look(number) | Command::KeepIn(number) => {
+                            if number.index() == 0 {
+                                row(&format!("{keys} … 9"), &format!("{} … 9", command.name()));
+                            }
+                        }
+                        _ => row(&keys, command.name().trim_end_matches('…')),
                     }
                 }
             }

@@ -10,6 +10,8 @@ pub enum Purpose {
     Open,
     /// To save the picture in this format.
     Save(OutputFormat),
+    /// To save the marked part of the picture.
+    SaveCrop,
     /// To save the scene.
     SaveScene,
     /// To save the plot's points.
@@ -26,6 +28,7 @@ impl Purpose {
             Purpose::Save(OutputFormat::Png) => "Save picture as PNG",
             Purpose::Save(OutputFormat::P6) => "Save picture as PPM",
             Purpose::Save(OutputFormat::Exr) => "Save film as EXR",
+            Purpose::SaveCrop => "Save crop as PNG",
             Purpose::SaveScene => "Save scene file",
             Purpose::SavePlot => "Save error against time as CSV",
             Purpose::ReferenceFilm => "Load reference film",
@@ -42,14 +45,14 @@ impl Purpose {
 
     /// Whether the file will be written.
     pub fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save(_) | Purpose::SaveScene | Purpose::SavePlot)
+        matches!(self, Purpose::Save(_) | Purpose::SaveCrop | Purpose::SaveScene | Purpose::SavePlot)
     }
 
     /// The possible file endings, without the dot.
     pub fn endings(self) -> &'static [&'static str] {
         match self {
             Purpose::Open => &["png", "ppm", "exr", "toml"],
-            Purpose::Save(OutputFormat::Png) => &["png"],
+            Purpose::Save(OutputFormat::Png) | Purpose::SaveCrop => &["png"],
             Purpose::Save(OutputFormat::P6) => &["ppm"],
             Purpose::Save(OutputFormat::Exr) | Purpose::ReferenceFilm => &["exr"],
             Purpose::SaveScene => &["toml"],

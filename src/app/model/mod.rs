@@ -3,15 +3,18 @@
 
 pub mod checked;
 pub mod command_line;
+pub mod crop;
 pub mod device;
 pub mod document;
 pub mod edit;
 pub mod first_steps;
 pub mod further;
+pub mod kept;
 pub mod origin;
 pub mod remembered;
 pub mod show;
 pub mod sizing;
+pub mod slots;
 pub mod tone;
 pub mod view;
 

@@ -1,9 +1,12 @@
 //! What the viewport shows: a view of the film, or a comparison with another picture.
 
 use super::checked::CheckedScene;
+use super::crop::Crop;
 use super::document::Document;
+use super::kept::Kept;
 use super::origin::Origin;
 use super::show::Show;
+use super::slots::{SlotNumber, Slots};
 use super::tone::Tone;
 use crate::progressive::{ReferenceMeans, View};
 use crate::recipe::Recipe;
@@ -19,6 +22,17 @@ pub enum Mode {
     Difference,
 }
 
+/// The kind of picture to compare with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum With {
+    /// The stage that belongs to this one; without a stage, the book's own arithmetic.
+    Stage,
+    /// The book's own arithmetic, even if there is another stage to compare with.
+    Book,
+    /// The picture in a slot.
+    Slot(SlotNumber),
+}
+
 /// What the main picture is compared with.
 #[derive(Clone, Debug)]
 pub enum Other {
@@ -26,12 +40,15 @@ pub enum Other {
     Stage(&'static Stage),
     /// The same picture, with its scene as edited, by the book's own arithmetic.
     ByTheBook(Arc<Origin>, Arc<CheckedScene>),
+    /// A picture that was kept.
+    Kept(Arc<Kept>),
 }
 
 impl PartialEq for Other {
-    /// Origins and scenes are immutable, so comparing their addresses is enough.
+    /// Origins, scenes and kept pictures are immutable, so comparing their addresses is enough.
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
+            (Other::Kept(a), Other::Kept(b)) => Arc::ptr_eq(a, b),
             (Other::Stage(a), Other::Stage(b)) => a == b,
             (Other::ByTheBook(a, of_a), Other::ByTheBook(b, of_b)) => {
                 Arc::ptr_eq(a, b) && Arc::ptr_eq(of_a, of_b)
@@ -43,10 +60,11 @@ impl PartialEq for Other {
 
 impl Other {
     /// The origin of the other picture.
-    pub fn origin(&self) -> Origin {
+    pub fn origin(&self) -> Arc<Origin> {
         match self {
-            Other::Stage(stage) => Origin::of_stage(stage),
-            Other::ByTheBook(mine, scene) => mine.by_the_book(scene),
+            Other::Stage(stage) => Arc::new(Origin::of_stage(stage)),
+            Other::ByTheBook(mine, scene) => Arc::new(mine.by_the_book(scene)),
+            Other::Kept(kept) => Arc::clone(&kept.document.origin),
         }
     }
 }
@@ -56,7 +74,7 @@ impl Other {
 pub struct ViewState {
     show: Show,
     mode: Option<Mode>,
-    is_by_book: bool,
+    with: With,
     /// Compare with the next stage even if the stage is paired with another.
     pub is_with_next: bool,
     /// Position of the wipe's divider, `0..=1` of the picture's width.
@@ -67,6 +85,10 @@ pub struct ViewState {
     pub is_divider_unplaced: bool,
     /// A loaded film to compare with.
     pub reference: Option<Arc<ReferenceMeans>>,
+    /// Pictures that are kept; one of them can be shown instead of the live one.
+    pub slots: Slots,
+    /// A part of the picture is being chosen; the inner `None` stands for no part yet.
+    pub crop: Option<Option<Crop>>,
 }
 
 impl Default for ViewState {
@@ -74,12 +96,14 @@ impl Default for ViewState {
         ViewState {
             show: Show::Picture,
             mode: None,
-            is_by_book: false,
+            with: With::Stage,
             is_with_next: false,
             divider: 0.5,
             tone: Tone::default(),
             is_divider_unplaced: false,
             reference: None,
+            slots: Slots::default(),
+            crop: None,
         }
     }
 }
@@ -95,9 +119,22 @@ impl ViewState {
         self.mode
     }
 
-    /// Whether to compare with the book's own arithmetic even if there is another stage to compare with.
-    pub fn is_by_book(&self) -> bool {
-        self.is_by_book
+    /// The kind of picture to compare with.
+    pub fn with(&self) -> With {
+        self.with
+    }
+
+    /// The slot that the picture is compared with, if it is.
+    pub fn compared_slot(&self) -> Option<SlotNumber> {
+        match (self.mode, self.with) {
+            (Some(_), With::Slot(number)) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// The document of the main picture: that of the slot that is looked at, or `live`.
+    pub fn shown_document<'a>(&'a self, live: &'a Document) -> &'a Document {
+        self.slots.shown().map_or(live, |kept| &kept.document)
     }
 
     /// Shows only this view of the film.
@@ -112,12 +149,37 @@ impl ViewState {
     }
 
     /// Starts a comparison, or ends it if it is already active.
-    pub fn toggle(&mut self, mode: Mode, is_by_book: bool) {
-        let is_on = self.mode == Some(mode) && self.is_by_book == is_by_book;
+    pub fn toggle(&mut self, mode: Mode, with: With) {
+        let is_on = self.mode == Some(mode) && self.with == with;
+        match with {
+            // A picture that is compared with itself would teach nothing.
+            With::Slot(number) if self.slots.looked() == Some(number) => self.slots.look(None),
+            With::Slot(_) => {}
+            With::Stage | With::Book => self.slots.look(None),
+        }
         self.show = Show::Picture;
         self.mode = if is_on { None } else { Some(mode) };
         (self.divider, self.is_divider_unplaced) = (0.5, self.mode == Some(Mode::Wipe));
-        self.is_by_book = is_by_book;
+        self.with = with;
+    }
+
+    /// Looks at a slot, or at the live picture. A comparison with that slot ends.
+    pub fn look(&mut self, at: Option<SlotNumber>) {
+        self.slots.look(at);
+        self.leave_own_comparison();
+    }
+
+    /// Looks at what was looked at before.
+    pub fn swap(&mut self) {
+        self.slots.swap();
+        self.leave_own_comparison();
+    }
+
+    fn leave_own_comparison(&mut self) {
+        let is_own = self.slots.looked().is_some_and(|number| self.with == With::Slot(number));
+        if is_own || (self.slots.looked().is_some() && !matches!(self.with, With::Slot(_))) {
+            self.mode = None;
+        }
     }
 
     /// Ends the comparison.
@@ -140,7 +202,12 @@ impl ViewState {
 
     /// The picture with which `document` can be compared, if any.
     fn other(&self, document: &Document) -> Option<Other> {
-        match document.stage().filter(|_| !self.is_by_book) {
+        if let With::Slot(number) = self.with {
+            let slot = self.slots.get(number)?;
+            let is_same_size = slot.kept.size() == self.shown_document(document).size();
+            return is_same_size.then(|| Other::Kept(Arc::clone(&slot.kept)));
+        }
+        match document.stage().filter(|_| self.with == With::Stage) {
             Some(stage) => self.other_of(stage).map(Other::Stage),
             None => {
                 let origin = &document.origin;
@@ -152,12 +219,13 @@ impl ViewState {
 
     /// Whether `document` and the other picture differ in their cameras, so that each keeps its own.
     pub fn has_other_camera(&self, document: &Document) -> bool {
-        !self.is_by_book && document.stage().is_some_and(|stage| self.is_of_cameras(stage))
+        self.with == With::Stage && document.stage().is_some_and(|stage| self.is_of_cameras(stage))
     }
 
-    /// Whether the other picture is an earlier stage of the book, which a wipe shows at the left.
+    /// Whether the other picture is an earlier stage of the book or an earlier picture, which a wipe shows at the left.
     pub fn is_other_earlier(&self, document: &Document) -> bool {
         match (document.stage(), self.compared(document)) {
+            (_, Some(Other::Kept(_))) => true,
             (Some(mine), Some(Other::Stage(other))) => other.index() < mine.index(),
             _ => false,
         }
@@ -212,7 +280,7 @@ mod tests {
         }
         let stage = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         assert!(matches!(view.other(&stage), Some(Other::Stage(_))));
-        view.toggle(Mode::Wipe, true);
+        view.toggle(Mode::Wipe, With::Book);
         assert!(matches!(view.other(&stage), Some(Other::ByTheBook(..))));
         let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
         assert_eq!(view.other(&no_rays), None);
@@ -235,15 +303,15 @@ mod tests {
         let mut view = ViewState { reference: Some(Arc::clone(&film)), ..ViewState::default() };
         view.choose(Show::Error);
         assert_eq!((view.show(), view.of_film(None)), (Show::Error, View::StandardError));
-        view.toggle(Mode::Difference, false);
+        view.toggle(Mode::Difference, With::Stage);
         assert_eq!((view.show(), view.mode()), (Show::Picture, Some(Mode::Difference)));
         assert_eq!(view.of_film(None), View::Picture, "until there is a second picture");
         assert_eq!(view.of_film(Some(&film)), View::Difference(Arc::clone(&film)));
-        view.toggle(Mode::Wipe, false);
+        view.toggle(Mode::Wipe, With::Stage);
         assert_eq!(view.of_film(Some(&film)), View::Picture);
-        view.toggle(Mode::Wipe, false);
+        view.toggle(Mode::Wipe, With::Stage);
         assert_eq!(view.mode(), None);
-        view.toggle(Mode::Wipe, true);
+        view.toggle(Mode::Wipe, With::Book);
         view.choose(Show::Difference);
         assert_eq!((view.mode(), view.of_film(None)), (None, View::Difference(film)));
     }

@@ -1,5 +1,6 @@
 //! The viewport: the picture, and mouse input on it.
 
+mod crop;
 mod paint;
 mod placement;
 mod selection;
@@ -11,6 +12,7 @@ use placement::whole_pixels;
 use super::command::Command;
 use super::facts::Facts;
 use super::menu;
+use super::model::crop::Crop;
 use super::model::document::Document;
 use super::model::edit::Edit;
 use super::model::view::Mode;
@@ -18,6 +20,7 @@ use super::navigation;
 use super::spheres::Selected;
 use super::spheres::grip::new_body;
 use crate::scene::Camera;
+use crop::Cropping;
 use eframe::egui::{
     self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
 };
@@ -49,6 +52,8 @@ pub struct Viewport {
     room_pixels: [u32; 2],
     /// The selected sphere in the picture.
     selection: Selection,
+    /// The drag that marks a part of the picture.
+    cropping: Cropping,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
 }
@@ -80,6 +85,8 @@ pub struct Handle<'a> {
     pub divider: &'a mut f32,
     /// The selected sphere.
     pub selected: Option<&'a Selected>,
+    /// The part of the picture that is being marked; see [`super::model::view::ViewState::crop`].
+    pub crop: &'a mut Option<Option<Crop>>,
 }
 
 impl Viewport {
@@ -102,14 +109,15 @@ impl Viewport {
         facts: &Facts,
         commands: &mut Vec<Command>,
     ) -> Touch {
-        let Handle { camera, divider, selected } = handle;
+        let Handle { camera, divider, selected, crop } = handle;
+        let is_kept = facts.model.view.slots.looked().is_some();
+        let selected = selected.filter(|_| !is_kept);
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
         self.room = Some(room);
-        let settings = facts.document().settings;
-        let (size, pixels) =
-            (vec2(settings.width as f32, settings.height as f32), [settings.width, settings.height]);
+        let pixels = facts.shown().size();
+        let size = vec2(pixels[0] as f32, pixels[1] as f32);
         let margin = if facts.model.remembered.has_panels { 10.0 } else { 0.0 };
         let scale = ui.ctx().pixels_per_point();
         let rect = self.placement.place(room.shrink(margin), size, scale);
@@ -118,6 +126,15 @@ impl Viewport {
         let mut touch = Touch { room: Some(room), ..Touch::default() };
         let is_wipe = facts.model.view.mode() == Some(Mode::Wipe);
         let mut is_held = self.handle_divider(ui, &response, is_wipe, divider);
+        if let Some(crop) = crop.as_mut().filter(|_| !is_held) {
+            self.cropping.handle(ui, &response, rect, pixels, crop);
+        }
+        // A picture that was kept does not change, and a part that is being marked stays where it is.
+        let is_still = is_kept || crop.is_some();
+        if is_still && !is_held {
+            self.handle_still_drag(ui, &response, crop.is_none());
+            is_held = true;
+        }
         if !is_held {
             (is_held, touch.edit) = self.selection.handle(ui, &response, rect, selected, facts.document());
         }
@@ -125,7 +142,10 @@ impl Viewport {
             self.handle_drag(ui, &response, camera, &mut touch);
             self.handle_click(ui, &response, facts.document(), camera, &mut touch);
         }
-        let document = Document { camera: *camera, ..facts.document().clone() };
+        let document = match is_kept {
+            true => facts.shown().clone(),
+            false => Document { camera: *camera, ..facts.document().clone() },
+        };
         paint(ui, [room, rect], &self.placement, *divider, pictures, &document, facts);
         let clip = if is_wipe {
             Rect { max: pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.max.y), ..rect }
@@ -133,6 +153,9 @@ impl Viewport {
             rect
         };
         self.selection.paint(ui, rect, clip.intersect(room), selected);
+        if let Some(crop) = crop {
+            crop::paint(ui, &ui.painter().with_clip_rect(room), rect, pixels, *crop);
+        }
         self.mark = self.mark.take().filter(|mark| mark.paint(ui, room, rect));
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         touch.hovered = response.hover_pos().and_then(|at| self.placement.pixel_at(at, pixels));
@@ -205,6 +228,23 @@ impl Viewport {
             *camera = moved;
             touch.is_move = true;
             touch.is_orbit = response.dragged_by(PointerButton::Primary);
+        }
+    }
+
+    /// Handles drags and the wheel on a picture whose camera stays: they move and zoom the picture.
+    fn handle_still_drag(&mut self, ui: &Ui, response: &Response, is_primary_free: bool) {
+        let (modifiers, scroll, zoom) =
+            ui.input(|input| (input.modifiers, input.smooth_scroll_delta().y, input.zoom_delta()));
+        let is_primary = response.dragged_by(PointerButton::Primary) && (is_primary_free || modifiers.shift);
+        if is_primary || response.dragged_by(PointerButton::Middle) {
+            self.placement.pan_by(response.drag_delta());
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        }
+        if let Some(pointer) = response.hover_pos() {
+            let factor = zoom * (scroll * DOLLY_PER_POINT as f32).exp();
+            if factor != 1.0 {
+                self.placement.zoom_at(pointer, factor);
+            }
         }
     }
 
@@ -288,6 +328,22 @@ impl Viewport {
         touch: &mut Touch,
     ) {
         ui.set_width(menu::MENU_WIDTH);
+        if facts.model.view.crop.is_some() {
+            for command in [Command::CopyCrop, Command::SaveCrop, Command::Crop] {
+                menu::item(ui, facts, commands, command);
+            }
+            return;
+        }
+        if facts.model.view.slots.looked().is_some() {
+            for command in [Command::LookLive, Command::Swap, Command::OpenSlot, Command::DeleteSlot] {
+                menu::item(ui, facts, commands, command);
+            }
+            ui.separator();
+            for command in [Command::CopyPicture, Command::Crop, Command::CopyCommand] {
+                menu::item(ui, facts, commands, command);
+            }
+            return;
+        }
         if let Some(at) = self.menu_at {
             for spot in Spot::ALL {
                 let [name, mouse] = spot.names();
@@ -310,7 +366,9 @@ impl Viewport {
             }
             ui.separator();
         }
-        for command in [Command::Home, Command::AddBookmark, Command::CopyCommand] {
+        for command in
+            [Command::Home, Command::AddBookmark, Command::Keep, Command::Crop, Command::CopyCommand]
+        {
             menu::item(ui, facts, commands, command);
         }
     }

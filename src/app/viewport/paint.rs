@@ -33,8 +33,8 @@ pub struct Pictures<'a> {
     pub has_film: bool,
     /// The second picture, the factor by which it is smaller, and its title.
     pub second: Option<(&'a mut Texture, u32, String)>,
-    /// Paths to draw over the picture.
-    pub paths: &'a Paths,
+    /// Paths to draw over the picture, if it is the live one.
+    pub paths: Option<&'a Paths>,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
     /// What the user should know about the picture.
@@ -74,7 +74,7 @@ pub(super) fn paint(
         && let Some((texture, title)) = second
     {
         let whose = if view.has_other_camera(document) { ", with its own camera" } else { "" };
-        let titles = [document.title(), format!("{title}{whose}")];
+        let titles = [facts.title(), format!("{title}{whose}")];
         let is_left = view.is_other_earlier(document);
         paint_wipe(ui, &painter, rect, divider, (texture, is_left), &titles);
     }
@@ -111,8 +111,10 @@ pub(super) fn paint(
         let at = corners.left_bottom() + vec2(8.0, -8.0);
         badge(ui, &painter, at, Align2::LEFT_BOTTOM, &text, &font);
     }
-    values.paint(ui, room, rect, [document.settings.width, document.settings.height], &view.tone);
-    paths.paint(document, ui, &painter, rect);
+    values.paint(ui, room, rect, document.size(), &view.tone);
+    if let Some(paths) = paths {
+        paths.paint(document, ui, &painter, rect);
+    }
 }
 
 /// Fills `room` except for `hole`: software rendering pays for each pixel that is drawn twice.

@@ -1,0 +1,109 @@
+//! The film on the screen: the live one, or one that was kept.
+
+use super::thread::KeptThread;
+use crate::app::model::document::Document;
+use crate::app::model::kept::Kept;
+use crate::app::model::view::ViewState;
+use crate::app::tracer::Tracer;
+use crate::film::Film;
+use crate::progressive::Status;
+use std::sync::Arc;
+
+/// Tells films apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilmId {
+    /// The film of a run of the render thread.
+    Live(u64),
+    /// The film of a kept picture.
+    Kept(u64),
+}
+
+/// The film on the screen.
+#[derive(Clone, Copy)]
+pub struct Subject<'a> {
+    live: &'a Document,
+    main: &'a Tracer,
+    kept: Option<&'a Arc<Kept>>,
+    thread: &'a KeptThread,
+    seconds_before: Option<f64>,
+}
+
+impl<'a> Subject<'a> {
+    /// What `view` looks at: the film that `main` traces for `live`, or a kept one, which `thread` reads.
+    /// `seconds_before` is the tracing time of the live film's samples from before its render, if known.
+    pub fn new(
+        view: &'a ViewState,
+        (live, main): (&'a Document, &'a Tracer),
+        seconds_before: Option<f64>,
+        thread: &'a KeptThread,
+    ) -> Self {
+        Subject { live, main, kept: view.slots.shown(), thread, seconds_before }
+    }
+
+    /// The same without slots.
+    pub fn live(self) -> Self {
+        Subject { kept: None, ..self }
+    }
+
+    /// Whether it is a kept film.
+    pub fn is_kept(&self) -> bool {
+        self.kept.is_some()
+    }
+
+    /// The document that it shows.
+    pub fn document(&self) -> &'a Document {
+        self.kept.map_or(self.live, |kept| &kept.document)
+    }
+
+    /// Which film it is.
+    pub fn film_id(&self) -> FilmId {
+        self.kept.map_or(FilmId::Live(self.main.status().run), |kept| FilmId::Kept(kept.number()))
+    }
+
+    /// The status of its render.
+    pub fn status(&self) -> &'a Arc<Status> {
+        self.kept.map_or(self.main.status(), |kept| &kept.status)
+    }
+
+    /// Tracing time of its samples from before that render, if known.
+    pub fn seconds_before(&self) -> Option<f64> {
+        self.kept.map_or(self.seconds_before, |kept| kept.seconds_before)
+    }
+
+    /// Samples per pixel of the film.
+    pub fn samples(&self) -> u64 {
+        self.kept.map_or(self.main.status().samples_per_pixel, |kept| kept.samples())
+    }
+
+    /// Samples per pixel of the newest picture.
+    pub fn shown_samples(&self) -> u64 {
+        let of_live = || self.main.shown().map_or(0, |shown| shown.samples);
+        self.kept.map_or_else(of_live, |kept| kept.samples())
+    }
+
+    /// Whether it is the film of its document at full size.
+    pub fn is_full(&self) -> bool {
+        self.kept.is_some() || self.main.is_full(self.live)
+    }
+
+    /// Whether it is the film of its document at full size, and has samples.
+    pub fn has_samples(&self) -> bool {
+        self.kept.is_some() || self.main.has_samples(self.live)
+    }
+
+    /// The film itself, if nothing will be added to it.
+    pub fn shared_film(&self) -> Option<Arc<Film>> {
+        self.kept.map(|kept| Arc::clone(&kept.film))
+    }
+
+    /// Runs `look` with the film on another thread.
+    pub fn inspect(&self, look: impl FnOnce(&Film) + Send + 'static) {
+        match self.kept {
+            Some(kept) => {
+                let film = Arc::clone(&kept.film);
+                self.thread.run(move || look(&film));
+            }
+            None => self.main.inspect(look),
+        }
+    }
+}

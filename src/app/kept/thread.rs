@@ -1,0 +1,33 @@
+//! A thread for work on kept films, which may take longer than a frame.
+
+use std::sync::OnceLock;
+use std::sync::mpsc::{SendError, Sender, channel};
+
+type Work = Box<dyn FnOnce() + Send>;
+
+/// A thread that starts with the first work and does one piece of work after the other.
+#[derive(Default)]
+pub struct KeptThread {
+    sender: OnceLock<Option<Sender<Work>>>,
+}
+
+impl KeptThread {
+    /// Has `work` done. Without a thread, it is done here and now.
+    pub fn run(&self, work: impl FnOnce() + Send + 'static) {
+        let work: Work = Box::new(work);
+        match self.sender.get_or_init(start) {
+            Some(sender) => {
+                if let Err(SendError(work)) = sender.send(work) {
+                    work();
+                }
+            }
+            None => work(),
+        }
+    }
+}
+
+fn start() -> Option<Sender<Work>> {
+    let (sender, orders) = channel::<Work>();
+    let work = move || orders.iter().for_each(|work| work());
+    std::thread::Builder::new().name("slots".to_owned()).spawn(work).is_ok().then_some(sender)
+}

@@ -1,0 +1,150 @@
+//! A picture that is kept: its film, and what is needed to show it, to save it and to go on from it.
+
+use super::document::Document;
+use crate::film::{Film, to_byte};
+use crate::progressive::{FilmIdentity, ReferenceMeans, Status};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
+
+/// A small copy of a picture.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Thumbnail {
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Three bytes per pixel, top row first.
+    pub rgb8: Vec<u8>,
+}
+
+impl Thumbnail {
+    /// The longer side, pixels.
+    const SIDE: u32 = 128;
+
+    /// Pixels that are averaged across and down, at most, for one pixel of the thumbnail.
+    const TAPS: u32 = 6;
+
+    /// The thumbnail of a film with samples.
+    pub fn of(film: &Film, document: &Document) -> Self {
+        let full = [film.width(), film.height()];
+        let divisor = f64::from(full[0].max(full[1])) / f64::from(Self::SIDE);
+        let size = full.map(|length| ((f64::from(length) / divisor.max(1.0)).round() as u32).max(1));
+        let transfer = document.rules().transfer;
+        let mut rgb8 = Vec::with_capacity(3 * size[0] as usize * size[1] as usize);
+        // The pixels that are looked at for pixel `at` of the thumbnail along an axis.
+        let taps = |at: u32, axis: usize| {
+            let edge = |at: u32| u64::from(at) * u64::from(full[axis]) / u64::from(size[axis]);
+            let (from, to) = (edge(at), edge(at + 1).max(edge(at) + 1));
+            let count = (to - from).min(u64::from(Self::TAPS));
+            (0..count).map(move |tap| (from + (to - from) * tap / count) as usize)
+        };
+        for y in 0..size[1] {
+            for x in 0..size[0] {
+                let (mut sum, mut count, mut row) = ([0.0; 3], 0.0, 0);
+                for down in taps(y, 1) {
+                    row = down;
+                    for across in taps(x, 0) {
+                        let mean = film.mean(down * full[0] as usize + across);
+                        sum = [0, 1, 2].map(|channel| sum[channel] + mean[channel]);
+                        count += 1.0;
+                    }
+                }
+                rgb8.extend(sum.map(|total| to_byte(total / count, transfer, row, full[1] as usize)));
+            }
+        }
+        Thumbnail { size, rgb8 }
+    }
+}
+
+/// A picture that was kept. It never changes.
+#[derive(Debug)]
+pub struct Kept {
+    /// What it shows.
+    pub document: Document,
+    /// Its exact sums.
+    pub film: Arc<Film>,
+    /// The status of its render.
+    pub status: Arc<Status>,
+    /// Tracing time of the samples from before that render, if known.
+    pub seconds_before: Option<f64>,
+    /// A small copy.
+    pub thumbnail: Thumbnail,
+    number: u64,
+    means: OnceLock<Arc<ReferenceMeans>>,
+}
+
+impl Kept {
+    /// Keeps a film of `document` that has samples.
+    pub fn new(document: Document, film: Film, status: Arc<Status>, seconds_before: Option<f64>) -> Self {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        let thumbnail = Thumbnail::of(&film, &document);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let (film, means) = (Arc::new(film), OnceLock::new());
+        Kept { document, film, status, seconds_before, thumbnail, number, means }
+    }
+
+    /// A number that no other kept picture has.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Samples per pixel.
+    pub fn samples(&self) -> u64 {
+        self.film.sample_count()
+    }
+
+    /// Pixels across and down.
+    pub fn size(&self) -> [u32; 2] {
+        [self.film.width(), self.film.height()]
+    }
+
+    /// Its picture to subtract from another, if that was computed.
+    pub fn known_means(&self) -> Option<&Arc<ReferenceMeans>> {
+        self.means.get()
+    }
+
+    /// Its picture to subtract from another. The first call takes as long as resolving the picture.
+    pub fn means(&self) -> &Arc<ReferenceMeans> {
+        self.means.get_or_init(|| {
+            let identity = Some(FilmIdentity::of(&self.film));
+            Arc::new(ReferenceMeans { identity, ..ReferenceMeans::of(&self.film) })
+        })
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> u64 {
+        let [width, height] = self.size();
+        let of_means = self.means.get().map_or(0, |means| size_of_val(means.means.as_slice()) as u64);
+        Film::bytes(width, height, self.film.halves().len()) + of_means
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::film::PixelSum;
+    use crate::stages::Stage;
+
+    fn film(width: u32, height: u32, value: u64) -> Film {
+        let mut film = Film::new(width, height, 1);
+        film.halves_mut()[0].iter_mut().for_each(|sum| *sum = PixelSum([value << 16; 3]));
+        film.record(0..1, 0).unwrap();
+        film
+    }
+
+    #[test]
+    fn a_thumbnail_is_the_picture_made_small() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut wide = film(512, 100, 64);
+        wide.halves_mut()[0].iter_mut().enumerate().for_each(|(pixel, sum)| {
+            if pixel % 512 < 256 {
+                *sum = PixelSum([16 << 16; 3]);
+            }
+        });
+        let Thumbnail { size, rgb8 } = Thumbnail::of(&wide, &document);
+        assert_eq!((size, rgb8.len()), ([128, 25], 3 * 128 * 25));
+        // Radiances 1/16 and 1/4, whose roots are 1/4 and 1/2.
+        assert_eq!([0, 3 * 63, 3 * 64, 3 * 127].map(|at| rgb8[at]), [64, 64, 128, 128]);
+        assert_eq!(Thumbnail::of(&film(3, 2, 256), &document).size, [3, 2]);
+        assert_eq!(Thumbnail::of(&film(16_000, 1, 256), &document).size, [128, 1]);
+    }
+}

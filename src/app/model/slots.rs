@@ -1,0 +1,285 @@
+//! Slots: places for pictures that are kept, to look at them again and to compare with them.
+
+use super::kept::Kept;
+use crate::memory::words;
+use std::fmt;
+use std::sync::Arc;
+
+/// What the pictures of all slots may take together, bytes.
+pub const BYTES_LIMIT: u64 = 4_000_000_000;
+
+/// The number of a slot, 1 to 9.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SlotNumber(u8);
+
+impl SlotNumber {
+    /// All numbers.
+    pub const ALL: [SlotNumber; 9] = [
+        SlotNumber(1),
+        SlotNumber(2),
+        SlotNumber(3),
+        SlotNumber(4),
+        SlotNumber(5),
+        SlotNumber(6),
+        SlotNumber(7),
+        SlotNumber(8),
+        SlotNumber(9),
+    ];
+
+    /// Its place in [`SlotNumber::ALL`].
+    pub fn index(self) -> usize {
+        usize::from(self.0) - 1
+    }
+}
+
+impl fmt::Display for SlotNumber {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(formatter)
+    }
+}
+
+/// A slot in use.
+#[derive(Clone, Debug)]
+pub struct Slot {
+    /// The name, which the user can change.
+    pub name: String,
+    /// The picture.
+    pub kept: Arc<Kept>,
+}
+
+/// The slots, and which of them is looked at.
+#[derive(Clone, Debug, Default)]
+pub struct Slots {
+    slots: [Option<Slot>; 9],
+    /// The slot in place of the live picture.
+    looked: Option<SlotNumber>,
+    /// What was looked at before: a slot, or the live picture.
+    before: Option<SlotNumber>,
+    /// The slot that commands without a number are for.
+    chosen: Option<SlotNumber>,
+    /// The picture that was deleted or replaced last.
+    gone: Option<(SlotNumber, Slot)>,
+}
+
+impl Slots {
+    /// A slot, if it is in use.
+    pub fn get(&self, number: SlotNumber) -> Option<&Slot> {
+        self.slots[number.index()].as_ref()
+    }
+
+    /// The name of a slot, to be changed.
+    pub fn name_mut(&mut self, number: SlotNumber) -> Option<&mut String> {
+        self.slots[number.index()].as_mut().map(|slot| &mut slot.name)
+    }
+
+    /// The number of a slot with its name.
+    pub fn title(&self, number: SlotNumber) -> String {
+        let name = self.get(number).map_or("empty", |slot| slot.name.as_str());
+        format!("slot {number}: {name}")
+    }
+
+    /// The slots in use, in order.
+    pub fn used(&self) -> impl Iterator<Item = (SlotNumber, &Slot)> {
+        SlotNumber::ALL.into_iter().filter_map(|number| Some((number, self.get(number)?)))
+    }
+
+    /// Whether a slot is in use.
+    pub fn is_used(&self) -> bool {
+        self.used().next().is_some()
+    }
+
+    /// The first slot that is not in use.
+    pub fn first_free(&self) -> Option<SlotNumber> {
+        SlotNumber::ALL.into_iter().find(|number| self.get(*number).is_none())
+    }
+
+    /// The slot that is looked at, instead of the live picture.
+    pub fn looked(&self) -> Option<SlotNumber> {
+        self.looked
+    }
+
+    /// The picture that is looked at, instead of the live one.
+    pub fn shown(&self) -> Option<&Arc<Kept>> {
+        self.looked.and_then(|number| self.get(number)).map(|slot| &slot.kept)
+    }
+
+    /// The slot that commands without a number are for: the one that was looked at, kept or clicked last.
+    pub fn chosen(&self) -> Option<SlotNumber> {
+        self.chosen
+    }
+
+    /// Makes commands without a number be for this slot.
+    pub fn choose(&mut self, number: SlotNumber) {
+        if self.get(number).is_some() {
+            self.chosen = Some(number);
+        }
+    }
+
+    /// Looks at a slot in use, or at the live picture.
+    pub fn look(&mut self, at: Option<SlotNumber>) {
+        if at != self.looked && at.is_none_or(|number| self.get(number).is_some()) {
+            self.before = self.looked;
+            self.looked = at;
+        }
+        if let Some(number) = at {
+            self.choose(number);
+        }
+    }
+
+    /// What [`Slots::swap`] would look at.
+    pub fn other(&self) -> Option<SlotNumber> {
+        if self.looked.is_some() { self.before } else { self.before.or(self.chosen) }
+    }
+
+    /// Looks at what was looked at before.
+    pub fn swap(&mut self) {
+        self.look(self.other());
+    }
+
+    /// Puts a picture into a slot, which is then the one to swap with. A picture that was there can be brought back, if
+    /// there is room for both.
+    pub fn put(&mut self, number: SlotNumber, slot: Slot) {
+        if let Some(earlier) = self.slots[number.index()].replace(slot) {
+            self.gone = Some((number, earlier));
+        }
+        if self.bytes() > BYTES_LIMIT {
+            self.gone = None;
+        }
+        self.chosen = Some(number);
+        if self.looked.is_none() {
+            self.before = Some(number);
+        }
+    }
+
+    /// Empties a slot. Its picture can be brought back.
+    pub fn delete(&mut self, number: SlotNumber) {
+        let Some(slot) = self.slots[number.index()].take() else { return };
+        self.gone = Some((number, slot));
+        for place in [&mut self.looked, &mut self.before, &mut self.chosen] {
+            *place = place.filter(|other| *other != number);
+        }
+        self.chosen = self.chosen.or_else(|| self.used().last().map(|(other, _)| other));
+    }
+
+    /// The slot whose picture was deleted or replaced last.
+    pub fn gone(&self) -> Option<SlotNumber> {
+        self.gone.as_ref().map(|(number, _)| *number)
+    }
+
+    /// Puts the picture back that was deleted or replaced last. What has been put there since can be brought back.
+    pub fn bring_back(&mut self) {
+        if let Some((number, slot)) = self.gone.take() {
+            self.put(number, slot);
+        }
+    }
+
+    /// Bytes that all pictures take.
+    pub fn bytes(&self) -> u64 {
+        let gone = self.gone.iter().map(|(_, slot)| slot.kept.bytes());
+        self.used().map(|(_, slot)| slot.kept.bytes()).chain(gone).sum()
+    }
+
+    /// Makes room for `bytes` more in slot `number`, by forgetting the picture that could be brought back.
+    ///
+    /// # Errors
+    /// If they do not fit within `limit`: how much is needed, how much is there, and what to do.
+    pub fn make_room(&mut self, number: SlotNumber, bytes: u64, limit: u64) -> Result<(), String> {
+        if self.bytes().saturating_add(bytes) > limit {
+            self.gone = None;
+        }
+        let replaced = self.get(number).map_or(0, |slot| slot.kept.bytes());
+        let held = self.bytes();
+        if (held - replaced).saturating_add(bytes) <= limit {
+            return Ok(());
+        }
+        Err(format!(
+            "the picture takes {} and the slots already take {}, but all together may take {}; delete a slot, or \
+             save it as a film and load that as the reference",
+            words(bytes),
+            words(held - replaced),
+            words(limit)
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::document::Document;
+    use crate::app::model::origin::Origin;
+    use crate::film::{Film, PixelSum};
+    use crate::stages::Stage;
+
+    const ONE: SlotNumber = SlotNumber(1);
+    const TWO: SlotNumber = SlotNumber(2);
+
+    fn film(width: u32, height: u32, value: u64) -> Film {
+        let mut film = Film::new(width, height, 1);
+        film.halves_mut()[0].iter_mut().for_each(|sum| *sum = PixelSum([value << 16; 3]));
+        film.record(0..1, 0).unwrap();
+        film
+    }
+
+    fn slot(film: Film) -> Slot {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let kept = Kept::new(document, film, Arc::default(), None);
+        Slot { name: format!("{} samples", kept.samples()), kept: Arc::new(kept) }
+    }
+
+    fn with(numbers: &[SlotNumber]) -> Slots {
+        let mut slots = Slots::default();
+        numbers.iter().for_each(|number| slots.put(*number, slot(film(4, 2, 1))));
+        slots
+    }
+
+    #[test]
+    fn one_key_flips_between_two_pictures() {
+        let mut slots = with(&[ONE, TWO]);
+        assert_eq!((slots.looked(), slots.other()), (None, Some(TWO)), "the last one that was kept");
+        slots.look(Some(ONE));
+        let seen: Vec<_> = (0..3).map(|_| (slots.swap(), slots.looked()).1).collect();
+        assert_eq!(seen, [None, Some(ONE), None]);
+        slots.look(Some(ONE));
+        slots.look(Some(TWO));
+        let seen: Vec<_> = (0..3).map(|_| (slots.swap(), slots.looked()).1).collect();
+        assert_eq!(seen, [Some(ONE), Some(TWO), Some(ONE)], "between two slots");
+        slots.look(Some(SlotNumber(7)));
+        assert_eq!(slots.looked(), Some(ONE), "an empty slot has nothing to look at");
+        slots.delete(ONE);
+        assert_eq!((slots.looked(), slots.chosen()), (None, Some(TWO)));
+    }
+
+    #[test]
+    fn what_is_replaced_or_deleted_comes_back_once() {
+        let mut slots = with(&[ONE]);
+        let first = Arc::clone(&slots.get(ONE).unwrap().kept);
+        slots.put(ONE, slot(film(4, 2, 2)));
+        assert!(!Arc::ptr_eq(&first, &slots.get(ONE).unwrap().kept));
+        slots.bring_back();
+        assert!(Arc::ptr_eq(&first, &slots.get(ONE).unwrap().kept));
+        slots.delete(ONE);
+        assert_eq!((slots.is_used(), slots.gone(), slots.first_free()), (false, Some(ONE), Some(ONE)));
+        slots.bring_back();
+        assert!(Arc::ptr_eq(&first, &slots.get(ONE).unwrap().kept));
+        assert_eq!((slots.gone(), slots.first_free()), (None, Some(TWO)));
+    }
+
+    #[test]
+    fn slots_take_no_more_than_their_limit() {
+        // 8 pixels of 24 bytes.
+        let mut slots = with(&[ONE, TWO]);
+        assert_eq!(slots.bytes(), 384);
+        let three = SlotNumber(3);
+        assert!(slots.make_room(three, 192, 576).is_ok());
+        let refused = slots.make_room(three, 193, 576).unwrap_err();
+        assert!(refused.contains("takes 193 bytes") && refused.contains("take 384 bytes"), "{refused}");
+        assert!(refused.contains("may take 576 bytes"), "{refused}");
+        // A picture that could be brought back makes room first, then the one that is replaced.
+        slots.delete(TWO);
+        assert_eq!(slots.bytes(), 384);
+        assert!(slots.make_room(three, 384, 576).is_ok());
+        assert_eq!((slots.bytes(), slots.gone()), (192, None));
+        assert!(slots.make_room(ONE, 576, 576).is_ok());
+        assert!(slots.make_room(ONE, 577, 576).is_err());
+    }
+}

@@ -1,0 +1,156 @@
+//! Carries out the commands for slots and crops.
+
+use super::command::Command;
+use super::dialogs::Purpose;
+use super::kept::Subject;
+use super::model::slots::{BYTES_LIMIT, Slot, SlotNumber};
+use super::model::view::{Mode, With};
+use super::slots::{Copied, Reopened};
+use super::window::Window;
+use crate::describe::counted;
+use crate::film::Film;
+use crate::memory::words;
+use eframe::egui;
+
+impl Window {
+    /// Carries out a command for slots or crops, which is enabled.
+    pub(super) fn perform_on_slots(&mut self, context: &egui::Context, command: Command) {
+        let view = &mut self.model.view;
+        let chosen = view.slots.chosen();
+        match (command, chosen) {
+            (Command::Keep, _) => {
+                let is_free = |number: &SlotNumber| {
+                    view.slots.get(*number).is_none() && !self.keeper.is_wanted(*number)
+                };
+                if let Some(number) = SlotNumber::ALL.into_iter().find(is_free) {
+                    self.keeper.want(number);
+                }
+            }
+            (Command::KeepIn(number), _) => self.keeper.want(number),
+            (Command::Look(number), _) => view.look(Some(number)),
+            (Command::LookLive, _) => view.look(None),
+            (Command::Swap, _) => view.swap(),
+            (Command::SlotWipe, Some(number)) => view.toggle(Mode::Wipe, With::Slot(number)),
+            (Command::SlotDifference, Some(number)) => view.toggle(Mode::Difference, With::Slot(number)),
+            (Command::OnlyNoise, Some(number)) => self.ask_only_noise(context, number),
+            (Command::OpenSlot, Some(number)) => {
+                if let Some(slot) = view.slots.get(number) {
+                    self.keeper.reopen(context, &slot.kept);
+                }
+            }
+            (Command::DeleteSlot, Some(number)) => {
+                let title = view.slots.title(number);
+                view.slots.delete(number);
+                self.toasts.good(format!("Deleted {title}; Slots > Bring back the slot returns it"));
+            }
+            (Command::BringBackSlot, _) => {
+                view.slots.bring_back();
+                if let Some(number) = view.slots.chosen() {
+                    self.toasts.good(format!("Brought back {}", view.slots.title(number)));
+                }
+            }
+            (Command::Crop, _) => view.crop = if view.crop.is_none() { Some(None) } else { None },
+            (Command::CopyCrop, _) => self.pending_copy = true,
+            (Command::SaveCrop, _) => self.ask_path(Purpose::SaveCrop),
+            _ => {}
+        }
+        // A picture that was not resolved yet comes from another thread.
+        context.request_repaint();
+    }
+
+    /// The film on the screen.
+    pub(super) fn subject(&self) -> Subject<'_> {
+        let model = &self.model;
+        Subject::new(&model.view, (&model.document, &self.main), self.seconds_before, &self.keeper.thread)
+    }
+
+    /// Has the live picture copied for the slots that wait for it, if it has samples.
+    pub(super) fn keep_wanted(&mut self, context: &egui::Context) {
+        if !self.main.has_samples(&self.model.document) {
+            return;
+        }
+        for number in self.keeper.take_wanted() {
+            let settings = &self.model.document.settings;
+            let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
+            if let Err(reason) = self.model.view.slots.make_room(number, bytes, BYTES_LIMIT) {
+                self.toasts.bad(format!("Not kept: {reason}"));
+                continue;
+            }
+            let live = (&self.model.document, &self.main);
+            self.keeper.copy(context, number, live, self.seconds_before);
+        }
+    }
+
+    /// Takes the answers about slots.
+    pub(super) fn receive_for_slots(&mut self) {
+        while let Some(outcome) = self.keeper.copied.take() {
+            match outcome {
+                Ok(copied) => self.put(copied),
+                Err(reason) => self.toasts.bad(format!("Not kept: {reason}")),
+            }
+        }
+        while let Some(outcome) = self.keeper.reopened.take() {
+            match outcome {
+                Ok(reopened) => self.go_on_from(reopened),
+                Err(reason) => self.toasts.bad(format!("Not opened: {reason}")),
+            }
+        }
+        self.keeper.verdict.receive();
+    }
+
+    fn put(&mut self, Copied { number, kept }: Copied) {
+        let slots = &mut self.model.view.slots;
+        let name = format!("{}, {}", kept.document.title(), counted(kept.samples(), "sample"));
+        let bytes = words(kept.bytes());
+        let replaced = slots.get(number).map(|slot| slot.name.clone());
+        slots.put(number, Slot { name: name.clone(), kept: kept.into() });
+        let instead = replaced.map_or_else(String::new, |earlier| format!(", in place of {earlier}"));
+        self.toasts.good(format!("Kept in slot {number}: {name} ({bytes}){instead}"));
+    }
+
+    /// Shows a kept picture as the live one, which goes on with its samples.
+    fn go_on_from(&mut self, Reopened { document, film }: Reopened) {
+        let held = self.main.status().samples_per_pixel;
+        let is_newer = self.main.is_full(&document)
+            && film.as_ref().is_some_and(|(film, _)| film.sample_count() <= held);
+        let is_same = self.document().has_same_film(&document);
+        self.model.view.look(None);
+        self.model.view.end_comparison();
+        if is_same && is_newer {
+            self.toasts.good("The live picture is this one, and it has no fewer samples");
+            return;
+        }
+        let title = document.title();
+        self.show_document(document);
+        if let Some((film, seconds)) = film {
+            let samples = counted(film.sample_count(), "sample");
+            self.pending_film = Some(film);
+            self.seconds_before = seconds;
+            self.changes.step_to(&self.model.document);
+            self.toasts.good(format!("Going on from {title} with {samples} per pixel; Undo returns"));
+        }
+    }
+
+    /// Asks whether the picture on the screen and a slot differ only by noise. A slot that is shown itself is compared with
+    /// the live picture.
+    fn ask_only_noise(&mut self, context: &egui::Context, number: SlotNumber) {
+        let view = &self.model.view;
+        let Some(slot) = view.slots.get(number) else { return };
+        let looked = view.slots.looked().filter(|looked| *looked != number);
+        let mine = looked.map_or_else(|| "the live picture".to_owned(), |looked| view.slots.title(looked));
+        let names = [view.slots.title(number), mine];
+        let live = (&self.model.document, &self.main);
+        let subject = Subject::new(view, live, self.seconds_before, &self.keeper.thread);
+        let subject = if looked.is_some() { subject } else { subject.live() };
+        self.keeper.verdict.ask(context, &slot.kept, &subject, names);
+    }
+
+    /// Ends the comparison with a slot if it has become impossible, and says why.
+    pub(super) fn leave_useless_comparison(&mut self) {
+        let Some(number) = self.model.view.compared_slot() else { return };
+        if let Some(reason) = self.facts().incomparable_slot(number) {
+            self.toasts.good(format!("No comparison: {}{}", reason[..1].to_lowercase(), &reason[1..]));
+            self.model.view.end_comparison();
+        }
+    }
+}

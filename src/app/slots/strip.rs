@@ -1,0 +1,214 @@
+//! The strip of all slots, below the picture.
+
+use crate::app::command::Command;
+use crate::app::facts::Facts;
+use crate::app::menu::item;
+use crate::app::model::slots::{Slot, SlotNumber, Slots};
+use crate::app::texture::Texture;
+use crate::app::theme;
+use crate::memory::words;
+use crate::output::OutputFormat;
+use eframe::egui::{
+    self, Align2, Button, Color32, CornerRadius, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, TextEdit,
+    TextStyle, TextureOptions, Ui, pos2, vec2,
+};
+
+/// Height of a card in points.
+const HEIGHT: f32 = 66.0;
+
+/// Largest width of a thumbnail in points.
+const THUMBNAIL: f32 = 112.0;
+
+/// Width of a name in points.
+const NAME: f32 = 178.0;
+
+/// The thumbnails of the slots.
+#[derive(Default)]
+pub struct Strip {
+    /// Each with the number of its picture.
+    textures: [Option<(u64, Texture)>; 9],
+}
+
+impl Strip {
+    /// Draws the strip, if a slot is in use.
+    pub fn ui(&mut self, ui: &mut Ui, slots: &mut Slots, facts: &Facts, commands: &mut Vec<Command>) {
+        let frame = theme::panel(egui::Margin::symmetric(10, 5));
+        egui::Panel::bottom("slots").frame(frame).show(ui, |ui| {
+            egui::ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
+                ui.horizontal(|ui| {
+                    ui.set_min_height(HEIGHT);
+                    ui.spacing_mut().item_spacing.x = 6.0;
+                    live(ui, facts, commands);
+                    for number in SlotNumber::ALL {
+                        if slots.get(number).is_some() {
+                            self.card(ui, number, slots, facts, commands);
+                        }
+                    }
+                });
+            });
+        });
+    }
+
+    /// A slot: its thumbnail, its name, what it holds, and what can be done with it.
+    fn card(
+        &mut self,
+        ui: &mut Ui,
+        number: SlotNumber,
+        slots: &mut Slots,
+        facts: &Facts,
+        commands: &mut Vec<Command>,
+    ) {
+        let Some(slot) = slots.get(number).cloned() else { return };
+        let is_shown = slots.looked() == Some(number);
+        let is_chosen = slots.chosen() == Some(number);
+        let is_compared = facts.model.view.compared_slot() == Some(number);
+        let mut is_touched = false;
+        let framed = egui::Frame::new().inner_margin(egui::Margin::same(4)).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                if self.thumbnail(ui, number, &slot) {
+                    commands.push(if is_shown { Command::LookLive } else { Command::Look(number) });
+                }
+                ui.vertical(|ui| {
+                    ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
+                    if let Some(name) = slots.name_mut(number) {
+                        let edit = TextEdit::singleline(name).desired_width(NAME - 8.0);
+                        let response =
+                            ui.add(edit).on_hover_text("The name of this slot; click to change it");
+                        let response = response.accessible_name(format!("Name of slot {number}"));
+                        is_touched |= response.gained_focus();
+                    }
+                    let [width, height] = slot.kept.size();
+                    let about = format!("{width}x{height}, {} samples", slot.kept.samples());
+                    let about = RichText::new(about).small().color(ui.visuals().weak_text_color());
+                    ui.label(about).on_hover_text(memory_words(&slot, slots));
+                    ui.horizontal(|ui| {
+                        is_touched |= buttons(ui, number, is_compared, facts, commands);
+                    });
+                });
+            });
+        });
+        if is_touched {
+            slots.choose(number);
+        }
+        let rect = framed.response.rect;
+        let colour = if is_shown || is_compared {
+            theme::accent(ui)
+        } else if is_chosen {
+            ui.visuals().weak_text_color()
+        } else {
+            ui.visuals().window_stroke.color
+        };
+        let width = if is_shown || is_compared { 2.0 } else { 1.0 };
+        ui.painter().rect_stroke(rect, CornerRadius::same(6), Stroke::new(width, colour), StrokeKind::Inside);
+    }
+
+    /// The thumbnail with the slot's number. Returns whether it was clicked.
+    fn thumbnail(&mut self, ui: &mut Ui, number: SlotNumber, slot: &Slot) -> bool {
+        let thumbnail = &slot.kept.thumbnail;
+        let texture = match &mut self.textures[number.index()] {
+            Some((of, texture)) if *of == slot.kept.number() => texture,
+            place => {
+                let texture = Texture::new(thumbnail.size, &thumbnail.rgb8, None);
+                &mut place.insert((slot.kept.number(), texture)).1
+            }
+        };
+        let [width, height] = thumbnail.size.map(|length| length as f32);
+        let scale = ((HEIGHT - 8.0) / height).min(THUMBNAIL / width);
+        let size = vec2(width, height) * scale;
+        let (rect, response) = ui.allocate_exact_size(vec2(size.x.max(40.0), HEIGHT - 8.0), Sense::click());
+        let name = format!("Slot {number}");
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+        let id = texture.id(ui.ctx(), TextureOptions::LINEAR);
+        let whole = Rect { min: Pos2::ZERO, max: pos2(1.0, 1.0) };
+        let at = Rect::from_center_size(rect.center(), size);
+        ui.painter().image(id, at, whole, Color32::WHITE);
+        let font = TextStyle::Button.resolve(ui.style());
+        let place = Rect::from_min_size(at.min, vec2(18.0, 18.0));
+        ui.painter().rect_filled(place, CornerRadius::same(3), ui.visuals().panel_fill.gamma_multiply(0.85));
+        let colour = ui.visuals().strong_text_color();
+        ui.painter().text(place.center(), Align2::CENTER_CENTER, number.to_string(), font, colour);
+        let keys = Command::Look(number).keys(ui.ctx()).unwrap_or_default();
+        let help = format!("Look at this picture, or return to the live one ({keys}; J flips)");
+        response.on_hover_text(help).clicked()
+    }
+}
+
+/// The live picture, and a button to keep it.
+fn live(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = 4.0;
+        for (command, label) in
+            [(Command::LookLive, "Live"), (Command::Keep, "Keep"), (Command::Swap, "Flip")]
+        {
+            let reason = facts.disabled_reason(command);
+            // The live picture is pressed while it is shown, not disabled.
+            let is_on = facts.is_on(command);
+            let button = Button::new(label).small().selected(is_on).min_size(vec2(44.0, 19.0));
+            let response = ui.add_enabled(reason.is_none() || is_on, button);
+            let keys = command.keys(ui.ctx()).map_or_else(String::new, |keys| format!(" ({keys})"));
+            let response = response.on_hover_text(format!("{}{keys}", command.help()));
+            if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() && !is_on {
+                commands.push(command);
+            }
+        }
+    });
+}
+
+/// What can be done with a slot. Returns whether a command was given, which is for this slot.
+fn buttons(
+    ui: &mut Ui,
+    number: SlotNumber,
+    is_compared: bool,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) -> bool {
+    let mut is_given = false;
+    let incomparable = facts.incomparable_slot(number);
+    for (label, command) in
+        [("Wipe", Command::SlotWipe), ("A − B", Command::SlotDifference), ("Noise?", Command::OnlyNoise)]
+    {
+        let is_on = is_compared && facts.is_on(command);
+        let button = Button::new(label).small().selected(is_on);
+        let response = ui.add_enabled(incomparable.is_none(), button).on_hover_text(command.help());
+        let response = response.accessible_name(format!("{} {number}", command.name()));
+        if response.on_disabled_hover_text(incomparable.clone().unwrap_or_default()).clicked() {
+            commands.push(command);
+            is_given = true;
+        }
+    }
+    let menu = ui.menu_button("More", |ui| {
+        ui.set_width(250.0);
+        let before = commands.len();
+        item(ui, facts, commands, Command::OpenSlot);
+        ui.separator();
+        for save in [
+            Command::Save(OutputFormat::Png),
+            Command::Save(OutputFormat::Exr),
+            Command::CopyPicture,
+            Command::SaveScene,
+        ] {
+            let at = commands.len();
+            item(ui, facts, commands, save);
+            if commands.len() > at {
+                // Saving takes what is shown.
+                commands.insert(at, Command::Look(number));
+            }
+        }
+        ui.separator();
+        item(ui, facts, commands, Command::DeleteSlot);
+        item(ui, facts, commands, Command::BringBackSlot);
+        commands.len() > before
+    });
+    let help = "Go on from this picture, save it, or delete it";
+    menu.response.on_hover_text(help).accessible_name(format!("More about slot {number}"));
+    is_given | menu.inner.unwrap_or_default()
+}
+
+fn memory_words(slot: &Slot, slots: &Slots) -> String {
+    format!(
+        "{} in memory, with the exact sums of all samples. All slots together take {} of at most {}",
+        words(slot.kept.bytes()),
+        words(slots.bytes()),
+        words(crate::app::model::slots::BYTES_LIMIT)
+    )
+}

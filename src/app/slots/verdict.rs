@@ -1,0 +1,191 @@
+//! Whether two pictures differ only by noise: the statistics of `weekender compare`, on a thread.
+
+use crate::app::answers::{Answer, Answers};
+use crate::app::kept::Subject;
+use crate::app::model::kept::Kept;
+use crate::app::theme;
+use crate::compare::{Side, compare_sides, told};
+use crate::film::Film;
+use crate::recipe::Recipe;
+use eframe::egui::{self, Align2, RichText};
+use std::sync::Arc;
+
+/// A picture to compare.
+struct Picture {
+    name: String,
+    recipe: Recipe,
+    film: Arc<Film>,
+}
+
+/// What was found.
+struct Found {
+    /// The verdict in a few words.
+    headline: &'static str,
+    is_equal: bool,
+    /// The text that `weekender compare` prints.
+    text: String,
+}
+
+/// The finding about two pictures, or that it is awaited.
+#[derive(Default)]
+pub struct Verdict {
+    names: Option<[String; 2]>,
+    found: Option<Result<Found, String>>,
+    /// Of the last question.
+    number: u64,
+    answers: Answers<(u64, Result<Found, String>)>,
+}
+
+impl Verdict {
+    /// Compares a kept picture with the one on the screen. `names` are those of both, in this order.
+    pub fn ask(
+        &mut self,
+        context: &egui::Context,
+        kept: &Arc<Kept>,
+        subject: &Subject<'_>,
+        names: [String; 2],
+    ) {
+        self.number += 1;
+        self.found = None;
+        let [first, second] = names.clone();
+        self.names = Some(names);
+        let mut recipe = kept.document.recipe();
+        recipe.samples_per_pixel = kept.samples();
+        let kept = Picture { name: first, recipe, film: Arc::clone(&kept.film) };
+        let (mut recipe, number) = (subject.document().recipe(), self.number);
+        let answer = self.answers.answer(context);
+        let shared = subject.shared_film();
+        // The live film goes on, so it is copied first.
+        subject.inspect(move |film| {
+            let copy = shared.map_or_else(|| film.try_clone().map(Arc::new), Ok);
+            match copy {
+                Ok(film) => {
+                    recipe.samples_per_pixel = film.sample_count();
+                    compare_on_thread(number, kept, Picture { name: second, recipe, film }, answer);
+                }
+                Err(error) => answer.give((number, Err(error.to_string()))),
+            }
+        });
+    }
+
+    /// Takes the finding.
+    pub fn receive(&mut self) {
+        while let Some((number, found)) = self.answers.take() {
+            if number == self.number && self.names.is_some() {
+                self.found = Some(found);
+            }
+        }
+    }
+
+    /// Whether a finding is shown or awaited.
+    pub fn is_open(&self) -> bool {
+        self.names.is_some()
+    }
+
+    /// Closes the finding.
+    pub fn close(&mut self) {
+        (self.names, self.found) = (None, None);
+    }
+
+    /// The verdict in a few words, and the text that `weekender compare` prints, or why there is none.
+    pub fn words(&self) -> Option<Result<(&str, &str), &str>> {
+        self.found.as_ref().map(|found| match found {
+            Ok(found) => Ok((found.headline, found.text.as_str())),
+            Err(reason) => Err(reason.as_str()),
+        })
+    }
+
+    /// Draws the finding.
+    pub fn ui(&mut self, context: &egui::Context) {
+        let Some([first, second]) = &self.names else { return };
+        let (mut is_open, mut is_closed) = (true, false);
+        let room = context.content_rect();
+        egui::Window::new("Is it only noise?")
+            .id(egui::Id::unique("verdict"))
+            .open(&mut is_open)
+            .pivot(Align2::CENTER_CENTER)
+            .default_pos(room.center())
+            .max_width((room.width() - 60.0).min(680.0))
+            .collapsible(false)
+            .resizable(false)
+            .show(context, |ui| {
+                ui.add(egui::Label::new(RichText::new(format!("{first}  and  {second}")).weak()).wrap());
+                ui.add_space(4.0);
+                match &self.found {
+                    None => {
+                        ui.horizontal(|ui| {
+                            ui.spinner();
+                            ui.label("Comparing");
+                        });
+                    }
+                    Some(Err(reason)) => {
+                        ui.add(egui::Label::new(
+                            RichText::new(format!("Not compared: {reason}"))
+                                .color(ui.visuals().error_fg_color),
+                        ));
+                    }
+                    Some(Ok(found)) => {
+                        let colour =
+                            if found.is_equal { theme::accent(ui) } else { ui.visuals().warn_fg_color };
+                        ui.label(RichText::new(found.headline).heading().color(colour));
+                        ui.add_space(4.0);
+                        let height = (room.height() - 240.0).max(80.0);
+                        egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+                            text(ui, &found.text);
+                        });
+                        ui.add_space(4.0);
+                        ui.horizontal(|ui| {
+                            let help = "To the clipboard, as weekender compare prints it";
+                            if ui.button("Copy").on_hover_text(help).clicked() {
+                                context.copy_text(found.text.clone());
+                            }
+                            is_closed = ui.button("Close").clicked();
+                        });
+                    }
+                }
+            });
+        if !is_open || is_closed {
+            self.close();
+        }
+    }
+}
+
+/// Draws the lines of a comparison: a label, and words that may need several lines.
+fn text(ui: &mut egui::Ui, text: &str) {
+    egui::Grid::new("comparison").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
+        for line in text.lines() {
+            let (label, words) = line.split_once(' ').unwrap_or((line, ""));
+            ui.label(RichText::new(label).color(ui.visuals().weak_text_color()));
+            ui.scope(|ui| {
+                ui.set_max_width(ui.available_width().min(560.0));
+                ui.add(egui::Label::new(words.trim()).wrap());
+            });
+            ui.end_row();
+        }
+    });
+}
+
+fn compare_on_thread(
+    number: u64,
+    kept: Picture,
+    shown: Picture,
+    answer: Answer<(u64, Result<Found, String>)>,
+) {
+    let work = move || answer.give((number, found([kept, shown])));
+    // Without a thread the answer never comes; the window can be closed.
+    let _ = std::thread::Builder::new().name("compare".to_owned()).spawn(work);
+}
+
+fn found(pictures: [Picture; 2]) -> Result<Found, String> {
+    let [first, second] = pictures.map(|Picture { name, recipe, film }| {
+        Side::of_rendered(name, recipe, film).map_err(|error| error.to_string())
+    });
+    let sides = [first?, second?];
+    let comparison = compare_sides(&sides, None).map_err(|error| error.to_string())?;
+    let headline = match (comparison.is_equal(), comparison.is_same) {
+        (true, true) => "Identical to the bit",
+        (true, false) => "Only noise",
+        (false, _) => "More than noise",
+    };
+    Ok(Found { headline, is_equal: comparison.is_equal(), text: told(&sides, &comparison) })
+}
