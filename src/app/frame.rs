@@ -91,13 +91,15 @@ impl Window {
         for path in input::dropped(context) {
             self.files.open(context, path);
         }
-        let Model { view, selected, is_full_screen, has_first_steps, .. } = &self.model;
+        let Model { view, selected, is_full_screen, has_first_steps, presentation, .. } = &self.model;
         let keyboard = Keyboard {
             had_focus: self.had_focus,
             is_other_view: view.mode().is_some() || view.show() != Show::Picture,
             has_selection: selected.is_some(),
             is_full_screen: *is_full_screen,
             has_first_steps: *has_first_steps,
+            has_sight: self.sight.is_some(),
+            is_presenting: presentation.is_some(),
         };
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
         let before = self.model.document.camera;
@@ -151,6 +153,7 @@ impl Window {
             context.request_repaint_after(Duration::from_millis(40));
         }
         self.leave_useless_show();
+        self.follow_sight();
         let Model { document, view, is_paused, .. } = &self.model;
         let want = Want {
             document,
@@ -187,9 +190,10 @@ impl Window {
         self.surfaces.follow(document, self.main.has_samples(document), context);
         self.identity.follow(view, &self.main, context);
         self.paths.follow(document, context);
-        let has_packet = self.model.remembered.has_panels && self.model.remembered.has_packet;
+        let has_packet = self.model.has_panels() && self.model.remembered.has_packet;
         let lanes = has_packet.then(|| self.model.remembered.lanes_in_use());
         self.packet.follow(context, document, lanes, is_moving);
+        self.thumbnails.follow(context, self.model.document.stage(), self.main.status().phase.is_over());
         self.place_divider();
         if !has_second {
             self.model.view.end_comparison();

@@ -345,17 +345,20 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("tone", &["model", "answers", "facts", "theme", "widgets", "tracer"]),
     ("pixel_values", &["model", "answers", "widgets", "tracer"]),
     ("check", &["answers", "texture"]),
+    ("thumbnails", &["answers", "texture"]),
+    ("stage_list", &["command", "facts", "theme", "thumbnails"]),
     ("code", &["command", "facts"]),
     ("packet", &["model", "answers", "theme", "command"]),
     ("paths", &["model", "answers", "theme", "widgets", "inspector"]),
     ("input", &["model", "command", "navigation"]),
-    ("menu", &["model", "command", "facts", "theme"]),
+    ("menu", &["model", "command", "facts", "theme", "thumbnails", "stage_list"]),
     ("status_bar", &["model", "facts", "theme", "prediction"]),
     ("plot", &["command", "facts", "theme", "widgets", "prediction"]),
     ("spheres", &["model", "answers", "tracer"]),
     ("panels", &["model", "command", "facts", "widgets", "spheres"]),
     ("info", &["model", "command", "facts", "widgets", "menu"]),
     ("first_steps", &["model", "command", "facts", "places", "theme"]),
+    ("present", &["command", "facts", "theme", "widgets", "status_bar"]),
     (
         "viewport",
         &[
@@ -372,6 +375,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "widgets",
         ],
     ),
+    ("sight", &["model", "viewport"]),
     ("dialogs", &["command", "facts", "answers", "menu"]),
     (
         "window",
@@ -400,10 +404,15 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "places",
             "viewport",
             "spheres",
+            "sight",
+            "present",
+            "thumbnails",
             "dialogs",
         ],
     ),
-    ("perform", &["model", "command", "facts", "theme", "places", "plot", "dialogs", "window"]),
+    ("perform", &["model", "command", "facts", "theme", "menu", "places", "plot", "dialogs", "window"]),
+    ("perform_present", &["model", "window"]),
+    ("perform_sight", &["sight", "window"]),
     ("perform_spheres", &["model", "command", "navigation", "spheres", "window"]),
     ("receive", &["model", "command", "files", "window"]),
     ("rescue", &["window"]),
@@ -420,6 +429,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "panels",
             "info",
             "viewport",
+            "present",
             "widgets",
             "window",
         ],
@@ -429,5 +439,16 @@ pub const WINDOW: &[(&str, &[&str])] = &[
 ];
 
 /// Files that may use the whole window.
-pub const TOP: &[&str] =
-    &["window", "queries", "perform", "perform_spheres", "receive", "rescue", "layout", "frame", "mod"];
+pub const TOP: &[&str] = &[
+    "window",
+    "queries",
+    "perform",
+    "perform_present",
+    "perform_sight",
+    "perform_spheres",
+    "receive",
+    "rescue",
+    "layout",
+    "frame",
+    "mod",
+];
