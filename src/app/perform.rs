@@ -33,12 +33,12 @@ impl Window {
             log.command(&command.name());
         }
         self.changes.end_move();
+        if command != Command::Blank {
+            self.end_blank();
+        }
         if let Some(reason) = self.disabled_reason(command) {
             self.toasts.good(format!("{}: {}", command.name().trim_end_matches('…'), lower_first(&reason)));
             return;
-        }
-        if command != Command::Blank {
-            self.end_blank();
         }
         match command {
             Command::Open => self.ask_path(Purpose::Open),

@@ -248,6 +248,7 @@ impl Window {
 
     /// Shows another document.
     pub(super) fn show_document(&mut self, document: Document) {
+        self.end_sight();
         self.model.document = document;
         self.model.selected = None;
         self.inspector.forget();

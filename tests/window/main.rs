@@ -12,6 +12,7 @@ mod first_steps;
 mod numbers;
 mod objects;
 mod panels;
+mod pictures;
 mod plot;
 mod present;
 mod preview;

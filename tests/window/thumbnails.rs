@@ -54,7 +54,8 @@ fn the_list_is_used_from_the_keyboard() {
     harness.key_press(Key::J);
     harness.run_steps(10);
     assert!(rows(&harness) > 8);
-    let metal = harness.get_by_label(&name(Stage::find("metal").unwrap()));
+    let metal = name(Stage::find("metal").unwrap());
+    let metal = harness.get_by_label(&metal);
     assert!(metal.is_focused(), "the current stage has the focus");
     assert_eq!(metal.accesskit_node().toggled(), Some(eframe::egui::accesskit::Toggled::True));
     for key in [Key::ArrowDown, Key::ArrowDown, Key::ArrowDown, Key::ArrowUp] {
