@@ -17,7 +17,7 @@ pub(super) const PPM_GRADIENT: Sight = Sight::new(
 pub(super) const SKY: Sight = Sight::new(
     Means::Luminance([-0.75, 0.25]),
     None,
-    "Luminance in false colours: the bands sag towards the sides.",
+    "Luminance in false colours: the band at the height of the eye is level, the others bend away from it.",
 );
 
 pub(super) const RED_SPHERE: Sight = Sight::new(
@@ -38,19 +38,19 @@ pub(super) const NORMALS_WORLD: Sight = Sight::new(
     "The ball hides the horizon, and the ground is one green.",
 );
 
-/// The top of the ball, where its outline is almost level.
-const TOP_OF_THE_BALL: Option<[f64; 4]> = Some([0.46, 0.19, 0.54, 0.235]);
+/// The bottom of the ball, where its outline is almost level.
+const BOTTOM_OF_THE_BALL: Option<[f64; 4]> = Some([0.46, 0.765, 0.54, 0.81]);
 
 pub(super) const ALIASED: Sight = Sight::new(
     Means::Picture,
-    TOP_OF_THE_BALL,
-    "The top of the ball: a pixel is either ball or sky, so the outline climbs in steps.",
+    BOTTOM_OF_THE_BALL,
+    "The bottom of the ball: a pixel is either ball or ground, so the outline goes in steps.",
 );
 
 pub(super) const ANTIALIASED: Sight = Sight::new(
     Means::Wipe(0.5),
-    TOP_OF_THE_BALL,
-    "Left, one ray per pixel. Right, edge pixels have shades between ball and sky.",
+    BOTTOM_OF_THE_BALL,
+    "Left, one ray per pixel. Right, edge pixels have shades between ball and ground.",
 );
 
 pub(super) const DIFFUSE: Sight = Sight::new(
@@ -104,19 +104,22 @@ pub(super) const METAL_FUZZY: Sight = Sight::new(
 /// The glass ball, which the left edge of the picture cuts.
 const GLASS_BALL: Option<[f64; 4]> = Some([0.0, 0.17, 0.4, 0.83]);
 
+/// Its upper right, with the rim.
+const GLASS_RIM: Option<[f64; 4]> = Some([0.08, 0.17, 0.39, 0.6]);
+
 pub(super) const GLASS_REFRACT: Sight = Sight::new(
-    Means::Wipe(0.24),
-    GLASS_BALL,
-    "Left, refraction alone. Right, the complete law: the rim mirrors its surroundings.",
+    Means::Wipe(0.25),
+    GLASS_RIM,
+    "Left, refraction alone. Right, the complete rule: the rim mirrors the sky.",
 );
 
 pub(super) const GLASS_TIR: Sight =
     Sight::new(Means::Picture, GLASS_BALL, "The rim mirrors sky and ground; the middle is a window.");
 
 pub(super) const GLASS_SCHLICK: Sight = Sight::new(
-    Means::Wipe(0.24),
-    GLASS_BALL,
-    "Left, refraction alone. Right, the rim and the lower half carry a pale reflection.",
+    Means::Wipe(0.25),
+    GLASS_RIM,
+    "Left, refraction alone. Right, the reflected sky makes the rim pale.",
 );
 
 pub(super) const HOLLOW_GLASS: Sight = Sight::new(
@@ -156,9 +159,9 @@ pub(super) const VIEW_CLOSE: Sight = Sight::new(
 );
 
 pub(super) const DEFOCUS: Sight = Sight::new(
-    Means::Picture,
-    Some([0.0, 0.4, 0.55, 1.0]),
-    "The outline of the blue ball is sharp; the glass in front of it dissolves.",
+    Means::Wipe(0.16),
+    None,
+    "Left, a pinhole. Right, a lens: the blue ball stays sharp, glass and metal dissolve.",
 );
 
 pub(super) const BOOK: Sight = Sight::new(

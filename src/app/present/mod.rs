@@ -24,7 +24,7 @@ const HELP_SECONDS: [f64; 2] = [8.0, 2.0];
 const SIZES: [f32; 5] = [3.2, 2.9, 2.6, 2.3, 2.0];
 
 /// Height of the texts below the picture, in hundredths of the height.
-const TEXTS: f32 = 18.0;
+const TEXTS: f32 = 19.0;
 
 /// The state of the display.
 #[derive(Default)]
@@ -169,7 +169,7 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
     let gap = 4.0 * unit;
     let width = 0.5 * (ui.available_width() - gap);
     let heading = 2.2 * unit;
-    let room = ui.available_height() - 1.5 * heading - 0.5 * unit;
+    let room = ui.available_height() - 2.2 * heading - 0.5 * unit;
     let height = |text: &str, size: f32| {
         let font = FontId::new(size, FontFamily::Proportional);
         ui.painter().layout(text.to_owned(), font, Color32::WHITE, width).size().y
@@ -177,6 +177,7 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
     let fits = |size: &f32| texts.iter().all(|(_, text)| height(text, *size) <= room);
     let size = SIZES.map(|size| size * unit).into_iter().find(fits).unwrap_or(SIZES[4] * unit);
     ui.spacing_mut().item_spacing = vec2(gap, 0.2 * heading);
+    ui.add_space(0.5 * heading);
     ui.horizontal_top(|ui| {
         for (name, text) in texts {
             ui.allocate_ui_with_layout(
@@ -193,8 +194,8 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
     });
 }
 
-/// A rectangle with a side of this many hundredths of the height beside the picture, or in the corner of it that is
-/// farther from the pointer.
+/// A rectangle of this size at the right of the picture; if there is no room, at that edge of the picture which is
+/// farther from the pointer, where neither titles nor scales are.
 fn beside(context: &Context, room: Rect, picture: Rect, pointer: egui::Pos2, size: egui::Vec2) -> Rect {
     let gap = unit(context);
     let slack = room.right() - picture.right();
@@ -203,11 +204,10 @@ fn beside(context: &Context, room: Rect, picture: Rect, pointer: egui::Pos2, siz
         return Rect::from_center_size(middle, size);
     }
     let seen = picture.intersect(room);
-    let is_right = pointer.x < seen.center().x;
-    let (corner, anchor) = if is_right {
-        (seen.right_top() + vec2(-gap, gap), Align2::RIGHT_TOP)
+    let (side, anchor) = if pointer.x < seen.center().x {
+        (seen.right_center() - vec2(gap, 0.0), Align2::RIGHT_CENTER)
     } else {
-        (seen.left_top() + vec2(gap, gap), Align2::LEFT_TOP)
+        (seen.left_center() + vec2(gap, 0.0), Align2::LEFT_CENTER)
     };
-    anchor.anchor_size(corner, size)
+    anchor.anchor_size(side, size)
 }
