@@ -178,7 +178,7 @@ fn the_pixel_under_the_pointer_is_large() {
         };
         harness.run_steps(2);
         assert!(squares(&harness).is_empty(), "the pointer is not over the picture");
-        for share in [[0.3, 0.4], [0.97, 0.1]] {
+        for share in [[0.3, 0.4], [0.97, 0.4]] {
             let picture = harness.state().picture_rect();
             let at = picture.lerp_inside(vec2(share[0], share[1]));
             harness.event(egui::Event::PointerMoved(at));
