@@ -49,12 +49,12 @@ fn pictures_of_the_window() {
         until(harness, "the other picture", |window| window.has_other_picture());
     });
     take("window-stages", "--stage metal-fuzzy", Theme::Dark, SIZE, |harness| {
-        press(harness, Key::J);
+        press(harness, Key::O);
         until(harness, "all small pictures", |window| window.thumbnail_count() == Stage::ALL.len());
     });
     take("window-present", "--stage shadow-acne", Theme::Light, [1280.0, 720.0], |harness| {
         press(harness, Key::F5);
-        press(harness, Key::M);
+        press(harness, Key::H);
         until(harness, "the other picture", |window| window.has_other_picture());
         let at = harness.state().picture_rect().lerp_inside(vec2(0.505, 0.86));
         harness.event(egui::Event::PointerMoved(at));

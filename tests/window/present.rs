@@ -235,7 +235,7 @@ fn orbit_wipe_and_sights_go_on() {
         !harness.state().is_comparing() && harness.state().is_presenting(),
         "Escape first leaves the wipe"
     );
-    harness.key_press(Key::M);
+    harness.key_press(Key::H);
     harness.run_steps(3);
     assert!(harness.state().has_sight());
     assert!(has(&harness, Stage::find("glass-schlick").unwrap().sight.caption));

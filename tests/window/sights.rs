@@ -24,7 +24,7 @@ fn every_stage_shows_what_to_look_for_and_escape_returns() {
         until(&mut harness, stage.id, has_samples(1));
         harness.run_steps(2);
         let before = (harness.state().picture_rect(), harness.state().show(), harness.state().is_comparing());
-        harness.key_press(Key::M);
+        harness.key_press(Key::H);
         harness.run_steps(4);
         assert!(harness.state().has_sight(), "{}", stage.id);
         assert!(harness.query_by_label(stage.sight.caption).is_some(), "{}", stage.id);
@@ -113,10 +113,10 @@ fn a_sight_returns_to_the_comparison_that_was_shown() {
         harness.state().is_comparing() && harness.query_all_by_label("Difference").count() > 0
     };
     assert!(is_difference(&harness));
-    harness.key_press(Key::M);
+    harness.key_press(Key::H);
     harness.run_steps(4);
     assert!(harness.state().has_sight());
-    harness.key_press(Key::M);
+    harness.key_press(Key::H);
     harness.run_steps(4);
     assert!(is_difference(&harness) && !harness.state().has_sight());
 }
@@ -125,7 +125,7 @@ fn a_sight_returns_to_the_comparison_that_was_shown() {
 fn without_a_stage_there_is_nothing_to_look_for() {
     let mut harness = open("--scene field:100 --size 32x18");
     assert!(harness.state().disabled_reason(Command::ShowMe).is_some());
-    harness.key_press(Key::M);
+    harness.key_press(Key::H);
     harness.run_steps(4);
     assert!(!harness.state().has_sight());
 }

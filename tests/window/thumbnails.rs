@@ -42,7 +42,7 @@ fn a_busy_program_makes_them_only_for_an_open_list() {
     until(&mut harness, "samples", has_samples(1000));
     harness.run_steps(30);
     assert_eq!((harness.state().thumbnail_count(), files(directory.path())), (0, 0));
-    harness.key_press(Key::J);
+    harness.key_press(Key::O);
     harness.run_steps(5);
     until(&mut harness, "all pictures", |window| window.thumbnail_count() == Stage::ALL.len());
 }
@@ -51,7 +51,7 @@ fn a_busy_program_makes_them_only_for_an_open_list() {
 fn the_list_is_used_from_the_keyboard() {
     let mut harness = open_sized("--stage metal --size 32x18", [1280.0, 800.0]);
     harness.run_steps(2);
-    harness.key_press(Key::J);
+    harness.key_press(Key::O);
     harness.run_steps(10);
     assert!(rows(&harness) > 8);
     let metal = name(Stage::find("metal").unwrap());
@@ -68,7 +68,7 @@ fn the_list_is_used_from_the_keyboard() {
     assert_eq!(harness.state().document().stage().unwrap().id, "glass-refract");
     assert_eq!(rows(&harness), 0, "the list has closed");
     // Escape closes it without a choice.
-    harness.key_press(Key::J);
+    harness.key_press(Key::O);
     harness.run_steps(10);
     harness.key_press(Key::ArrowUp);
     harness.run_steps(4);

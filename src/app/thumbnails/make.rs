@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 const SAMPLES: u64 = 32;
 
 /// A finished small picture.
-pub(super) struct Made {
+pub(super) struct Thumbnail {
     pub stage: &'static Stage,
     pub scale: u32,
     pub size: [u32; 2],
@@ -28,8 +28,8 @@ pub(super) struct Made {
 }
 
 /// What the thread is to make, in this order.
-pub(super) struct Order {
-    pub answers: Vec<(&'static Stage, Answer<Made>)>,
+pub(super) struct Request {
+    pub answers: Vec<(&'static Stage, Answer<Thumbnail>)>,
     pub scale: u32,
     pub directory: Option<PathBuf>,
     /// Ends when nobody waits for the pictures any more.
@@ -37,33 +37,33 @@ pub(super) struct Order {
 }
 
 /// Starts the thread.
-pub(super) fn begin(order: Order) -> io::Result<()> {
+pub(super) fn begin(request: Request) -> io::Result<()> {
     std::thread::Builder::new().name("thumbnails".to_owned()).spawn(move || {
         // The tracer's threads have a low priority already, and those of this thread get a lower one.
         give_way();
-        if let Err(error) = work(order) {
+        if let Err(error) = work(request) {
             log::info!("no more small pictures of the stages: {error:#}");
         }
     })?;
     Ok(())
 }
 
-fn work(order: Order) -> Result<()> {
-    let Order { answers, scale, directory, alive } = order;
+fn work(request: Request) -> Result<()> {
+    let Request { answers, scale, directory, alive } = request;
     let directory = directory.map(|directory| directory.join("thumbnails"));
-    let mut studio = Studio::open(scale)?;
+    let mut maker = Maker::open(scale)?;
     for (stage, answer) in answers {
         if alive.strong_count() == 0 {
             break;
         }
-        let (size, rgb8) = studio.picture(stage, directory.as_deref())?;
-        answer.give(Made { stage, scale, size, rgb8 });
+        let (size, rgb8) = maker.picture(stage, directory.as_deref())?;
+        answer.give(Thumbnail { stage, scale, size, rgb8 });
     }
-    log::debug!("small pictures of the stages: {} rendered, the others read", studio.rendered);
+    log::debug!("small pictures of the stages: {} rendered, the others read", maker.rendered);
     Ok(())
 }
 
-struct Studio {
+struct Maker {
     scale: u32,
     fingerprints: Fingerprints,
     /// Started with the first picture that is not in the cache.
@@ -71,9 +71,9 @@ struct Studio {
     rendered: usize,
 }
 
-impl Studio {
+impl Maker {
     fn open(scale: u32) -> Result<Self> {
-        Ok(Studio { scale, fingerprints: Fingerprints::new()?, renderer: None, rendered: 0 })
+        Ok(Maker { scale, fingerprints: Fingerprints::new()?, renderer: None, rendered: 0 })
     }
 
     /// The size and the bytes of a stage's picture. It is rendered unless `directory` has it.
@@ -81,7 +81,7 @@ impl Studio {
         let recipe = recipe(stage, self.scale);
         let size = [recipe.settings.width, recipe.settings.height];
         let place = match directory {
-            Some(directory) => Some(Place::of(directory, &recipe, &self.fingerprints.of(&recipe)?)),
+            Some(directory) => Some(KeptFile::of(directory, &recipe, &self.fingerprints.of(&recipe)?)),
             None => None,
         };
         if let Some(place) = &place
@@ -129,18 +129,18 @@ fn recipe(stage: &Stage, scale: u32) -> Recipe {
 }
 
 /// Where a small picture is kept. Its name tells everything that it depends on.
-struct Place {
+struct KeptFile {
     directory: PathBuf,
     path: PathBuf,
     /// The part of the name that the earlier pictures of the same stage and size have, too.
     prefix: String,
 }
 
-impl Place {
+impl KeptFile {
     fn of(directory: &Path, recipe: &Recipe, fingerprint: &str) -> Self {
         let prefix = format!("{}-{}x{}-", recipe.name, recipe.settings.width, recipe.settings.height);
         let path = directory.join(format!("{prefix}{fingerprint}.png"));
-        Place { directory: directory.to_owned(), path, prefix }
+        KeptFile { directory: directory.to_owned(), path, prefix }
     }
 
     /// Removes the pictures that this one replaces.
@@ -174,19 +174,19 @@ mod tests {
     #[test]
     fn what_is_in_the_cache_is_not_rendered_again() {
         let directory = tempfile::tempdir().unwrap();
-        let mut first = Studio::open(1).unwrap();
+        let mut first = Maker::open(1).unwrap();
         for id in ["ppm-tiny", "metal", "book"] {
             first.picture(stage(id), Some(directory.path())).unwrap();
         }
         assert_eq!(first.rendered, 3);
-        let mut second = Studio::open(1).unwrap();
+        let mut second = Maker::open(1).unwrap();
         for id in ["ppm-tiny", "metal", "book"] {
-            let alone = Studio::open(1).unwrap().picture(stage(id), None).unwrap();
+            let alone = Maker::open(1).unwrap().picture(stage(id), None).unwrap();
             assert!(second.picture(stage(id), Some(directory.path())).unwrap() == alone, "{id}");
         }
         assert_eq!(second.rendered, 0);
         assert_eq!(
-            Studio::open(2).unwrap().picture(stage("metal"), Some(directory.path())).unwrap().0,
+            Maker::open(2).unwrap().picture(stage("metal"), Some(directory.path())).unwrap().0,
             [160, 90]
         );
         assert_eq!(names(directory.path()).len(), 4, "each size is kept");
@@ -195,14 +195,14 @@ mod tests {
     #[test]
     fn a_picture_of_another_recipe_or_tracer_is_replaced() {
         let directory = tempfile::tempdir().unwrap();
-        let mut studio = Studio::open(1).unwrap();
+        let mut maker = Maker::open(1).unwrap();
         let metal = recipe(stage("metal"), 1);
-        let stale = Place::of(directory.path(), &metal, "0123456789abcdef");
+        let stale = KeptFile::of(directory.path(), &metal, "0123456789abcdef");
         fs::write(&stale.path, "of an earlier tracer").unwrap();
-        let other = Place::of(directory.path(), &recipe(stage("metal-fuzzy"), 1), "0123456789abcdef");
+        let other = KeptFile::of(directory.path(), &recipe(stage("metal-fuzzy"), 1), "0123456789abcdef");
         fs::write(&other.path, "of another stage").unwrap();
-        let (_, rgb8) = studio.picture(stage("metal"), Some(directory.path())).unwrap();
-        assert_eq!((studio.rendered, rgb8.len()), (1, 80 * 45 * 3));
+        let (_, rgb8) = maker.picture(stage("metal"), Some(directory.path())).unwrap();
+        assert_eq!((maker.rendered, rgb8.len()), (1, 80 * 45 * 3));
         assert!(!stale.path.exists() && other.path.exists());
         // So does every change of the recipe, because the name tells it.
         let fingerprint = |recipe: &Recipe| Fingerprints::new().unwrap().of(recipe).unwrap();
@@ -214,14 +214,14 @@ mod tests {
     #[test]
     fn a_damaged_picture_is_rendered_again() {
         let directory = tempfile::tempdir().unwrap();
-        let mut studio = Studio::open(1).unwrap();
-        let whole = studio.picture(stage("sky"), Some(directory.path())).unwrap();
+        let mut maker = Maker::open(1).unwrap();
+        let whole = maker.picture(stage("sky"), Some(directory.path())).unwrap();
         let name = names(directory.path()).pop_first().unwrap();
         let path = directory.path().join(&name);
         let bytes = fs::read(&path).unwrap();
         fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
-        assert!(studio.picture(stage("sky"), Some(directory.path())).unwrap() == whole);
-        assert_eq!((studio.rendered, names(directory.path())), (2, BTreeSet::from([name])));
+        assert!(maker.picture(stage("sky"), Some(directory.path())).unwrap() == whole);
+        assert_eq!((maker.rendered, names(directory.path())), (2, BTreeSet::from([name])));
         assert_eq!(fs::read(&path).unwrap(), bytes);
     }
 
@@ -231,10 +231,10 @@ mod tests {
         let file = directory.path().join("file");
         fs::write(&file, "").unwrap();
         let before: SystemTime = fs::metadata(&file).unwrap().modified().unwrap();
-        let mut studio = Studio::open(1).unwrap();
+        let mut maker = Maker::open(1).unwrap();
         for _ in 0..2 {
-            studio.picture(stage("sky"), Some(&file.join("thumbnails"))).unwrap();
+            maker.picture(stage("sky"), Some(&file.join("thumbnails"))).unwrap();
         }
-        assert_eq!((studio.rendered, fs::metadata(&file).unwrap().modified().unwrap()), (2, before));
+        assert_eq!((maker.rendered, fs::metadata(&file).unwrap().modified().unwrap()), (2, before));
     }
 }

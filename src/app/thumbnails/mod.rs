@@ -7,7 +7,7 @@ use super::texture::Texture;
 use crate::gallery::is_about_pixels;
 use crate::stages::Stage;
 use eframe::egui::{Color32, Context, Rect, TextureOptions, Ui, Vec2, pos2, vec2};
-use make::{Made, Order};
+use make::{Request, Thumbnail};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -28,9 +28,9 @@ pub struct Thumbnails {
     /// Pixels per point of the pictures at hand or being made; 0 before the first.
     scale: u32,
     pictures: HashMap<&'static str, Texture>,
-    answers: Answers<Made>,
+    answers: Answers<Thumbnail>,
     /// The thread stops once this is dropped.
-    request: Option<Arc<()>>,
+    waiting: Option<Arc<()>>,
     /// The pictures were drawn, or would have been.
     is_wanted: bool,
 }
@@ -57,21 +57,21 @@ impl Thumbnails {
             }
         }
         let scale = (context.pixels_per_point().ceil() as u32).clamp(1, LARGEST_SCALE);
-        let is_begun = self.request.is_some() && scale == self.scale;
+        let is_begun = self.waiting.is_some() && scale == self.scale;
         if !self.is_on || is_begun || !(self.is_wanted || is_idle) {
             return;
         }
         self.scale = scale;
-        let request = Arc::new(());
+        let waiting = Arc::new(());
         let here = stage.map_or(0, Stage::index);
         let mut stages: Vec<&'static Stage> = Stage::ALL.iter().collect();
         stages.sort_by_key(|stage| stage.index().abs_diff(here));
         let answers = stages.into_iter().map(|stage| (stage, self.answers.answer(context))).collect();
-        let order =
-            Order { answers, scale, directory: self.directory.clone(), alive: Arc::downgrade(&request) };
-        self.request = Some(request);
+        let request =
+            Request { answers, scale, directory: self.directory.clone(), alive: Arc::downgrade(&waiting) };
+        self.waiting = Some(waiting);
         // Without a thread the list has no pictures, but everything else works.
-        if let Err(error) = make::begin(order) {
+        if let Err(error) = make::begin(request) {
             log::info!("no small pictures of the stages: {error}");
         }
     }
