@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use weekender::recipe::Recipe;
 use weekender::scene::Material;
-use weekender::stages::{DielectricLaws, Rules, Shading, Stage, SurfaceRule, Transfer};
+use weekender::stages::{DielectricLaws, Means, Rules, Shading, Stage, SurfaceRule, Transfer};
 
 const IDS: [&str; 27] = [
     "ppm-tiny",
@@ -76,6 +76,36 @@ fn every_stage_teaches() {
     }
     let texts: HashSet<_> = Stage::ALL.iter().map(|stage| stage.title).collect();
     assert_eq!(texts.len(), Stage::ALL.len());
+}
+
+/// "Show me" must not show the picture as it is, or something outside of it.
+#[test]
+fn everything_to_look_for_can_be_shown() {
+    let mut captions = HashSet::new();
+    for stage in Stage::ALL {
+        let sight = &stage.sight;
+        if let Some([left, top, right, bottom]) = sight.part {
+            for [low, high] in [[left, right], [top, bottom]] {
+                assert!(0.0 <= low && low < high && high <= 1.0, "{}: {sight:?}", stage.id);
+            }
+            assert!(right - left < 0.6 && bottom - top < 0.75, "{}: nothing is enlarged", stage.id);
+        }
+        match sight.means {
+            Means::Picture => assert!(sight.part.is_some(), "{}: this is what is shown anyway", stage.id),
+            Means::Wipe(at) => {
+                let [left, _, right, _] = sight.part.unwrap_or([0.0, 0.0, 1.0, 1.0]);
+                let at = f64::from(at);
+                assert!(left + 0.02 < at && at < right - 0.02, "{}: one side is not seen", stage.id);
+                assert!(sight.caption.contains("eft, ") || sight.caption.contains("left as"), "{}", stage.id);
+            }
+            Means::Luminance([low, high]) => assert!(high - low >= 1.0, "{}", stage.id),
+            Means::RaysPerPath => assert_eq!(stage.setup.rules.shading, Shading::Path, "{}", stage.id),
+            Means::Albedo | Means::StandardError => {}
+        }
+        assert!((30..110).contains(&sight.caption.len()), "{}: {}", stage.id, sight.caption);
+        assert!(sight.caption.ends_with('.'), "{}: {}", stage.id, sight.caption);
+        assert!(captions.insert(sight.caption), "{}: {}", stage.id, sight.caption);
+    }
 }
 
 #[test]

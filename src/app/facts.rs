@@ -29,6 +29,8 @@ pub struct Facts {
     pub has_pixel: bool,
     /// Whether there is a list of paths.
     pub has_paths: bool,
+    /// Whether the stage's sight is shown.
+    pub has_sight: bool,
     /// Why the document cannot be rendered, if so.
     pub invalid: Option<String>,
 }
@@ -94,6 +96,8 @@ impl Facts {
             Command::Code => remembered.has_code,
             Command::FirstSteps => self.model.has_first_steps,
             Command::FullScreen => self.model.is_full_screen,
+            Command::Present => self.model.presentation.is_some(),
+            Command::ShowMe => self.has_sight,
             Command::Theme(theme) => remembered.theme == theme,
             Command::Device(device) => remembered.device == device,
             Command::Size(sizing) => !document.has_own_size && remembered.sizing == sizing,
@@ -184,6 +188,25 @@ impl Facts {
             }
             Command::Home if document.camera == document.origin.recipe.camera => {
                 no("This is already the stage's camera")
+            }
+            Command::Blank if self.model.presentation.is_none() => {
+                no("Only a presentation can be blanked; press F5 first")
+            }
+            Command::ShowMe => match document.stage() {
+                Some(stage) => self.useless_show(Show::of_means(stage.sight.means)),
+                None => no("Only the stages of the book name something to look for; choose one"),
+            },
+            Command::Stages
+            | Command::Controls
+            | Command::Info
+            | Command::Plot
+            | Command::Packet
+            | Command::Code
+            | Command::NextPanel
+            | Command::FirstSteps
+                if self.model.presentation.is_some() =>
+            {
+                no("A presentation has no panels; press Escape first")
             }
             Command::Device(device) => device.unavailable(),
             Command::SwitchDevice => Device::Gpu.unavailable(),

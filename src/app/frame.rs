@@ -93,7 +93,7 @@ impl Window {
         for path in input::dropped(context) {
             self.files.open(context, path);
         }
-        let Model { view, selected, is_full_screen, has_first_steps, .. } = &self.model;
+        let Model { view, selected, is_full_screen, has_first_steps, presentation, .. } = &self.model;
         let keyboard = Keyboard {
             had_focus: self.had_focus,
             is_other_view: view.mode().is_some() || view.show() != Show::Picture,
@@ -102,6 +102,8 @@ impl Window {
             has_selection: selected.is_some(),
             is_full_screen: *is_full_screen,
             has_first_steps: *has_first_steps,
+            has_sight: self.sight.is_some(),
+            is_presenting: presentation.is_some(),
         };
         // Escape closes a finding first.
         if self.keeper.verdict.is_open()
@@ -183,6 +185,7 @@ impl Window {
         }
         self.leave_useless_show();
         self.leave_useless_comparison();
+        self.follow_sight();
         let Model { document, view, is_paused, .. } = &self.model;
         let want = Want {
             document,
@@ -229,9 +232,10 @@ impl Window {
         self.surfaces.follow(document, self.main.has_samples(document), context);
         self.identity.follow(view.subtracted(self.second.film()), &subject, context);
         self.paths.follow(document, context);
-        let has_packet = self.model.remembered.has_panels && self.model.remembered.has_packet;
+        let has_packet = self.model.has_panels() && self.model.remembered.has_packet;
         let lanes = has_packet.then(|| self.model.remembered.lanes_in_use());
         self.packet.follow(context, document, lanes, is_moving);
+        self.thumbnails.follow(context, self.model.document.stage(), self.main.status().phase.is_over());
         self.place_divider();
         if !has_second {
             self.model.view.end_comparison();

@@ -43,6 +43,8 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
         ui.label(RichText::new(heading).small().color(weak));
         ui.add(egui::Label::new(text).wrap());
     }
+    ui.add_space(2.0);
+    show_me(ui, stage, facts, commands);
     ui.add_space(6.0);
     ui.horizontal_wrapped(|ui| {
         for (name, command) in [("Code", Command::Code), ("Companion", Command::Companion)] {
@@ -53,6 +55,25 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
         }
     });
     ui.add_space(10.0);
+}
+
+/// A button that shows what there is to look for, and what is then to be seen.
+fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command>) {
+    let command = Command::ShowMe;
+    let reason = facts.disabled_reason(command);
+    let keys = command.keys(ui.ctx()).unwrap_or_default();
+    let button = egui::Button::new("Show me").selected(facts.has_sight);
+    let response = ui
+        .add_enabled(reason.is_none(), button)
+        .on_hover_text(format!("{} ({keys})", command.help()))
+        .on_disabled_hover_text(reason.unwrap_or_default());
+    if response.clicked() {
+        commands.push(command);
+    }
+    if facts.has_sight {
+        let text = RichText::new(stage.sight.caption).color(ui.visuals().strong_text_color());
+        ui.add(egui::Label::new(text).wrap());
+    }
 }
 
 /// Text about a scene that is not a stage.

@@ -30,7 +30,20 @@ pub struct Keyboard {
     pub is_full_screen: bool,
     /// The card with the first steps is shown.
     pub has_first_steps: bool,
+    /// The stage's sight is shown.
+    pub has_sight: bool,
+    /// There is a presentation.
+    pub is_presenting: bool,
 }
+
+/// What the keys of a presenter's remote control do in a presentation, besides Page Up, Page Down and B.
+const REMOTE: [(Key, Command); 5] = [
+    (Key::ArrowRight, Command::NextStage),
+    (Key::ArrowDown, Command::NextStage),
+    (Key::ArrowLeft, Command::PreviousStage),
+    (Key::ArrowUp, Command::PreviousStage),
+    (Key::Period, Command::Blank),
+];
 
 /// Turns keys into commands. Returns whether held keys may move the camera.
 pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Vec<Command>) -> bool {
@@ -38,6 +51,10 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
         return false;
     }
     context.input_mut(name_digits_by_place);
+    for (key, command) in REMOTE.into_iter().filter(|_| keyboard.is_presenting) {
+        let presses = context.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+        (0..presses).for_each(|_| commands.push(command));
+    }
     let is_focused = context.memory(|memory| memory.focused().is_some());
     let keys_of_controls = [Key::Tab, Key::Space, Key::ArrowLeft, Key::ArrowRight];
     for command in by_modifiers() {
@@ -75,19 +92,23 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
     if also(Key::Backspace) {
         commands.push(Command::DeleteSphere);
     }
-    // Escape first leaves a control, then closes the first steps, then a crop, then deselects, then leaves a comparison or
-    // another view, then a slot, then full-screen mode.
+    // Escape first leaves a control, then closes the first steps, then a crop, then deselects, then leaves a sight, a
+    // comparison or another view, then a slot, then a presentation, then full-screen mode.
     if !keyboard.had_focus && also(Key::Escape) {
-        if keyboard.has_first_steps {
+        if keyboard.has_first_steps && !keyboard.is_presenting {
             commands.push(Command::FirstSteps);
         } else if keyboard.is_cropping {
             commands.push(Command::Crop);
         } else if keyboard.has_selection && !keyboard.is_at_slot {
             commands.push(Command::Deselect);
+        } else if keyboard.has_sight {
+            commands.push(Command::ShowMe);
         } else if keyboard.is_other_view {
             commands.push(Command::Show(Show::Picture));
         } else if keyboard.is_at_slot {
             commands.push(Command::LookLive);
+        } else if keyboard.is_presenting {
+            commands.push(Command::Present);
         } else if keyboard.is_full_screen {
             commands.push(Command::FullScreen);
         }

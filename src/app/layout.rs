@@ -5,10 +5,11 @@ use super::model::Model;
 use super::model::first_steps::Step;
 use super::model::view::{Mode, ViewState};
 use super::places::Place;
+use super::present::{self, Lens, Seen};
 use super::viewport::{Handle, Pictures};
 use super::window::Window;
 use super::{info, menu, panels, plot, status_bar, theme, widgets};
-use eframe::egui;
+use eframe::egui::{self, Rect};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
 const NARROW: f32 = 900.0;
@@ -35,6 +36,8 @@ impl Window {
             spheres,
             keeper,
             is_new,
+            presenter,
+            thumbnails,
             ..
         } = self;
         let selected = spheres.selected(model);
@@ -54,9 +57,12 @@ impl Window {
             inspector.ui(ui, facts.shown(), value, other);
             paths.ui(ui, facts.document());
         };
-        if has.has_panels {
+        if facts.model.presentation.is_some() {
+            presenter.ui(ui, &facts);
+        }
+        if facts.model.has_panels() {
             Place::Menu.begin(ui);
-            menu::ui(ui, is_narrow, &facts, commands);
+            menu::ui(ui, is_narrow, thumbnails, &facts, commands);
             status_bar::ui(ui, &facts);
             if view.slots.is_used() {
                 Place::Slots.begin(ui);
@@ -106,8 +112,16 @@ impl Window {
         }
         let before = document.camera;
         let same = identity.is_same().then(|| "identical to the bit".to_owned());
+        // Where the panel with the caption is not shown.
+        let has_caption = facts.model.presentation.is_some() || (facts.model.has_panels() && has.has_info);
+        let sight = document.stage().filter(|_| facts.has_sight && !has_caption);
+        let caption = sight.map(|stage| stage.sight.caption.to_owned());
         let divider = view.divider;
         let touch = egui::CentralPanel::default().frame(egui::Frame::new()).show(ui, |ui| {
+            if facts.model.presentation.is_some() {
+                let context = ui.ctx().clone();
+                present::enlarge(&context, ui.style_mut());
+            }
             let kept = view.slots.shown();
             let shown = match kept {
                 Some(kept) => keeper.picture.shown_mut(kept),
@@ -128,7 +142,7 @@ impl Window {
                 }),
                 paths: kept.is_none().then_some(&*paths),
                 values,
-                notices: slot_notice(&facts).into_iter().chain(inside).chain(same).collect(),
+                notices: slot_notice(&facts).into_iter().chain(caption).chain(inside).chain(same).collect(),
             };
             let (camera, divider) = (&mut document.camera, &mut view.divider);
             let handle = Handle { camera, divider, selected, crop: &mut view.crop };
@@ -137,6 +151,9 @@ impl Window {
         let touch = touch.inner;
         if view.divider != divider {
             view.is_divider_unplaced = false;
+        }
+        if facts.model.presentation.is_some() {
+            self.lens(ui, touch.hovered, touch.room);
         }
         self.inspector.hover(touch.hovered);
         if let Some(pixel) = touch.listed {
@@ -156,8 +173,10 @@ impl Window {
         }
         edits.into_iter().chain(touch.edit).for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
-            self.first_steps.ui(ui, room, &facts, &mut self.commands);
-            self.sizer.ui(ui, room, &mut self.commands);
+            if facts.model.presentation.is_none() {
+                self.first_steps.ui(ui, room, &facts, &mut self.commands);
+                self.sizer.ui(ui, room, &mut self.commands);
+            }
             self.toasts.ui(ui, room);
         }
         if let Some(text) = widgets::take_told(ui.ctx()) {
@@ -169,6 +188,33 @@ impl Window {
             let context = ui.ctx().clone();
             self.use_path(&context, purpose, path);
         }
+        if facts.model.presentation.is_some_and(|presentation| presentation.is_blank) {
+            present::blank(ui.ctx());
+        }
+    }
+
+    /// Shows the pixel under the pointer large: that of the picture which is on top there.
+    fn lens(&mut self, ui: &egui::Ui, hovered: Option<[u32; 2]>, room: Option<Rect>) {
+        let (Some(at), Some(room)) = (hovered, room) else { return };
+        let Some(pointer) = ui.ctx().input(|input| input.pointer.hover_pos()) else { return };
+        let (view, document) = (&self.model.view, self.document());
+        let picture = self.viewport.placement.rect();
+        let share = (pointer.x - picture.left()) / picture.width();
+        let is_other =
+            view.mode() == Some(Mode::Wipe) && (share < view.divider) == view.is_other_earlier(document);
+        let mean = self.inspector.pixel().filter(|pixel| pixel.at == at && !is_other).map(|pixel| pixel.mean);
+        let layer = view.show().layer();
+        let (texture, divisor) = match layer.and_then(|layer| self.layers.shown_mut(layer)) {
+            Some(layer) => (&layer.texture, layer.divisor),
+            None => {
+                let other = self.second.shown().filter(|_| is_other);
+                let Some(shown) = other.or(self.main.shown()) else { return };
+                (&shown.texture, shown.divisor)
+            }
+        };
+        let seen = Seen::around(at.map(|along| along / divisor), mean, |at| texture.colour(at));
+        let seen = Seen { at, ..seen };
+        Lens { room, picture, pointer, seen: &seen }.paint(ui);
     }
 }
 

@@ -4,15 +4,22 @@ use super::command::{Command, Group};
 use super::facts::Facts;
 use super::model::device::Device;
 use super::model::further::Further;
+use super::stage_list;
 use super::theme;
+use super::thumbnails::Thumbnails;
 use crate::output::OutputFormat;
-use crate::stages::Stage;
 use eframe::egui::{self, Align, Button, Layout, RichText, Ui};
 
 /// Width of a menu in points, narrow enough that names and keys are close together.
 pub const MENU_WIDTH: f32 = 300.0;
 
-pub fn ui(ui: &mut Ui, is_narrow: bool, facts: &Facts, commands: &mut Vec<Command>) {
+pub fn ui(
+    ui: &mut Ui,
+    is_narrow: bool,
+    thumbnails: &mut Thumbnails,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) {
     let frame = theme::panel(egui::Margin::symmetric(10, 6));
     egui::Panel::top("menu").frame(frame).show(ui, |ui| {
         let height = ui.spacing().interact_size.y + 2.0;
@@ -22,17 +29,17 @@ pub fn ui(ui: &mut Ui, is_narrow: bool, facts: &Facts, commands: &mut Vec<Comman
                 egui::containers::menu::menu_style(ui.style_mut());
                 ui.spacing_mut().item_spacing.x = 2.0;
                 ui.spacing_mut().button_padding.x = 5.0;
-                menus(ui, facts, commands);
+                menus(ui, thumbnails, facts, commands);
             });
             if !is_narrow {
                 ui.add_space(12.0);
-                stage_bar(ui, true, facts, commands);
+                stage_bar(ui, true, thumbnails, facts, commands);
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| buttons(ui, facts, commands));
             }
         });
         if is_narrow {
             ui.horizontal_wrapped(|ui| {
-                stage_bar(ui, false, facts, commands);
+                stage_bar(ui, false, thumbnails, facts, commands);
                 ui.separator();
                 devices(ui, facts, commands);
                 // Another button would begin another row.
@@ -46,14 +53,15 @@ pub fn ui(ui: &mut Ui, is_narrow: bool, facts: &Facts, commands: &mut Vec<Comman
     });
 }
 
-fn menus(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
+fn menus(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
     for group in Group::ALL {
         ui.menu_button(group.name(), |ui| {
-            ui.set_width(MENU_WIDTH);
             if group == Group::Stage {
-                stage_menu(ui, facts, commands);
+                ui.set_width(stage_list::WIDTH);
+                stage_menu(ui, thumbnails, facts, commands);
                 return;
             }
+            ui.set_width(MENU_WIDTH);
             // Low windows scroll it.
             let height = (ui.ctx().content_rect().height() - 60.0).max(100.0);
             egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
@@ -115,7 +123,9 @@ fn section(command: Command) -> u8 {
         | Command::Plot
         | Command::Packet
         | Command::NextPanel
-        | Command::FullScreen => 3,
+        | Command::FullScreen
+        | Command::Present
+        | Command::Blank => 3,
         Command::Theme(_) => 4,
         Command::LookLive | Command::Look(_) => 1,
         Command::SlotWipe | Command::SlotDifference | Command::OnlyNoise | Command::OpenSlot => 2,
@@ -126,47 +136,12 @@ fn section(command: Command) -> u8 {
     }
 }
 
-fn stage_menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
-    for command in [Command::PreviousStage, Command::NextStage, Command::Book] {
+fn stage_menu(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
+    for command in [Command::PreviousStage, Command::NextStage, Command::ShowMe, Command::Book] {
         item(ui, facts, commands, command);
     }
     ui.separator();
-    stage_list(ui, facts, commands);
-}
-
-/// All stages by chapter.
-fn stage_list(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
-    let is_new = has_just_opened(ui);
-    egui::ScrollArea::vertical().max_height(460.0).show(ui, |ui| {
-        let mut chapter = "";
-        for stage in Stage::ALL {
-            if stage.chapter() != chapter {
-                chapter = stage.chapter();
-                ui.add_space(4.0);
-                let heading = format!("{chapter}  {}", stage.chapter_title);
-                ui.label(RichText::new(heading).small().color(ui.visuals().weak_text_color()));
-            }
-            let response = item(ui, facts, commands, Command::Stage(stage));
-            // Scroll to the current stage.
-            if is_new && facts.document().stage() == Some(stage) {
-                response.scroll_to_me(Some(Align::Center));
-            }
-        }
-    });
-}
-
-/// Whether this area was hidden a moment ago. Its first passes only measure its size.
-fn has_just_opened(ui: &Ui) -> bool {
-    const PASSES: u64 = 3;
-    let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
-    ui.data_mut(|data| {
-        let (mut first, last) = data.get_temp(id).unwrap_or((now, now));
-        if now > last + PASSES {
-            first = now;
-        }
-        data.insert_temp(id, (first, now));
-        now < first + PASSES
-    })
+    stage_list::ui(ui, thumbnails, facts, commands);
 }
 
 /// Where a menu item that is on has a check mark.
@@ -210,7 +185,13 @@ pub fn line(ui: &Ui, command: Command, name: String, is_chosen: bool) -> Button<
     button.min_size(egui::vec2(ui.available_width(), 0.0))
 }
 
-fn stage_bar(ui: &mut Ui, is_wide: bool, facts: &Facts, commands: &mut Vec<Command>) {
+fn stage_bar(
+    ui: &mut Ui,
+    is_wide: bool,
+    thumbnails: &mut Thumbnails,
+    facts: &Facts,
+    commands: &mut Vec<Command>,
+) {
     ui.spacing_mut().item_spacing.x = 4.0;
     step(ui, facts, commands, Command::PreviousStage, "‹");
     let title = match facts.document().stage() {
@@ -225,12 +206,27 @@ fn stage_bar(ui: &mut Ui, is_wide: bool, facts: &Facts, commands: &mut Vec<Comma
     let sized = ui.scope(|ui| {
         ui.set_max_width(width);
         egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
-            ui.set_width(MENU_WIDTH);
-            stage_list(ui, facts, commands);
+            ui.set_width(stage_list::WIDTH);
+            stage_list::ui(ui, thumbnails, facts, commands);
         })
     });
-    sized.inner.0.on_hover_text("All stages of the book").accessible_name("Choose a stage");
+    let response =
+        sized.inner.0.on_hover_text(with_keys(ui, Command::Stages)).accessible_name("Choose a stage");
+    if ui.data_mut(|data| data.remove_temp::<bool>(asked())).is_some() {
+        egui::Popup::open_id(ui.ctx(), egui::Popup::default_response_id(&response));
+        ui.ctx().request_repaint();
+    }
     step(ui, facts, commands, Command::NextStage, "›");
+}
+
+/// Where the wish for the list of stages is left.
+fn asked() -> egui::Id {
+    egui::Id::unique("the list of stages")
+}
+
+/// Opens the list of stages in the next frame.
+pub fn open_stage_list(context: &egui::Context) {
+    context.data_mut(|data| data.insert_temp(asked(), true));
 }
 
 fn step(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Command, label: &str) {

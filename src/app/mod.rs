@@ -31,25 +31,31 @@ mod packet;
 mod panels;
 mod paths;
 mod perform;
+mod perform_present;
+mod perform_sight;
 mod perform_slots;
 mod perform_spheres;
 mod pixel_values;
 mod places;
 mod plot;
 mod prediction;
+mod present;
 mod preview;
 mod queries;
 mod receive;
 mod rescue;
 mod second;
+mod sight;
 mod sizer;
 mod slots;
 mod speed;
 mod spheres;
+mod stage_list;
 mod status_bar;
 mod surfaces;
 mod texture;
 mod theme;
+mod thumbnails;
 mod toasts;
 mod tone;
 mod tracer;
@@ -68,6 +74,7 @@ pub use model::slots::SlotNumber;
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
+use crate::files::cache_directory;
 use anyhow::{Result, anyhow, bail};
 use eframe::egui;
 use std::process::ExitCode;
@@ -91,6 +98,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let (native, options) = (native_options(renderer), options.clone());
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
             let mut window = Window::new(options, context.storage)?;
+            window.show_thumbnails(cache_directory());
             // Before the first frame, which would have egui's own style otherwise.
             window.dress(&context.egui_ctx);
             Ok(Box::new(window) as Box<dyn eframe::App>)

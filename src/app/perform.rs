@@ -3,6 +3,7 @@
 use super::command::Command;
 use super::dialogs::{Dialog, Palette, PathBox, Purpose};
 use super::facts::neighbour;
+use super::menu;
 use super::model::Model;
 use super::model::device::{self, Device};
 use super::model::first_steps::Step;
@@ -33,6 +34,9 @@ impl Window {
             log.command(&command.name());
         }
         self.changes.end_move();
+        if command != Command::Blank {
+            self.end_blank();
+        }
         if let Some(reason) = self.disabled_reason(command) {
             self.toasts.good(format!("{}: {}", command.name().trim_end_matches('…'), lower_first(&reason)));
             return;
@@ -113,6 +117,7 @@ impl Window {
             Command::ActualSize => self.viewport.placement.actual_size(),
             Command::ZoomIn => self.viewport.placement.zoom_by(1.25),
             Command::ZoomOut => self.viewport.placement.zoom_by(0.8),
+            Command::Panels if self.model.presentation.is_some() => self.toggle_captions(),
             Command::Panels => {
                 let has_panels = &mut self.model.remembered.has_panels;
                 *has_panels = !*has_panels;
@@ -178,6 +183,13 @@ impl Window {
                 context.open_url(egui::OpenUrl::new_tab(url));
             }
             Command::Companion => self.open_companion(context),
+            Command::Stages => {
+                self.model.remembered.has_panels = true;
+                menu::open_stage_list(context);
+            }
+            Command::ShowMe => self.toggle_sight(),
+            Command::Present => self.toggle_presentation(context),
+            Command::Blank => self.toggle_blank(),
             Command::Palette => self.dialogs.open(Dialog::Palette(Palette::typed(context))),
             Command::Help => self.dialogs.open(Dialog::Help),
             Command::FirstSteps => self.toggle_first_steps(),

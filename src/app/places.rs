@@ -39,7 +39,7 @@ impl Place {
     fn is_shown(self, model: &Model) -> bool {
         let remembered = &model.remembered;
         self == Place::FirstSteps && model.has_first_steps
-            || remembered.has_panels
+            || model.has_panels()
                 && match self {
                     Place::FirstSteps => false,
                     Place::Menu => true,

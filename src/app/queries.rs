@@ -123,6 +123,26 @@ impl Window {
         self.model.is_full_screen
     }
 
+    /// Whether there is a presentation.
+    pub fn is_presenting(&self) -> bool {
+        self.model.presentation.is_some()
+    }
+
+    /// Whether the screen of a presentation is black.
+    pub fn is_blank(&self) -> bool {
+        self.model.presentation.is_some_and(|presentation| presentation.is_blank)
+    }
+
+    /// Whether the stage's sight is shown.
+    pub fn has_sight(&self) -> bool {
+        self.sight.is_some()
+    }
+
+    /// How many small pictures of stages are at hand.
+    pub fn thumbnail_count(&self) -> usize {
+        self.thumbnails.count()
+    }
+
     /// The ray of the highlighted path that is explained, counted from 1, and the number of its rays.
     pub fn explained_ray(&self) -> Option<[usize; 2]> {
         self.paths.position()

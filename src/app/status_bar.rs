@@ -232,7 +232,7 @@ fn short_name(backend: &BackendInfo) -> String {
 }
 
 /// A number with spaces between groups of thousands.
-fn grouped(n: u64) -> String {
+pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {

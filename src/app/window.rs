@@ -23,12 +23,15 @@ use super::packet::Packet;
 use super::paths::Paths;
 use super::pixel_values::PixelValues;
 use super::places::Place;
+use super::present::Presenter;
 use super::second::Second;
+use super::sight::Sighted;
 use super::sizer::Sizer;
 use super::slots::Keeper;
 use super::speed::Speed;
 use super::spheres::Spheres;
 use super::surfaces::Surfaces;
+use super::thumbnails::Thumbnails;
 use super::toasts::Toasts;
 use super::tone::ToneUi;
 use super::tracer::Tracer;
@@ -74,6 +77,10 @@ pub struct Window {
     pub(super) dialogs: Dialogs,
     pub(super) toasts: Toasts,
     pub(super) first_steps: Card,
+    pub(super) presenter: Presenter,
+    pub(super) thumbnails: Thumbnails,
+    /// The sight that is shown.
+    pub(super) sight: Option<Sighted>,
     /// Commands to be carried out.
     pub(super) commands: Vec<Command>,
     /// A film to be read once a frame can be woken, and its job.
@@ -152,6 +159,7 @@ impl Window {
                 is_paused: false,
                 is_full_screen: false,
                 has_first_steps,
+                presentation: None,
             },
             main: Tracer::new().context("cannot start the render thread")?,
             second: Second::default(),
@@ -174,6 +182,9 @@ impl Window {
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
             first_steps: Card::default(),
+            presenter: Presenter::default(),
+            thumbnails: Thumbnails::default(),
+            sight: None,
             commands: Vec::new(),
             pending_resume,
             pending_save: None,
@@ -206,6 +217,12 @@ impl Window {
         &mut self.model.document
     }
 
+    /// Renders small pictures of all stages while the program has nothing better to do. They are kept in `directory`, if
+    /// there is one.
+    pub fn show_thumbnails(&mut self, directory: Option<PathBuf>) {
+        self.thumbnails.switch_on(directory);
+    }
+
     /// Queues a command for the next frame.
     pub fn send(&mut self, command: Command) {
         self.commands.push(command);
@@ -220,6 +237,7 @@ impl Window {
             can_redo: self.changes.can_redo(self.document()),
             has_pixel: self.inspector.hovered().is_some(),
             has_paths: self.paths.len() > 0,
+            has_sight: self.sight.is_some(),
             invalid: self.invalid.clone(),
             model: self.model.clone(),
         }
@@ -240,6 +258,7 @@ impl Window {
 
     /// Shows another document.
     pub(super) fn show_document(&mut self, document: Document) {
+        self.end_sight();
         self.model.document = document;
         self.model.selected = None;
         self.inspector.forget();

@@ -8,7 +8,7 @@ mod replace;
 
 pub use identity::FileIdentity;
 pub(crate) use identity::Stamp;
-pub use places::{home_directory, state_directory};
+pub use places::{cache_directory, home_directory, state_directory};
 pub use read::{InputError, open, read};
 pub(crate) use replace::NewFile;
 pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};

@@ -9,7 +9,7 @@ mod ppm;
 mod read;
 
 pub use apng::{FrameRate, check_frame, write_animation};
-pub use read::{Encoding, ReadPicture, decode_picture, read_picture};
+pub use read::{Encoding, ReadPicture, decode_picture, read_picture, read_rgb8};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 

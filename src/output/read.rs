@@ -65,6 +65,17 @@ pub fn decode_picture(
     }
 }
 
+/// Reads a PNG as bytes: its width and height in pixels, and RGB row by row from the top.
+///
+/// # Errors
+/// [`OutputError::Input`] or [`OutputError::Read`].
+pub fn read_rgb8(path: &Path) -> Result<([u32; 2], Vec<u8>), OutputError> {
+    let (file, length) = files::open(path)?;
+    let image = decode(BufReader::new(file), length, image::ImageFormat::Png)
+        .map_err(|reason| OutputError::Read { path: path.to_owned(), reason })?;
+    Ok(([image.width(), image.height()], image.into_rgb8().into_raw()))
+}
+
 fn invalid(reason: impl ToString) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, reason.to_string())
 }
@@ -127,22 +138,8 @@ fn read_whole(
     format: image::ImageFormat,
     encoding: Encoding,
 ) -> io::Result<ReadPicture> {
-    let mut reader = image::ImageReader::with_format(reader, format);
-    let mut limits = image::Limits::default();
-    limits.max_alloc = Some(8 * PIXEL_LIMIT);
-    reader.limits(limits);
-    let decoder = reader.into_decoder().map_err(invalid)?;
-    let (width, height) = decoder.dimensions();
-    pixel_count(width, height)?;
-    let ratio = if format == image::ImageFormat::Png { LARGEST_RATIO } else { 8 };
-    if decoder.total_bytes() / ratio > length {
-        let least = decoder.total_bytes() / ratio;
-        return Err(invalid(format!(
-            "it has {length} bytes, but {width}x{height} pixels need at least {least}"
-        )));
-    }
-    check_memory(width, height)?;
-    let image = image::DynamicImage::from_decoder(decoder).map_err(invalid)?;
+    let image = decode(reader, length, format)?;
+    let (width, height) = (image.width(), image.height());
     let is_deep = image.color().bytes_per_pixel() > image.color().channel_count();
     let (levels, values): (u32, Vec<u16>) = if is_deep {
         (1 << 16, image.to_rgb16().into_raw())
@@ -161,6 +158,30 @@ fn read_whole(
         .unzip();
     let [_, limit] = encoding.interval((levels - 2) as u16, levels, height as usize - 1, height as usize);
     Ok(ReadPicture { width, height, pixels, steps: Some(steps), limit })
+}
+
+/// Decodes a picture whose size its file can have.
+fn decode(
+    reader: impl BufRead + Seek,
+    length: u64,
+    format: image::ImageFormat,
+) -> io::Result<image::DynamicImage> {
+    let mut reader = image::ImageReader::with_format(reader, format);
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(8 * PIXEL_LIMIT);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(invalid)?;
+    let (width, height) = decoder.dimensions();
+    pixel_count(width, height)?;
+    let ratio = if format == image::ImageFormat::Png { LARGEST_RATIO } else { 8 };
+    if decoder.total_bytes() / ratio > length {
+        let least = decoder.total_bytes() / ratio;
+        return Err(invalid(format!(
+            "it has {length} bytes, but {width}x{height} pixels need at least {least}"
+        )));
+    }
+    check_memory(width, height)?;
+    image::DynamicImage::from_decoder(decoder).map_err(invalid)
 }
 
 impl Encoding {

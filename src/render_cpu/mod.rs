@@ -21,4 +21,4 @@ pub use crate::record::{PathRecord, RecordedHit, RecordedRay};
 pub use isa::Isa;
 pub use options::{CpuError, CpuOptions};
 pub use record::{PathRecorder, record_path};
-pub use renderer::CpuRenderer;
+pub use renderer::{CpuRenderer, give_way};

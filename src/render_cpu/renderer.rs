@@ -96,8 +96,8 @@ impl CpuRenderer {
     }
 }
 
-/// Lowers the priority of this thread. If the system refuses, the priority stays unchanged.
-fn give_way() {
+/// Lowers the priority of this thread, and of threads that it starts. If the system refuses, the priority stays unchanged.
+pub fn give_way() {
     // On Linux this changes the thread's priority, not the process's.
     #[cfg(target_os = "linux")]
     let _ = rustix::process::nice(NICENESS);

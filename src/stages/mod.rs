@@ -4,9 +4,12 @@
 //! window, the command line, the gallery and the tests find all stages in [`Stage::ALL`].
 
 mod rules;
+mod sight;
+mod sights;
 mod table;
 
 pub use rules::{BOOK_T_MIN, DielectricLaws, Diffuse, Rules, Shading, SurfaceRule, Transfer};
+pub use sight::{Means, Sight};
 
 use crate::scene::{Camera, Scene};
 use crate::suggest::{or_nearest, similar_names};
@@ -35,6 +38,8 @@ pub struct Stage {
     pub why: &'static str,
     /// Where to look in the picture, and what to see there.
     pub look_for: &'static str,
+    /// How the thing to look for is shown.
+    pub sight: Sight,
     /// The stage that the wipe compares with this one by default.
     pub pair: Option<&'static str>,
     /// The scene and settings of the picture.

@@ -1,6 +1,6 @@
 //! The stages in the book's order. Section numbers and scene values are those of v4.0.2.
 
-use super::{DielectricLaws, Diffuse, Rules, Setup, Shading, Stage, SurfaceRule, Transfer};
+use super::{DielectricLaws, Diffuse, Rules, Setup, Shading, Stage, SurfaceRule, Transfer, sights};
 use crate::scene::Camera;
 use crate::scene::builtin::{
     BOOK_CAMERA, LeftSphere, book, empty, matte_on_ground, metals, one_sphere, three_spheres,
@@ -70,6 +70,7 @@ pub(super) const STAGES: &[Stage] = &[
               At this size every value can be checked by eye.",
         look_for: "Rows come from the top, pixels from the left: red grows to the right, green grows downwards, \
                    and the first pixel is black.",
+        sight: sights::PPM_TINY,
         pair: None,
         setup: Setup { rules: IMAGE_GRADIENT, width: 16, height: 9, ..ONE_RAY },
     },
@@ -83,6 +84,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "A picture that is known in advance shows at once if rows are swapped, channels mixed up or the \
               last column is missing.",
         look_for: "The corners: black and red above, green and yellow below. Between them is no seam and no border.",
+        sight: sights::PPM_GRADIENT,
         pair: None,
         setup: Setup { rules: IMAGE_GRADIENT, ..ONE_RAY },
     },
@@ -97,6 +99,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "The gradient is the light of every later scene: it has no lamps, only this sky all around.",
         look_for: "White below, blue above. The bands of equal colour bend slightly, since what counts is the \
                    height of a unit direction and not the row.",
+        sight: sights::SKY,
         pair: None,
         setup: ONE_RAY,
     },
@@ -111,6 +114,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "The sign of the discriminant alone separates inside from outside. Everything else in a ray tracer \
               is built on this question.",
         look_for: "A flat red disk. Nothing in it tells a ball from a coin, because no ray reports where it hit.",
+        sight: sights::RED_SPHERE,
         pair: None,
         setup: Setup {
             scene: one_sphere,
@@ -128,6 +132,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "A normal decides where light goes next, so a wrong one spoils every later stage. Painted as a \
               colour it cannot hide.",
         look_for: "Red to the right, green on top, blue where the surface looks at the camera.",
+        sight: sights::NORMALS,
         pair: None,
         setup: Setup { scene: one_sphere, rules: Rules { antialiasing: false, ..NORMALS }, ..ONE_RAY },
     },
@@ -143,6 +148,7 @@ pub(super) const STAGES: &[Stage] = &[
               says which.",
         look_for: "The ball covers the ground behind it, and the ground is nearly uniform: its normal hardly \
                    turns from straight up.",
+        sight: sights::NORMALS_WORLD,
         pair: None,
         setup: Setup { scene: matte_on_ground, rules: Rules { antialiasing: false, ..NORMALS }, ..ONE_RAY },
     },
@@ -157,6 +163,7 @@ pub(super) const STAGES: &[Stage] = &[
               that the edge runs through the middle.",
         look_for: "The outline of the ball and the horizon are staircases. Zoom in on where they are almost \
                    level.",
+        sight: sights::ALIASED,
         pair: Some("antialiased"),
         setup: Setup { scene: matte_on_ground, rules: Rules { antialiasing: false, ..NORMALS }, ..ONE_RAY },
     },
@@ -171,6 +178,7 @@ pub(super) const STAGES: &[Stage] = &[
               gather light, lens and blur for nothing extra.",
         look_for: "Edge pixels take shades between the two sides, and the steps are gone without the inside \
                    becoming soft.",
+        sight: sights::ANTIALIASED,
         pair: Some("aliased"),
         setup: Setup { rules: NORMALS, samples_per_pixel: 64, max_depth: 1, ..PATHS },
     },
@@ -186,6 +194,7 @@ pub(super) const STAGES: &[Stage] = &[
               random direction at a time.",
         look_for: "The ball has shading and a soft shadow though nobody placed a lamp: the sky lights it, and \
                    the ground hides part of the sky.",
+        sight: sights::DIFFUSE,
         pair: None,
         setup: Setup { rules: HEMISPHERE, ..PATHS },
     },
@@ -201,6 +210,7 @@ pub(super) const STAGES: &[Stage] = &[
         look_for: "Almost nothing: each bounce halves the light, so little is left after four. Only the crevice where \
                    the ball meets the ground gets darker, by a step or two of 255. With a limit of two rays the \
                    underside of the ball loses half of its light.",
+        sight: sights::DIFFUSE_LIMITED,
         pair: Some("shadow-acne"),
         setup: HALF_ENERGY_LIMITED,
     },
@@ -216,6 +226,7 @@ pub(super) const STAGES: &[Stage] = &[
               same surface again at once. All the other stages know which sphere a ray starts on.",
         look_for: "Dark speckles and lines on both surfaces, which are real rounding and not added noise. Their \
                    pattern follows the spacing of the numbers.",
+        sight: sights::SHADOW_ACNE,
         pair: Some("diffuse-limited"),
         setup: Setup { rules: Rules { surface: SurfaceRule::Acne, ..HEMISPHERE }, ..HALF_ENERGY_LIMITED },
     },
@@ -232,6 +243,7 @@ pub(super) const STAGES: &[Stage] = &[
         look_for: "Shadows are heavier: where the ball covers the sky overhead, it blocks the directions that now \
                    count most. The top of the ball is brighter, its underside darker. Yet all of it is too dark: a \
                    grey of 50 % is shown without regard to how a display works.",
+        sight: sights::LAMBERTIAN_LINEAR,
         pair: Some("lambertian-gamma"),
         setup: Setup { rules: LINEAR, ..PATHS },
     },
@@ -246,6 +258,7 @@ pub(super) const STAGES: &[Stage] = &[
               linearly; only the last step changes.",
         look_for: "Not a single ray differs from the stage before, yet the ball is now the middle grey that \
                    was asked for.",
+        sight: sights::LAMBERTIAN_GAMMA,
         pair: Some("lambertian-linear"),
         setup: PATHS,
     },
@@ -261,6 +274,7 @@ pub(super) const STAGES: &[Stage] = &[
               achieves that.",
         look_for: "In the upper half the dark strips run together and the last step is huge. In the lower half \
                    the strips climb evenly.",
+        sight: sights::GAMUT,
         pair: None,
         setup: Setup {
             rules: Rules {
@@ -282,6 +296,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "A mirror needs no chance at all, so its reflection is exactly as sharp as the scene that it shows.",
         look_for: "The blue ball in both metals, the ground bent around them, and the right one's golden tint \
                    on all that it reflects.",
+        sight: sights::METAL,
         pair: Some("metal-fuzzy"),
         setup: Setup { scene: || metals(0.0, 0.0), ..PATHS },
     },
@@ -297,6 +312,7 @@ pub(super) const STAGES: &[Stage] = &[
               is a plain dial for how much.",
         look_for: "Reflections blur with distance: what nearly touches the metal stays clear. At fuzz 1 little \
                    but the colour is left.",
+        sight: sights::METAL_FUZZY,
         pair: Some("metal"),
         setup: Setup { scene: || metals(0.3, 1.0), ..PATHS },
     },
@@ -310,6 +326,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "One law at a time shows what each contributes. This one alone is not glass yet.",
         look_for: "The left ball turns the scene behind it upside down, which is right. Its rim is wrong: there, \
                    real glass would mirror its surroundings.",
+        sight: sights::GLASS_REFRACT,
         pair: Some("glass-schlick"),
         setup: Setup {
             scene: || three_spheres(LeftSphere::Glass(1.5)),
@@ -329,6 +346,7 @@ pub(super) const STAGES: &[Stage] = &[
               on this.",
         look_for: "A bright ring: the bubble's rim mirrors the sky and the ground, while its middle can be seen \
                    through.",
+        sight: sights::GLASS_TIR,
         pair: None,
         setup: Setup {
             scene: || three_spheres(LeftSphere::Glass(1.0 / 1.33)),
@@ -347,6 +365,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "A window seen from the side is a mirror. Without that share, glass looks like a hole with a \
               distorted view in it.",
         look_for: "Against refraction alone, the rim of the left ball now carries a pale reflection of the sky.",
+        sight: sights::GLASS_SCHLICK,
         pair: Some("glass-refract"),
         setup: Setup { scene: || three_spheres(LeftSphere::Glass(1.5)), ..PATHS },
     },
@@ -361,6 +380,7 @@ pub(super) const STAGES: &[Stage] = &[
               inverse number.",
         look_for: "Through the middle the scene is upright and almost straight, as through a soap bubble. Only \
                    the thick rim still bends.",
+        sight: sights::HOLLOW_GLASS,
         pair: None,
         setup: HOLLOW_GLASS,
     },
@@ -376,6 +396,7 @@ pub(super) const STAGES: &[Stage] = &[
               picture that speed and error are measured on.",
         look_for: "The remaining noise: in the bright caustic under the glass, and least in the sky, where no \
                    path depends on chance.",
+        sight: sights::THREE_SPHERES,
         pair: None,
         setup: Setup { width: 800, height: 450, samples_per_pixel: 200, max_depth: 24, ..HOLLOW_GLASS },
     },
@@ -390,6 +411,7 @@ pub(super) const STAGES: &[Stage] = &[
               makes the angle easy to check.",
         look_for: "Towards the sides the balls are stretched to eggs. That is what a flat picture of a wide \
                    angle has to look like.",
+        sight: sights::FOV_WIDE,
         pair: Some("fov-narrow"),
         setup: Setup { scene: touching_spheres, ..PATHS },
     },
@@ -403,6 +425,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "Only the angle changes: the rays of this picture are those from the middle of the wide one.",
         look_for: "The middle of the wide picture, enlarged. The perspective between the balls is unchanged, \
                    because the eye has not moved.",
+        sight: sights::FOV_NARROW,
         pair: Some("fov-wide"),
         setup: Setup {
             scene: touching_spheres,
@@ -420,6 +443,7 @@ pub(super) const STAGES: &[Stage] = &[
         why: "Three directions at right angles (right, up, back) replace the axes. The tracer itself does not \
               notice.",
         look_for: "The three balls from above and from the left; the hollow one is now nearest.",
+        sight: sights::VIEW_DISTANT,
         pair: None,
         setup: Setup { camera: SIDE_VIEW, ..HOLLOW_GLASS },
     },
@@ -432,6 +456,7 @@ pub(super) const STAGES: &[Stage] = &[
         what_is_new: "The same place with a field of view of 20 degrees.",
         why: "Position and zoom are independent: this is a longer lens, not a step closer.",
         look_for: "Everything is sharp from front to back, as only a pinhole can show it.",
+        sight: sights::VIEW_CLOSE,
         pair: Some("defocus"),
         setup: Setup { camera: CLOSE_SIDE_VIEW, ..HOLLOW_GLASS },
     },
@@ -446,6 +471,7 @@ pub(super) const STAGES: &[Stage] = &[
               behind it.",
         look_for: "The middle ball is sharp, about 3.4 away. The near glass and the far ground dissolve, the \
                    more the further they are from the plane.",
+        sight: sights::DEFOCUS,
         pair: Some("view-close"),
         setup: Setup {
             camera: Camera { defocus_angle_degrees: 10.0, focus_distance: Some(3.4), ..CLOSE_SIDE_VIEW },
@@ -464,6 +490,7 @@ pub(super) const STAGES: &[Stage] = &[
               to test every sphere.",
         look_for: "The glass ball inverts the crowd behind it, the golden one mirrors it, and the small balls \
                    in front of the focus blur gently.",
+        sight: sights::BOOK,
         pair: None,
         setup: Setup {
             scene: book,

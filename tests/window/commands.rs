@@ -124,6 +124,10 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::PreviousStage => document.stage() == before.stage().and_then(|stage| stage.previous()),
         Command::NextStage => document.stage() == before.stage().and_then(|stage| stage.next()),
         Command::Stage(stage) => document.stage() == Some(stage),
+        Command::ShowMe => window.has_sight(),
+        Command::Present => window.is_presenting(),
+        // See thumbnails.rs and present.rs.
+        Command::Stages | Command::Blank => true,
         // The next two belong to the window system; the others belong to the viewport and are tested there.
         Command::Quit | Command::Book | Command::FullScreen => true,
         Command::Fit | Command::ActualSize | Command::ZoomIn | Command::ZoomOut => true,

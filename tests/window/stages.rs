@@ -49,7 +49,7 @@ fn the_list_of_stages_opens_where_one_is() {
         harness.run_steps(10);
         let name = Command::Stage(stage).name();
         let list = harness.query_all_by_label(&name).last().unwrap().rect();
-        assert!(list.top() > 40.0 && list.bottom() < 540.0, "{list:?}");
+        assert!(list.top() > 40.0 && list.bottom() < 780.0, "{list:?}");
         harness.key_press(Key::Escape);
         harness.run_steps(10);
     }

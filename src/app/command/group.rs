@@ -51,6 +51,8 @@ impl Command {
             Command::PreviousStage
             | Command::NextStage
             | Command::Stage(_)
+            | Command::Stages
+            | Command::ShowMe
             | Command::Code
             | Command::Book
             | Command::Companion => Group::Stage,

@@ -217,6 +217,14 @@ pub enum Command {
     Companion,
     /// Open the palette, which lists all commands.
     Palette,
+    /// Show the list of stages.
+    Stages,
+    /// Show what there is to look for in the stage, or return from it.
+    ShowMe,
+    /// Begin or end a presentation.
+    Present,
+    /// Blank the screen of a presentation, or show it again.
+    Blank,
     /// Show the keys and mouse actions.
     Help,
     /// Show or close the card with the first steps.
@@ -256,6 +264,8 @@ impl Command {
             Packet,
             NextPanel,
             FullScreen,
+            Present,
+            Blank,
         ]);
         all.extend(self::Theme::ALL.map(Theme));
         all.extend([Keep, Swap, LookLive]);
@@ -266,7 +276,7 @@ impl Command {
         all.extend([Pause, GoOn, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
         all.extend(self::Sizing::ALL.map(Size));
-        all.extend([PreviousStage, NextStage, Code, Book, Companion]);
+        all.extend([PreviousStage, NextStage, Stages, ShowMe, Code, Book, Companion]);
         all.extend(crate::stages::Stage::ALL.iter().map(Stage));
         all.push(BookArithmetic);
         all.extend(shown_cases().iter().map(Extreme));

@@ -81,6 +81,10 @@ impl Command {
             Command::NextStage => "Next stage".into(),
             Command::Stage(stage) => format!("{} {}", stage.section, stage.title),
             Command::Extreme(case) => case.title().to_owned(),
+            Command::Stages => "List of stages".into(),
+            Command::ShowMe => "Show me what to look for".into(),
+            Command::Present => "Present".into(),
+            Command::Blank => "Blank the screen".into(),
             Command::Code => "Code of this stage".into(),
             Command::Book => "Read this section of the book".into(),
             Command::Companion => "Read this in the companion".into(),
@@ -198,6 +202,12 @@ impl Command {
             Command::NextStage => "One step forward in the book",
             Command::Stage(stage) => stage.what_is_new,
             Command::Extreme(case) => case.watch.map_or("An extreme scene", |watch| watch.look_for),
+            Command::Stages => "Every picture of the book to choose from, with arrow keys and Enter",
+            Command::ShowMe => {
+                "Sets the zoom, the view or the wipe in which it is seen; again, or Escape, returns"
+            }
+            Command::Present => "Full screen with large captions, for a lecture; Escape ends it",
+            Command::Blank => "Black in a presentation until a key is pressed; the period key does this too",
             Command::Code => "The lines of the tracer that are new in this stage, in Rust and WGSL",
             Command::Book => "Opens the web browser",
             Command::Companion => "Opens the page that \"weekender companion --out companion\" has written",

@@ -11,6 +11,7 @@ pub mod first_steps;
 pub mod further;
 pub mod kept;
 pub mod origin;
+pub mod presentation;
 pub mod remembered;
 pub mod show;
 pub mod sizing;
@@ -21,6 +22,7 @@ pub mod view;
 use crate::backends::BackendChoice;
 use device::DeviceOptions;
 use document::Document;
+use presentation::Presentation;
 use remembered::Remembered;
 use view::ViewState;
 
@@ -43,9 +45,16 @@ pub struct Model {
     pub is_full_screen: bool,
     /// Whether the card with the first steps is shown.
     pub has_first_steps: bool,
+    /// The presentation, if there is one.
+    pub presentation: Option<Presentation>,
 }
 
 impl Model {
+    /// Whether panels are shown. A presentation has none.
+    pub fn has_panels(&self) -> bool {
+        self.remembered.has_panels && self.presentation.is_none()
+    }
+
     /// The backend for the chosen device, lanes and threads.
     pub fn backend(&self) -> BackendChoice {
         let Remembered { device, lanes, threads, .. } = self.remembered;

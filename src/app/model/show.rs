@@ -4,6 +4,7 @@ use super::tone::Tone;
 use crate::heat::HeatScale;
 use crate::layers::Layer;
 use crate::progressive::{ReferenceMeans, View};
+use crate::stages::Means;
 use std::sync::Arc;
 
 /// A view of the film.
@@ -40,6 +41,17 @@ impl Show {
         Show::Difference,
         Show::Luminance,
     ];
+
+    /// The view that a sight needs.
+    pub fn of_means(means: Means) -> Show {
+        match means {
+            Means::Picture | Means::Wipe(_) => Show::Picture,
+            Means::Albedo => Show::Albedo,
+            Means::RaysPerPath => Show::Bounces,
+            Means::StandardError => Show::Error,
+            Means::Luminance(_) => Show::Luminance,
+        }
+    }
 
     /// The name, to follow "Show".
     pub fn name(self) -> &'static str {

@@ -22,6 +22,9 @@ const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 /// From this many screen pixels per pixel on, pixels are drawn as squares.
 const SQUARES: f32 = 8.0;
 
+/// The size of the letters for which the legend of a heat map was laid out, in points.
+const LEGEND_FONT: f32 = 11.0;
+
 /// How long a click's marker stays.
 const MARK: Duration = Duration::from_millis(1600);
 
@@ -170,13 +173,18 @@ fn paint_wipe(
 fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, scale: &HeatScale) {
     const STEPS: usize = 64;
     let font = TextStyle::Small.resolve(ui.style());
-    let row = font.size + 4.0;
-    let plate = vec2(228.0, 22.0 + 2.0 * row);
+    // The legend is as large as its letters.
+    let large = font.size / LEGEND_FONT;
+    let row = font.size + 4.0 * large;
+    let plate = vec2(228.0 * large, 22.0 * large + 2.0 * row);
     let plate = Rect::from_min_size(rect.left_bottom() + vec2(10.0, -plate.y - 10.0), plate);
     painter.rect_filled(plate, CornerRadius::same(6), ui.visuals().panel_fill.gamma_multiply(0.9));
     let weak = ui.visuals().weak_text_color();
-    painter.text(plate.min + vec2(24.0, 5.0), Align2::LEFT_TOP, scale.title, font.clone(), weak);
-    let bar = Rect::from_min_size(plate.min + vec2(24.0, 6.0 + row), vec2(plate.width() - 48.0, 9.0));
+    painter.text(plate.min + vec2(24.0, 5.0) * large, Align2::LEFT_TOP, scale.title, font.clone(), weak);
+    let bar = Rect::from_min_size(
+        plate.min + vec2(24.0 * large, 6.0 * large + row),
+        vec2(plate.width() - 48.0 * large, 9.0 * large),
+    );
     for step in 0..STEPS {
         let [red, green, blue] = colour_at((step as f64 + 0.5) / STEPS as f64);
         let left = bar.left() + bar.width() * step as f32 / STEPS as f32;

@@ -1,12 +1,14 @@
 //! The position and scale of the picture.
 
-use eframe::egui::{Pos2, Rect, Vec2};
+use eframe::egui::{Pos2, Rect, Vec2, pos2};
 
 /// The scale of the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Zoom {
     /// The largest scale at which the whole picture fits.
     Fit,
+    /// The largest scale at which this part fits; its corners are shares of the picture's width and height.
+    Part(Rect),
     /// Screen pixels per pixel of the picture.
     Times(f32),
 }
@@ -15,6 +17,7 @@ pub enum Zoom {
 const ZOOM_LIMITS: [f32; 2] = [0.05, 128.0];
 
 /// The position and scale of the picture.
+#[derive(Clone)]
 pub struct Placement {
     zoom: Zoom,
     /// Offset of the picture's middle from the middle of the viewport, in points.
@@ -52,6 +55,12 @@ impl Placement {
         self.zoom = Zoom::Fit;
     }
 
+    /// Fits a part of the picture into the viewport: left, top, right and bottom as shares of its width and height.
+    pub fn show_part(&mut self, [left, top, right, bottom]: [f64; 4]) {
+        let corner = |x: f64, y: f64| pos2(x as f32, y as f32);
+        self.zoom = Zoom::Part(Rect::from_min_max(corner(left, top), corner(right, bottom)));
+    }
+
     /// Shows one picture pixel per screen pixel.
     pub fn actual_size(&mut self) {
         self.zoom = Zoom::Times(1.0);
@@ -75,9 +84,7 @@ impl Placement {
 
     /// Moves the picture by this many points.
     pub fn pan_by(&mut self, points: Vec2) {
-        if self.zoom == Zoom::Fit {
-            self.zoom = Zoom::Times(self.times);
-        }
+        self.zoom = Zoom::Times(self.times);
         self.pan += points;
     }
 
@@ -95,6 +102,12 @@ impl Placement {
                 // A picture made for this room may leave less than a pixel of it free, which is not worth a filter.
                 let is_made_for_it = fitting >= 1.0 && (fitting - 1.0) * size.max_elem() < 1.5;
                 if is_made_for_it { 1.0 } else { fitting }
+            }
+            Zoom::Part(part) => {
+                let seen = size * part.size();
+                let times = (room.width() / seen.x).min(room.height() / seen.y) * pixels_per_point;
+                self.pan = (pos2(0.5, 0.5) - part.center()) * size * times / pixels_per_point;
+                times
             }
             Zoom::Times(times) => times,
         };
@@ -191,6 +204,23 @@ mod tests {
         let mut smaller = Placement::default();
         smaller.place(ROOM, vec2(790.0, 444.0), 1.0);
         assert!(smaller.times() > 1.01, "a smaller picture is enlarged");
+    }
+
+    #[test]
+    fn a_part_fills_the_room() {
+        let mut placement = placed();
+        placement.show_part([0.25, 0.5, 0.5, 1.0]);
+        let rect = placement.place(ROOM, SIZE, 1.0);
+        // 80x90 pixels of the picture fit 6 2/3 times into 600 points of height.
+        assert!((placement.times() - 600.0 / 90.0).abs() < 1e-3, "{}", placement.times());
+        let seen =
+            Rect::from_min_max(rect.lerp_inside(Vec2::new(0.25, 0.5)), rect.lerp_inside(Vec2::new(0.5, 1.0)));
+        assert!((seen.center() - ROOM.center()).length() < 1.5, "{seen}");
+        assert!(ROOM.expand(1.0).contains_rect(seen), "{seen}");
+        // A drag goes on from there.
+        placement.pan_by(vec2(10.0, 0.0));
+        let moved = placement.place(ROOM, SIZE, 1.0);
+        assert!((moved.min - rect.min - vec2(10.0, 0.0)).length() < 1.5);
     }
 
     #[test]

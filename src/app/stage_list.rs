@@ -1,0 +1,123 @@
+//! The list of stages: picture, section and title of each, by chapter.
+
+use super::command::Command;
+use super::facts::Facts;
+use super::theme;
+use super::thumbnails::{SIZE, Thumbnails};
+use crate::stages::Stage;
+use eframe::egui::{
+    self, Align, EventFilter, FontId, Id, Key, Modifiers, Rect, Response, RichText, Sense, TextStyle, Ui,
+    WidgetInfo, pos2, vec2,
+};
+
+/// The width of the list in points.
+pub const WIDTH: f32 = 348.0;
+
+/// Space around the picture in its row, points.
+const MARGIN: f32 = 4.0;
+
+/// Draws the list. It opens at the current stage and follows it; arrow keys go through it, and Enter chooses.
+pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
+    let here = facts.document().stage();
+    let is_new = has_just_opened(ui) || has_moved(ui, here);
+    let height = (ui.ctx().content_rect().height() - 130.0).clamp(160.0, 720.0);
+    let id = ui.scope_id();
+    let mut focused = None;
+    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        let mut chapter = "";
+        for stage in Stage::ALL {
+            if stage.chapter() != chapter {
+                chapter = stage.chapter();
+                ui.add_space(6.0);
+                let heading = format!("{chapter}  {}", stage.chapter_title);
+                ui.label(RichText::new(heading).small().color(ui.visuals().weak_text_color()));
+                ui.add_space(2.0);
+            }
+            let response = row(ui, id.with(stage.id), stage, here == Some(stage), thumbnails);
+            if is_new && here == Some(stage) {
+                response.scroll_to_me(Some(Align::Center));
+                response.request_focus();
+            }
+            if response.gained_focus() {
+                response.scroll_to_me(None);
+            }
+            if response.has_focus() {
+                focused = Some(stage);
+            }
+            if response.clicked() {
+                commands.push(Command::Stage(stage));
+                ui.close();
+            }
+        }
+    });
+    if let Some(stage) = focused {
+        let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(id.with(stage.id), filter));
+        let down = ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, Key::ArrowDown));
+        let up = ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, Key::ArrowUp));
+        let next = (stage.index() + down).saturating_sub(up).min(Stage::ALL.len() - 1);
+        if next != stage.index() {
+            ui.memory_mut(|memory| memory.request_focus(id.with(Stage::ALL[next].id)));
+        }
+    }
+}
+
+fn row(ui: &mut Ui, id: Id, stage: &'static Stage, is_here: bool, thumbnails: &mut Thumbnails) -> Response {
+    let size = vec2(ui.available_width(), SIZE.y + 2.0 * MARGIN);
+    let (_, rect) = ui.allocate_space(size);
+    let response = ui.interact(rect, id, Sense::click());
+    let name = Command::Stage(stage).name();
+    response.widget_info(|| WidgetInfo::selected(egui::Role::Button, true, is_here, &name));
+    if !ui.is_rect_visible(rect) {
+        return response;
+    }
+    let visuals = ui.visuals();
+    let (weak, text) = (visuals.weak_text_color(), visuals.strong_text_color());
+    let painter = ui.painter();
+    if is_here || response.hovered() {
+        painter.rect_filled(rect, 5.0, visuals.widgets.hovered.bg_fill);
+    }
+    if is_here {
+        let bar = Rect::from_min_max(rect.min, pos2(rect.left() + 3.0, rect.bottom()));
+        painter.rect_filled(bar, 1.5, theme::accent(ui));
+    }
+    let corner = rect.min + vec2(MARGIN + 4.0, MARGIN);
+    thumbnails.paint(ui, stage, Rect::from_min_size(corner, SIZE));
+    let left = corner.x + SIZE.x + 12.0;
+    let (small, body) = (TextStyle::Small.resolve(ui.style()), TextStyle::Body.resolve(ui.style()));
+    let painter = ui.painter();
+    let section =
+        painter.layout_no_wrap(stage.section.to_owned(), FontId::new(small.size + 1.0, small.family), weak);
+    let title = painter.layout(stage.title.to_owned(), body, text, rect.right() - left - MARGIN);
+    let height = section.size().y + title.size().y;
+    let top = pos2(left, rect.center().y - 0.5 * height);
+    let below = top + vec2(0.0, section.size().y);
+    painter.galley(top, section, weak);
+    painter.galley(below, title, text);
+    response.on_hover_text(stage.what_is_new)
+}
+
+/// Whether this area was hidden a moment ago. Its first passes only measure its size.
+fn has_just_opened(ui: &Ui) -> bool {
+    const PASSES: u64 = 3;
+    let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
+    ui.data_mut(|data| {
+        let (mut first, last) = data.get_temp(id).unwrap_or((now, now));
+        if now > last + PASSES {
+            first = now;
+        }
+        data.insert_temp(id, (first, now));
+        now < first + PASSES
+    })
+}
+
+/// Whether another stage is shown than in the last frame.
+fn has_moved(ui: &Ui, here: Option<&'static Stage>) -> bool {
+    let (id, now) = (ui.scope_id().with("stage"), here.map(Stage::index));
+    ui.data_mut(|data| {
+        let before = data.get_temp::<Option<usize>>(id);
+        data.insert_temp(id, now);
+        before.is_some_and(|before| before != now)
+    })
+}

@@ -1,0 +1,38 @@
+//! What shows the thing to look for.
+
+/// How the thing to look for in a stage is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sight {
+    /// What is shown.
+    pub means: Means,
+    /// The part of the picture that fills the window: left, top, right and bottom as shares of width and height, from the
+    /// upper left. `None` is the whole picture.
+    pub part: Option<[f64; 4]>,
+    /// What is then to be seen, in one or two short sentences.
+    pub caption: &'static str,
+}
+
+/// What makes something visible.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Means {
+    /// The picture itself.
+    Picture,
+    /// The albedo of the materials at the first hit.
+    Albedo,
+    /// The number of rays of a path.
+    RaysPerPath,
+    /// The standard error of each pixel.
+    StandardError,
+    /// Luminance in false colours, between these two powers of two.
+    Luminance([f64; 2]),
+    /// A wipe against the stage's pair, or without one against the next stage. The divider stands at this share of the
+    /// picture's width.
+    Wipe(f32),
+}
+
+impl Sight {
+    /// A sight from its parts.
+    pub(super) const fn new(means: Means, part: Option<[f64; 4]>, caption: &'static str) -> Self {
+        Sight { means, part, caption }
+    }
+}

@@ -1,0 +1,88 @@
+//! The list of stages with small pictures.
+
+use crate::common::{has_samples, open, open_sized, opened, send, until, window};
+use eframe::egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use std::path::Path;
+use weekender::app::{Command, Window};
+use weekender::stages::Stage;
+
+fn rows(harness: &Harness<'_, Window>) -> usize {
+    let is_there = |stage: &&Stage| harness.query_by_label(&name(stage)).is_some();
+    Stage::ALL.iter().filter(is_there).count()
+}
+
+fn name(stage: &Stage) -> String {
+    format!("{} {}", stage.section, stage.title)
+}
+
+fn files(directory: &Path) -> usize {
+    std::fs::read_dir(directory.join("thumbnails")).map_or(0, Iterator::count)
+}
+
+#[test]
+fn small_pictures_come_when_there_is_nothing_else_to_do_and_are_kept() {
+    let directory = tempfile::tempdir().unwrap();
+    for run in 0..2 {
+        let mut window = window("--stage metal --size 32x18 --samples 64");
+        window.show_thumbnails(Some(directory.path().to_owned()));
+        let mut harness = opened(window);
+        until(&mut harness, "all pictures", |window| window.thumbnail_count() == Stage::ALL.len());
+        assert_eq!(files(directory.path()), Stage::ALL.len(), "run {run}");
+    }
+}
+
+#[test]
+fn a_busy_program_makes_them_only_for_an_open_list() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut window = window("--stage metal --size 32x18 --samples 4000000000");
+    window.show_thumbnails(Some(directory.path().to_owned()));
+    let mut harness = opened(window);
+    until(&mut harness, "samples", has_samples(1000));
+    harness.run_steps(30);
+    assert_eq!((harness.state().thumbnail_count(), files(directory.path())), (0, 0));
+    harness.key_press(Key::O);
+    harness.run_steps(5);
+    until(&mut harness, "all pictures", |window| window.thumbnail_count() == Stage::ALL.len());
+}
+
+#[test]
+fn the_list_is_used_from_the_keyboard() {
+    let mut harness = open_sized("--stage metal --size 32x18", [1280.0, 800.0]);
+    harness.run_steps(2);
+    harness.key_press(Key::O);
+    harness.run_steps(10);
+    assert!(rows(&harness) > 8);
+    let metal = name(Stage::find("metal").unwrap());
+    let metal = harness.get_by_label(&metal);
+    assert!(metal.is_focused(), "the current stage has the focus");
+    assert_eq!(metal.accesskit_node().toggled(), Some(eframe::egui::accesskit::Toggled::True));
+    for key in [Key::ArrowDown, Key::ArrowDown, Key::ArrowDown, Key::ArrowUp] {
+        harness.key_press(key);
+        harness.run_steps(4);
+    }
+    assert_eq!(harness.state().document().stage().unwrap().id, "metal", "not chosen yet");
+    harness.key_press(Key::Enter);
+    harness.run_steps(5);
+    assert_eq!(harness.state().document().stage().unwrap().id, "glass-refract");
+    assert_eq!(rows(&harness), 0, "the list has closed");
+    // Escape closes it without a choice.
+    harness.key_press(Key::O);
+    harness.run_steps(10);
+    harness.key_press(Key::ArrowUp);
+    harness.run_steps(4);
+    harness.key_press(Key::Escape);
+    harness.run_steps(10);
+    assert_eq!((harness.state().document().stage().unwrap().id, rows(&harness)), ("glass-refract", 0));
+}
+
+#[test]
+fn the_list_brings_the_panels_back() {
+    let mut harness = open("--stage metal --size 32x18");
+    send(&mut harness, Command::Panels);
+    assert!(harness.query_by_label("Choose a stage").is_none());
+    send(&mut harness, Command::Stages);
+    harness.run_steps(10);
+    assert!(rows(&harness) > 8);
+}
