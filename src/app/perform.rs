@@ -37,6 +37,7 @@ impl Window {
             return;
         }
         match command {
+            Command::Fresh => self.start_fresh(),
             Command::Open => self.ask_path(Purpose::Open),
             Command::Recent(place) => self.open_recent(context, place),
             Command::Save(format) => self.ask_path(Purpose::Save(format)),

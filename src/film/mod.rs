@@ -79,6 +79,16 @@ impl Film {
         Ok(Film { width, height, halves, samples: SampleRanges::default(), rejected: 0 })
     }
 
+    /// A copy, if there is room for it.
+    pub fn try_copy(&self) -> Option<Film> {
+        let mut copy = Film::try_new(self.width, self.height, self.halves.len()).ok()?;
+        for (to, from) in copy.halves.iter_mut().zip(&self.halves) {
+            to.copy_from_slice(from);
+        }
+        (copy.samples, copy.rejected) = (self.samples.clone(), self.rejected);
+        Some(copy)
+    }
+
     /// Assembles a film from parts that were read from a file.
     ///
     /// # Errors

@@ -10,6 +10,7 @@ pub mod first_steps;
 pub mod further;
 pub mod origin;
 pub mod remembered;
+pub mod session;
 pub mod show;
 pub mod sizing;
 pub mod tone;
@@ -40,6 +41,8 @@ pub struct Model {
     pub is_full_screen: bool,
     /// Whether the card with the first steps is shown.
     pub has_first_steps: bool,
+    /// Whether the card with what other windows left is shown.
+    pub has_recovered: bool,
 }
 
 impl Model {
