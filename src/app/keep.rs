@@ -8,7 +8,7 @@ use super::model::view::ViewState;
 use super::window::Window;
 use crate::describe::counted;
 use crate::interrupt::Interrupt;
-use crate::progressive::Stop;
+use crate::progressive::{Phase, Stop};
 use crate::saved::{Content, Opened, SavedFilm};
 use eframe::egui::{Context, Rect, Ui, ViewportCommand};
 use std::path::Path;
@@ -89,8 +89,8 @@ impl Window {
     /// Takes what has been found and read.
     pub(super) fn receive_kept(&mut self) {
         self.model.has_recovered = self.keeping.follow();
-        while let Some(arrival) = self.keeping.resumed.take() {
-            self.take_resumed(arrival);
+        while let Some(outcome) = self.keeping.resumed.take() {
+            self.take_resumed(outcome);
         }
         while let Some(arrival) = self.keeping.arrivals.take() {
             if let Some((left, part)) = self.keeping.opening.take() {
@@ -99,27 +99,30 @@ impl Window {
         }
     }
 
-    /// Goes on with the film of the last window.
-    fn take_resumed(&mut self, arrival: Arrival) {
+    /// Goes on with the film in the window's own file.
+    fn take_resumed(&mut self, outcome: Result<SavedFilm, String>) {
         let Some(begun) = self.keeping.resuming.take() else { return };
-        let reason = match arrival.opened {
-            Some(Ok(Opened { content: Content::Film(film), .. }))
-                if self.document().has_same_film(&begun) =>
-            {
+        match outcome {
+            Ok(film) if self.document().has_same_film(&begun) => {
                 let samples = film.film.sample_count();
                 self.toasts.good(format!("Continuing with {} per pixel", counted(samples, "sample")));
                 self.go_on_kept(film);
-                return;
             }
-            Some(Err(reason)) => reason,
-            _ => "the picture was changed before the film had been read".to_owned(),
-        };
-        let aside = self.keeping.files.as_ref().map(KeptFiles::set_film_aside);
-        let place = match aside {
-            Some(Ok(path)) => format!("; the film is kept as {}", path.display()),
-            _ => String::new(),
-        };
-        self.toasts.bad(format!("The film of the last window is not continued: {reason}{place}"));
+            // Undo brings it back.
+            Ok(film) => {
+                let samples = film.film.sample_count();
+                self.keeping.autosave.holds(Some(Saved { document: begun, samples }));
+            }
+            Err(reason) => {
+                self.keeping.autosave.holds(None);
+                let aside = self.keeping.files.as_ref().map(KeptFiles::set_film_aside);
+                let place = match aside {
+                    Some(Ok(path)) => format!("; it is kept as {}", path.display()),
+                    _ => String::new(),
+                };
+                self.toasts.bad(format!("The film of this picture is not continued: {reason}{place}"));
+            }
+        }
     }
 
     /// Continues a film that is in the window's own file.
@@ -193,10 +196,11 @@ impl Window {
         if self.keeping.interrupt().is_some_and(|interrupt| interrupt.is_set()) {
             context.send_viewport_cmd(ViewportCommand::Close);
         }
-        if !self.keeping.is_time() {
+        if !self.keeping.is_time(context) {
             return;
         }
         let status = self.main.newest_status();
+        self.keeping.is_working = status.phase.is_working();
         let Keeping { files, autosave, resuming, .. } = &mut self.keeping;
         let document = &self.model.document;
         if let Some(files) = files.as_ref().filter(|_| resuming.is_none())
@@ -205,12 +209,18 @@ impl Window {
         {
             self.toasts.bad(words);
         }
+        // Undo has brought a picture back.
+        let is_behind = |saved: &Saved| {
+            saved.document.has_same_film(document) && status.samples_per_pixel < saved.samples
+        };
+        let is_settled =
+            !matches!(status.phase, Phase::Idle | Phase::Preparing) && self.main.is_full(document);
+        if is_settled && resuming.is_none() && autosave.saved().is_some_and(is_behind) {
+            self.keeping.resume(context, document);
+        }
         let shown = (document, &self.model.view);
         if let Some(reason) = self.keeping.note(context, shown, self.model.is_paused) {
             self.toasts.bad(format!("What this window shows is not kept: {reason}"));
-        }
-        if status.phase.is_working() {
-            context.request_repaint_after(Keeping::looks_apart());
         }
     }
 

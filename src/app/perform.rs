@@ -128,6 +128,7 @@ impl Window {
                 self.seconds_before = Some(0.0);
                 self.model.is_paused = false;
                 self.main.restart();
+                self.keeping.autosave.holds(None);
             }
             Command::SwitchDevice => {
                 let device = &mut self.model.remembered.device;

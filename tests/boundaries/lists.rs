@@ -290,6 +290,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "check",
             "stress",
             "files",
+            "interrupt",
         ],
     ),
 ];
@@ -357,6 +358,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("spheres", &["model", "answers", "tracer"]),
     ("panels", &["model", "command", "facts", "widgets", "spheres"]),
     ("info", &["model", "command", "facts", "widgets", "menu"]),
+    ("keeping", &["model", "answers", "tracer", "theme", "places"]),
     ("first_steps", &["model", "command", "facts", "places", "theme"]),
     (
         "viewport",
@@ -384,6 +386,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "frame_log",
             "toasts",
             "first_steps",
+            "keeping",
             "changes",
             "tracer",
             "layers",
@@ -409,7 +412,8 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("perform", &["model", "command", "facts", "theme", "places", "plot", "dialogs", "window"]),
     ("perform_spheres", &["model", "command", "navigation", "spheres", "window"]),
     ("receive", &["model", "command", "files", "window"]),
-    ("rescue", &["window"]),
+    ("keep", &["model", "keeping", "changes", "window"]),
+    ("rescue", &["model", "keeping", "window"]),
     ("queries", &["model", "command", "window"]),
     (
         "layout",
@@ -432,5 +436,15 @@ pub const WINDOW: &[(&str, &[&str])] = &[
 ];
 
 /// Files that may use the whole window.
-pub const TOP: &[&str] =
-    &["window", "queries", "perform", "perform_spheres", "receive", "rescue", "layout", "frame", "mod"];
+pub const TOP: &[&str] = &[
+    "window",
+    "queries",
+    "perform",
+    "perform_spheres",
+    "receive",
+    "keep",
+    "rescue",
+    "layout",
+    "frame",
+    "mod",
+];

@@ -17,6 +17,7 @@ mod preview;
 mod recent;
 mod remembered;
 mod resuming;
+mod session;
 mod size;
 mod snapshots;
 mod stages;

@@ -125,13 +125,15 @@ impl Autosave {
         seconds_before: Option<f64>,
     ) -> Option<String> {
         let words = self.take_outcome();
-        if self.under_way.is_some() || Instant::now() < self.due {
-            return words;
-        }
         let has_all = self.saved.as_ref().is_some_and(|saved| {
             saved.samples >= status.samples_per_pixel && saved.document.has_same_film(document)
         });
-        if has_all || !self.is_long(document, main, status, seconds_before) {
+        if self.under_way.is_some() || has_all || !self.is_long(document, main, status, seconds_before) {
+            return words;
+        }
+        let wait = self.due.saturating_duration_since(Instant::now());
+        if !wait.is_zero() {
+            context.request_repaint_after(wait);
             return words;
         }
         let (sender, outcome) = channel();

@@ -15,7 +15,7 @@ use super::model::document::Document;
 use super::model::session::{Restored, Session};
 use super::model::view::ViewState;
 use crate::interrupt::Interrupt;
-use crate::saved::{self, Opened};
+use crate::saved::{self, Opened, SavedFilm};
 use eframe::egui::Context;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -47,16 +47,18 @@ pub struct Keeping {
     pub card: Card,
     /// What is being opened.
     pub opening: Option<(Left, Part)>,
-    /// The picture whose film the last window left in order, while that is being read.
+    /// The picture whose film is being read from the window's own file.
     pub resuming: Option<Document>,
     /// Parts that were left and have been read.
     pub arrivals: Answers<Arrival>,
-    /// The film of the last window.
-    pub resumed: Answers<Arrival>,
+    /// The window's own film.
+    pub resumed: Answers<Result<SavedFilm, String>>,
     found: Answers<Vec<Left>>,
     notes: Answers<Result<(), String>>,
     noted: Option<(Document, bool)>,
     is_noting: bool,
+    /// Samples were being added at the last look. A hidden window asks for the next look only then.
+    pub is_working: bool,
     has_failed: bool,
     next_note: Instant,
     next_look: Instant,
@@ -79,6 +81,7 @@ impl Keeping {
             notes: Answers::default(),
             noted: None,
             is_noting: false,
+            is_working: false,
             has_failed: false,
             next_note: Instant::now() + NOTES_APART,
             next_look: Instant::now(),
@@ -102,19 +105,21 @@ impl Keeping {
         let directory = files.film().parent().map(PathBuf::from).unwrap_or_default();
         // Without a thread, the next window offers it.
         let _ = self.found.ask("files", context, move || Left::all_in(&directory));
-        if let Some(document) = &self.resuming {
-            let (path, document) = (files.film().to_owned(), document.clone());
-            let read = move || Arrival {
-                opened: Some(document.job(1).map_err(|error| error.to_string()).and_then(|job| {
-                    saved::check_resume(&path, &job)
-                        .and_then(|()| saved::open(&path))
-                        .map_err(|error| error.to_string())
-                })),
-                restored: None,
-            };
-            if self.resumed.ask("files", context, read).is_err() {
-                self.resuming = None;
-            }
+        if let Some(document) = self.resuming.take() {
+            self.resume(context, &document);
+        }
+    }
+
+    /// Reads the window's own film, which is of `document`.
+    pub fn resume(&mut self, context: &Context, document: &Document) {
+        let Some(files) = &self.files else { return };
+        let (path, begun) = (files.film().to_owned(), document.clone());
+        let read = move || {
+            let job = begun.job(1).map_err(|error| error.to_string())?;
+            saved::resume(&path, &job).map_err(|error| error.to_string())
+        };
+        if self.resumed.ask("files", context, read).is_ok() {
+            self.resuming = Some(document.clone());
         }
     }
 
@@ -167,18 +172,16 @@ impl Keeping {
     }
 
     /// Whether it is time to look at the film and at what the window shows.
-    pub fn is_time(&mut self) -> bool {
+    pub fn is_time(&mut self, context: &Context) -> bool {
+        if self.is_working && self.files.is_some() {
+            context.request_repaint_after(LOOKS_APART);
+        }
         let now = Instant::now();
         let is_time = self.files.is_some() && now >= self.next_look;
         if is_time {
             self.next_look = now + LOOKS_APART;
         }
         is_time
-    }
-
-    /// The longest time between two looks.
-    pub fn looks_apart() -> Duration {
-        LOOKS_APART
     }
 
     /// Whether the film that was written last is of `document`.
@@ -205,7 +208,12 @@ impl Keeping {
             Some((noted, had_film)) => noted == document && *had_film == has_film,
             None => !document.is_changed() && !has_film,
         };
-        if is_known || self.is_noting || Instant::now() < self.next_note {
+        if is_known || self.is_noting {
+            return words;
+        }
+        let wait = self.next_note.saturating_duration_since(Instant::now());
+        if !wait.is_zero() {
+            context.request_repaint_after(wait);
             return words;
         }
         let Some(files) = &self.files else { return words };

@@ -333,7 +333,7 @@ mod tests {
         let document = Document::new(Origin::new(file::load(&path).unwrap(), Source::File(path.clone())));
         let session = Session::of(&document, &ViewState::default(), false);
         // The file as it is now counts, unless the scene was changed in the window.
-        let newer = Recipe { scene: Stage::find("fuzz").unwrap().recipe().scene, ..recipe };
+        let newer = Recipe { scene: Stage::find("metal-fuzzy").unwrap().recipe().scene, ..recipe };
         std::fs::write(&path, file::to_toml(&newer)).unwrap();
         let found = session.restore().unwrap();
         assert_eq!((found.document.scene(), found.note), (&*newer.scene, None));
