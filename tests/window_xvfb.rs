@@ -336,7 +336,7 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     let stage = ["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000"];
     let often = ["--device", "cpu", "--autosave-every", "0.5s"];
     let mut first = display.weekender(home.path()).args(stage).args(often).spawn().unwrap();
-    wait_for("an autosave", || !files(&state, "exr").is_empty());
+    wait_for("an autosave", || !files(&state, "exr").is_empty() && !files(&state, "json").is_empty());
     // SIGKILL.
     first.kill().unwrap();
     first.wait().unwrap();

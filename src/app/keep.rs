@@ -1,6 +1,7 @@
 //! Keeps what the window shows for the next window, and shows it again.
 
-use super::keeping::{Arrival, Choice, Keeping, KeptFiles, Part, Saved, write_film};
+use super::changes::Changes;
+use super::keeping::{Arrival, Choice, Keeping, KeptFiles, Left, Part, Saved, write_film};
 use super::model::document::Document;
 use super::model::origin::Origin;
 use super::model::session::{Restored, Session};
@@ -45,7 +46,7 @@ impl Window {
         let restored = session.restore()?;
         let document = restored.document.clone();
         self.show_restored(restored);
-        self.changes = super::changes::Changes::new(document.clone());
+        self.changes = Changes::new(document.clone());
         if files.has_film() {
             self.keeping.resuming = Some(document);
         }
@@ -133,42 +134,43 @@ impl Window {
         self.keeping.note_soon();
     }
 
-    fn take_arrival(&mut self, arrival: Arrival, mut left: super::keeping::Left, part: Part) {
+    /// Shows a part of what another window left.
+    fn take_arrival(&mut self, arrival: Arrival, mut left: Left, part: Part) {
         let Arrival { opened, restored } = arrival;
-        let (film, fallback) = match opened {
-            Some(Ok(Opened { content: Content::Film(film), recipe, stage, .. })) => {
-                (Some(film), Some(Document::of_film(&recipe, stage)))
+        let has_own_film = self.keeping.has_film_of(self.document());
+        let film = match (opened, restored) {
+            (Some(Ok(Opened { content: Content::Film(film), recipe, stage, .. })), restored) => {
+                match restored {
+                    Some(Ok(restored)) => self.show_restored(restored),
+                    _ => {
+                        left.separate();
+                        self.show_document(Document::of_film(&recipe, stage));
+                    }
+                }
+                Some(film)
             }
-            None => (None, None),
-            Some(outcome) => {
-                let reason = outcome.err().unwrap_or_else(|| "it holds no film".to_owned());
+            (None, Some(Ok(restored))) => {
+                self.show_restored(restored);
+                None
+            }
+            (Some(Err(reason)), _) | (None, Some(Err(reason))) => {
                 self.toasts.bad(format!("Not opened: {reason}"));
                 left.mark(part, reason);
                 self.keeping.put_back(0, left);
+                return;
+            }
+            (Some(Ok(_)), _) | (None, None) => {
+                self.toasts.bad(format!("Not opened: {} holds no picture", left.path(part).display()));
                 return;
             }
         };
-        match (restored, fallback) {
-            (Some(Ok(restored)), _) => self.show_restored(restored),
-            (_, Some(document)) => {
-                left.separate();
-                self.show_document(document);
-            }
-            (restored, None) => {
-                let reason = restored.and_then(Result::err).unwrap_or_else(|| "its note is gone".to_owned());
-                self.toasts.bad(format!("Not opened: {reason}"));
-                left.mark(part, reason);
-                self.keeping.put_back(0, left);
-                return;
-            }
-        }
         self.toasts.good(format!("Opened {}", self.document().title()));
-        if let Some(film) = film {
+        if let (Some(film), Some(files)) = (film, &self.keeping.files) {
             self.keeping.autosave.finish();
-            let taken = self.keeping.files.as_ref().map(|files| files.take_film(&left.files));
-            if let Some(Err(error)) = taken {
-                // It stays where it is and is offered again.
-                self.toasts.bad(format!("{} stays: {error}", left.files.film().display()));
+            // The film of the picture that was shown until now is offered by the next window.
+            let aside = if has_own_film { files.set_film_aside().map(drop) } else { Ok(()) };
+            if let Err(error) = aside.and_then(|()| files.take_film(&left.files)) {
+                self.toasts.bad(format!("{} stays where it is: {error}", left.files.film().display()));
                 self.adopt(film);
                 return;
             }
@@ -181,8 +183,8 @@ impl Window {
 
     /// Draws the card with what was kept of other windows.
     pub(super) fn offer_kept(&mut self, ui: &Ui, room: Rect) {
-        let Keeping { card, left, opening, .. } = &mut self.keeping;
-        match card.ui(ui, room, left, opening.is_some()) {
+        let Keeping { card, left, opening, resuming, .. } = &mut self.keeping;
+        match card.ui(ui, room, left, opening.is_some() || resuming.is_some()) {
             Some(Choice::Open(index, part)) => self.keeping.open(ui.ctx(), index, part),
             Some(Choice::Discard(index, part)) => self.keeping.discard(index, part),
             Some(Choice::Later) => self.keeping.left.clear(),

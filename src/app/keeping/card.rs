@@ -66,7 +66,7 @@ impl Card {
         let mut choice = None;
         let weak = ui.visuals().weak_text_color();
         ui.label(RichText::new("Recovered pictures").heading().strong());
-        ui.add(egui::Label::new("They were kept when a window ended without being closed.").wrap());
+        ui.add(egui::Label::new("They were not saved when a window ended.").wrap());
         for (index, left) in left.iter().enumerate() {
             for row in left.rows() {
                 ui.add_space(6.0);

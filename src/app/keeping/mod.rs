@@ -211,8 +211,10 @@ impl Keeping {
         if is_known || self.is_noting {
             return words;
         }
+        // A film that has just been written needs its note: the note knows when the render ends.
+        let had_film = self.noted.as_ref().is_some_and(|(_, had_film)| *had_film);
         let wait = self.next_note.saturating_duration_since(Instant::now());
-        if !wait.is_zero() {
+        if !wait.is_zero() && had_film == has_film {
             context.request_repaint_after(wait);
             return words;
         }
