@@ -324,3 +324,25 @@ fn undo_brings_a_film_back_from_another_picture_but_not_after_a_new_start() {
     let added: u64 = harness.state().status().contributions.iter().map(|part| part.samples_per_pixel).sum();
     assert_eq!(harness.state().status().samples_per_pixel, added, "it began without samples");
 }
+
+#[test]
+fn what_is_opened_does_not_replace_the_film_of_the_picture_that_was_shown() {
+    let state = tempfile::tempdir().unwrap();
+    let mut first = window(state.path(), ENDLESS);
+    until_film(&mut first, state.path());
+    drop(first);
+    let mut next = window(state.path(), &ENDLESS.replace("glass-schlick", "metal"));
+    until(&mut next, "its own film", |_| files(state.path(), "exr").len() == 2);
+    until_offered(&mut next);
+    next.run_steps(20);
+    next.get_by_label_contains("Open 11.4").click();
+    until(&mut next, "the picture", |window| window.document().stage().unwrap().id == "glass-schlick");
+    next.run_steps(3);
+    assert_eq!(files(state.path(), "exr").len(), 2);
+    close(next);
+    let mut last = window(state.path(), "--fresh");
+    until_offered(&mut last);
+    let metal = weekender::stages::Stage::find("metal").unwrap();
+    let name = format!("Open {} {}", metal.section, metal.title);
+    assert!(last.query_all_by_label_contains(&name).next().is_some(), "{name}");
+}
