@@ -105,10 +105,18 @@ impl Interrupt {
     /// # Errors
     /// If the system refuses.
     pub fn install() -> Result<Self> {
+        Self::install_with(|| {})
+    }
+
+    /// Like [`Interrupt::install`]; `wake` is called, on another thread, when a signal has arrived.
+    ///
+    /// # Errors
+    /// If the system refuses.
+    pub fn install_with(wake: impl Fn() + Send + 'static) -> Result<Self> {
         let shared = Arc::new(Shared::default());
         let seen = Arc::clone(&shared);
         ctrlc::set_handler(move || match seen.signalled(Instant::now()) {
-            Answer::Nothing => {}
+            Answer::Nothing => wake(),
             Answer::Say(words) => console::note(&words),
             Answer::Exit => {
                 console::note("ended at once; unsaved results are lost");

@@ -60,6 +60,7 @@ impl Display {
         let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
         command.env("DISPLAY", &self.name).env_remove("WAYLAND_DISPLAY");
         command.env("HOME", home).env("XDG_DATA_HOME", home.join("data")).current_dir(home);
+        command.env("XDG_STATE_HOME", home.join("state"));
         command
     }
 
@@ -296,17 +297,88 @@ fn a_panic_of_the_window_keeps_its_film_and_leaves_a_report() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{said}");
-    let files: Vec<PathBuf> =
-        std::fs::read_dir(home.path()).unwrap().map(|entry| entry.unwrap().path()).collect();
-    let ending = |ending: &str| {
-        let found = files.iter().find(|path| path.extension().is_some_and(|own| own == ending));
-        found.unwrap_or_else(|| panic!("no {ending} in {files:?}: {said}"))
+    let one = |directory: &Path, ending: &str| match files(directory, ending).as_slice() {
+        [one] => one.clone(),
+        all => panic!("{ending}: {all:?}: {said}"),
     };
-    let film = ending("exr");
-    assert!(checkpoint::load(film).unwrap().film.sample_count() >= 16);
+    // Where the next window looks for it.
+    let film = one(&kept(home.path()), "exr");
+    assert!(checkpoint::load(&film).unwrap().film.sample_count() >= 16);
     assert!(said.contains(&format!("continue with --resume {}", film.display())), "{said}");
-    let report = std::fs::read_to_string(ending("txt")).unwrap();
+    let report = std::fs::read_to_string(one(home.path(), "txt")).unwrap();
     assert!(report.contains("injected fault") && report.contains("--stage glass-refract"), "{report}");
+}
+
+/// Where windows keep their films.
+fn kept(home: &Path) -> PathBuf {
+    home.join("state/weekender/windows")
+}
+
+/// The files of this ending in a directory, if that exists.
+fn files(directory: &Path, ending: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(directory).into_iter().flatten().map(|entry| entry.unwrap().path());
+    entries.filter(|path| path.extension().is_some_and(|own| own == ending)).collect()
+}
+
+fn wait_for(what: &str, is_so: impl Fn() -> bool) {
+    let begin = Instant::now();
+    while !is_so() {
+        assert!(begin.elapsed() < PATIENCE, "never: {what}");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+#[test]
+fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
+    let Some(display) = Display::start() else { return };
+    let home = tempfile::tempdir().unwrap();
+    let state = kept(home.path());
+    let stage = ["--stage", "glass-refract", "--size", "240x135", "--samples", "4000000000"];
+    let often = ["--device", "cpu", "--autosave-every", "0.5s"];
+    let mut first = display.weekender(home.path()).args(stage).args(often).spawn().unwrap();
+    wait_for("an autosave", || !files(&state, "exr").is_empty() && !files(&state, "json").is_empty());
+    // SIGKILL.
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let [film] = files(&state, "exr").try_into().unwrap();
+    let samples = checkpoint::load(&film).unwrap().film.sample_count();
+
+    // The next window offers it, and opens it when asked: F6 goes to the first control of the card.
+    let mut second = display.weekender(home.path()).args(often).spawn().unwrap();
+    let id = display.wait_for_window(&mut second);
+    display.xdotool(&["windowfocus", "--sync", &id]);
+    std::thread::sleep(Duration::from_secs(2));
+    assert!(film.exists(), "it was opened unasked");
+    display.key("F6");
+    display.key("space");
+    wait_for("the film to be opened", || !film.exists());
+    std::thread::sleep(Duration::from_secs(2));
+    let ended = Command::new("kill").arg(second.id().to_string()).status().unwrap();
+    assert!(ended.success());
+    assert_eq!(wait_for_end(&mut second).code(), Some(143));
+
+    // The third one goes on without being asked.
+    let session = state.join("session.exr");
+    let before = checkpoint::load(&session).unwrap().film.sample_count();
+    assert!(before > samples, "{before} after {samples}");
+    let mut third = display.weekender(home.path()).args(often).spawn().unwrap();
+    display.wait_for_window(&mut third);
+    wait_for("the session to be taken", || !session.exists());
+    std::thread::sleep(Duration::from_secs(3));
+    assert!(Command::new("kill").arg(third.id().to_string()).status().unwrap().success());
+    assert_eq!(wait_for_end(&mut third).code(), Some(143));
+    let film = checkpoint::load(&session).unwrap().film;
+    assert!(film.sample_count() > before, "{} after {before}", film.sample_count());
+    assert_eq!(files(&state, "exr"), [session], "nothing else is left");
+
+    // It has the bits of an uninterrupted render.
+    let count = film.sample_count().to_string();
+    let whole = home.path().join("whole.exr");
+    let batch =
+        [&stage[..4], &["--batch", "--device", "cpu", "--samples", &count, "--out", "whole.exr"]].concat();
+    let output = display.weekender(home.path()).args(batch).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(film == checkpoint::load(&whole).unwrap().film);
 }
 
 #[test]

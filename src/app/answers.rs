@@ -38,6 +38,11 @@ impl<T: Send + 'static> Answers<T> {
         Ok(())
     }
 
+    /// Waits for an answer that has been asked for.
+    pub fn wait(&self) -> Option<T> {
+        self.receiver.recv().ok()
+    }
+
     /// The oldest answer that has not been taken yet.
     pub fn take(&self) -> Option<T> {
         self.receiver.try_recv().ok()

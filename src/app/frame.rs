@@ -27,11 +27,13 @@ impl Window {
         self.fit_on_screen(&context);
         self.poll(&context);
         self.receive(&context);
+        self.receive_kept();
         self.take_input(&context);
         self.perform_all(&context);
         self.layout(ui);
         self.perform_all(&context);
         self.follow(&context);
+        self.keep(&context);
         theme::paint_focus(&context);
         self.had_focus = context.memory(|memory| memory.focused().is_some())
             || egui::Popup::is_any_open(&context)
@@ -48,6 +50,7 @@ impl Window {
         theme::choose(context, self.model.remembered.theme);
         context.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
         self.main.wake(context);
+        self.keeping.begin(context);
         if let Some((path, job)) = self.pending_resume.take() {
             self.files.resume(context, path, job, &self.model.document);
         }
@@ -93,7 +96,8 @@ impl Window {
         for path in input::dropped(context) {
             self.files.open(context, path);
         }
-        let Model { view, selected, is_full_screen, has_first_steps, presentation, .. } = &self.model;
+        let Model { view, selected, is_full_screen, has_first_steps, has_recovered, presentation, .. } =
+            &self.model;
         let keyboard = Keyboard {
             had_focus: self.had_focus,
             is_other_view: view.mode().is_some() || view.show() != Show::Picture,
@@ -101,7 +105,7 @@ impl Window {
             is_at_slot: view.slots.looked().is_some(),
             has_selection: selected.is_some(),
             is_full_screen: *is_full_screen,
-            has_first_steps: *has_first_steps,
+            has_first_steps: *has_first_steps && !has_recovered,
             has_sight: self.sight.is_some(),
             is_presenting: presentation.is_some(),
         };
@@ -154,6 +158,10 @@ impl Window {
 
     /// Makes the picture as large as the viewport, unless that would throw away too much.
     fn follow_size(&mut self, context: &egui::Context) {
+        // A film that is about to go on has its size.
+        if self.pending_film.is_some() || self.keeping.resuming.is_some() {
+            return;
+        }
         let (main, view) = (&self.main, &self.model.view);
         let present = Present {
             is_documents: main.is_of(&self.model.document),
@@ -261,8 +269,17 @@ impl eframe::App for Window {
         self.frame_times.ui = begin.elapsed();
     }
 
+    /// Also called while the window is hidden.
+    fn logic(&mut self, context: &egui::Context, _: &mut eframe::Frame) {
+        self.keep(context);
+    }
+
     fn save(&mut self, storage: &mut dyn eframe::Storage) {
         self.remember(storage);
+    }
+
+    fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
+        self.end_in_order();
     }
 
     fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {

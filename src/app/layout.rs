@@ -174,7 +174,11 @@ impl Window {
         edits.into_iter().chain(touch.edit).for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
             if facts.model.presentation.is_none() {
-                self.first_steps.ui(ui, room, &facts, &mut self.commands);
+                if facts.model.has_recovered {
+                    self.offer_kept(ui, room);
+                } else {
+                    self.first_steps.ui(ui, room, &facts, &mut self.commands);
+                }
                 self.sizer.ui(ui, room, &mut self.commands);
             }
             self.toasts.ui(ui, room);

@@ -21,6 +21,8 @@ mod identity;
 mod info;
 mod input;
 mod inspector;
+mod keep;
+mod keeping;
 mod kept;
 mod layers;
 mod layout;
@@ -74,10 +76,12 @@ pub use model::slots::SlotNumber;
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
-use crate::files::cache_directory;
+use crate::files::{cache_directory, state_directory};
+use crate::interrupt::Interrupt;
 use anyhow::{Result, anyhow, bail};
 use eframe::egui;
 use std::process::ExitCode;
+use std::sync::{Arc, OnceLock};
 
 /// What the user can do when no window can be opened.
 const REMEDY: &str = "add --batch to render to a file without a window, for example: \
@@ -93,17 +97,32 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); {REMEDY}"
         );
     }
+    let options =
+        WindowOptions { state_directory: state_directory().map(|state| state.join("windows")), ..options };
+    let drawn = Arc::new(OnceLock::<egui::Context>::new());
+    let waker = Arc::clone(&drawn);
+    // SIGTERM, as at the end of a desktop session, closes the window in order.
+    let interrupt = Arc::new(Interrupt::install_with(move || {
+        if let Some(context) = waker.get() {
+            context.request_repaint();
+        }
+    })?);
     let mut failures = Vec::new();
     for &renderer in renderers(options.draw_with) {
         let (native, options) = (native_options(renderer), options.clone());
+        let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
             let mut window = Window::new(options, context.storage)?;
             window.show_thumbnails(cache_directory());
             // Before the first frame, which would have egui's own style otherwise.
             window.dress(&context.egui_ctx);
+            window.heed(heeded);
+            // A second renderer has a context of its own, but the first one never drew.
+            let _ = drawn.set(context.egui_ctx.clone());
             Ok(Box::new(window) as Box<dyn eframe::App>)
         });
         match eframe::run_native("weekender", native, create) {
+            Ok(()) if interrupt.is_set() => return Ok(interrupt.exit_code()),
             Ok(()) => return Ok(ExitCode::SUCCESS),
             // The window system's own message names places in its source code, and another renderer would not help.
             Err(eframe::Error::WinitEventLoop(_)) => {

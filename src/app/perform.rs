@@ -42,6 +42,7 @@ impl Window {
             return;
         }
         match command {
+            Command::Fresh => self.start_fresh(),
             Command::Open => self.ask_path(Purpose::Open),
             Command::Recent(place) => self.open_recent(context, place),
             // While a part of the picture is marked, it is what is saved.
@@ -152,6 +153,7 @@ impl Window {
                 self.seconds_before = Some(0.0);
                 self.model.is_paused = false;
                 self.main.restart();
+                self.keeping.autosave.holds(None);
             }
             Command::SwitchDevice => {
                 let device = &mut self.model.remembered.device;

@@ -6,6 +6,8 @@ use eframe::egui::{self, Context, FocusDirection, Id, Rect, Sense, Ui};
 /// A part of the window with controls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Place {
+    /// The card with what other windows left.
+    Recovered,
     /// The card with the first steps.
     FirstSteps,
     /// The top bar.
@@ -25,7 +27,8 @@ pub enum Place {
 }
 
 impl Place {
-    const ALL: [Place; 8] = [
+    const ALL: [Place; 9] = [
+        Place::Recovered,
         Place::FirstSteps,
         Place::Menu,
         Place::Controls,
@@ -38,10 +41,11 @@ impl Place {
 
     fn is_shown(self, model: &Model) -> bool {
         let remembered = &model.remembered;
-        self == Place::FirstSteps && model.has_first_steps
+        self == Place::Recovered && model.has_recovered
+            || self == Place::FirstSteps && model.has_first_steps && !model.has_recovered
             || model.has_panels()
                 && match self {
-                    Place::FirstSteps => false,
+                    Place::Recovered | Place::FirstSteps => false,
                     Place::Menu => true,
                     Place::Controls => remembered.has_controls,
                     Place::Info => remembered.has_info,

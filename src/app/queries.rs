@@ -73,6 +73,11 @@ impl Window {
         self.performed
     }
 
+    /// Whether something is offered that another window left.
+    pub fn has_offer(&self) -> bool {
+        self.model.has_recovered
+    }
+
     /// Whether a dialog is open.
     pub fn has_dialog(&self) -> bool {
         self.dialogs.is_open()

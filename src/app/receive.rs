@@ -80,13 +80,10 @@ impl Window {
         let Opened { path, recipe, stage, content, .. } = opened;
         self.remember_directory(&path);
         self.model.remembered.note_recent(&path);
-        let origin = match content {
-            Content::Scene => Origin::new(recipe.clone(), Source::File(path.clone())),
-            _ => Origin::guess(&recipe, stage),
+        let mut document = match content {
+            Content::Scene => Document::new(Origin::new(recipe, Source::File(path.clone()))),
+            _ => Document::of_film(&recipe, stage),
         };
-        let mut document = Document::new(origin);
-        document.camera = recipe.camera;
-        document.settings = recipe.settings;
         document.has_own_size = true;
         if let Content::Picture { samples: Some(samples) } = content {
             // A picture is restored with its stop condition; a film continues.

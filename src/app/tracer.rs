@@ -127,6 +127,11 @@ impl Tracer {
         &self.status
     }
 
+    /// The status as of now.
+    pub fn newest_status(&self) -> Status {
+        self.progressive.status()
+    }
+
     /// The newest picture.
     pub fn shown_mut(&mut self) -> Option<&mut Shown> {
         self.shown.as_mut()

@@ -11,6 +11,7 @@ use super::first_steps::Card;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::identity::Identity;
 use super::inspector::Inspector;
+use super::keeping::Keeping;
 use super::layers::Layers;
 use super::model::Model;
 use super::model::crop::Crop;
@@ -81,6 +82,7 @@ pub struct Window {
     pub(super) thumbnails: Thumbnails,
     /// The sight that is shown.
     pub(super) sight: Option<Sighted>,
+    pub(super) keeping: Keeping,
     /// Commands to be carried out.
     pub(super) commands: Vec<Command>,
     /// A film to be read once a frame can be woken, and its job.
@@ -148,7 +150,7 @@ impl Window {
             Some(path) => Some((path, options.recipe.job()?)),
             None => None,
         };
-        Ok(Window {
+        let mut window = Window {
             changes: Changes::new(document.clone()),
             model: Model {
                 document,
@@ -160,6 +162,7 @@ impl Window {
                 is_full_screen: false,
                 has_first_steps,
                 presentation: None,
+                has_recovered: false,
             },
             main: Tracer::new().context("cannot start the render thread")?,
             second: Second::default(),
@@ -185,6 +188,7 @@ impl Window {
             presenter: Presenter::default(),
             thumbnails: Thumbnails::default(),
             sight: None,
+            keeping: Keeping::new(options.autosave_every),
             commands: Vec::new(),
             pending_resume,
             pending_save: None,
@@ -204,7 +208,12 @@ impl Window {
             is_new: is_first && has_first_steps,
             frames_to_fit: FRAMES_TO_FIT,
             crashes_at: options.crashes_at,
-        })
+        };
+        if let Some(directory) = &options.state_directory {
+            let may_restore = !options.is_picture_given && !options.is_fresh;
+            window.begin_keeping(directory, may_restore, options.stop);
+        }
+        Ok(window)
     }
 
     /// The document that is shown.
@@ -286,13 +295,7 @@ fn document_of(options: &WindowOptions) -> Document {
         (_, None, _) if options.resume.is_some() => Origin::guess(unchanged, *stage),
         (Some(stage), _, _) => Origin::of_stage(stage),
         (None, Some(path), _) => Origin::new(unchanged.clone(), Source::File(path.clone())),
-        (None, None, Some(builtin)) => {
-            // A built-in scene that is also a stage is opened as that stage.
-            match Stage::find(&builtin.name) {
-                Ok(stage) if stage.recipe().scene == builtin.scene => Origin::of_stage(stage),
-                _ => Origin::new(builtin, Source::Builtin),
-            }
-        }
+        (None, None, Some(builtin)) => Origin::of_builtin(builtin),
         (None, None, None) => Origin::guess(unchanged, None),
     };
     let mut document = Document::new(origin);

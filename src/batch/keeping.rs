@@ -49,7 +49,7 @@ struct Writer {
 
 impl Writer {
     fn write(&self, film: &Film, status: &Status) {
-        let status = status_of(film, status, self.held_before);
+        let status = status.of_film(film, self.held_before);
         let description = described(&self.render, film, &status, self.seconds_before);
         let outcome = match self.place.lock().save(film, &description, &same_job) {
             Ok(saved) => {
@@ -111,7 +111,7 @@ impl Keeper {
             (self.is_under_way, self.asked) = (true, status.samples_per_pixel);
             let (writer, snapshots, status) =
                 (Arc::clone(&self.writer), self.snapshots.clone(), status.clone());
-            progressive.inspect(move |film| match (copy(film), snapshots) {
+            progressive.inspect(move |film| match (film.try_clone().ok(), snapshots) {
                 (Some(film), Some(snapshots)) => {
                     // The writer lives as long as the render.
                     let _ = snapshots.send(Snapshot { film, status });
@@ -150,43 +150,13 @@ impl Keeper {
     }
 }
 
-/// A copy of the film, if there is room for it.
-fn copy(film: &Film) -> Option<Film> {
-    let mut copy = Film::try_new(film.width(), film.height(), film.halves().len()).ok()?;
-    for (to, from) in copy.halves_mut().iter_mut().zip(film.halves()) {
-        to.copy_from_slice(from);
-    }
-    let mut rejected = film.rejected();
-    for range in film.samples().iter() {
-        copy.record(range, std::mem::take(&mut rejected)).ok()?;
-    }
-    Some(copy)
-}
-
-/// The status that belongs to the film: it was read some passes before or after the copy was made.
-fn status_of(film: &Film, status: &Status, held_before: u64) -> Status {
-    let mut status = status.clone();
-    let added = film.sample_count().saturating_sub(held_before);
-    let told: u64 = status.contributions.iter().map(|part| part.samples_per_pixel).sum();
-    if told > 0 && told != added {
-        status.trace = status.trace.mul_f64(added as f64 / told as f64);
-        let at_work =
-            status.contributions.iter().position(|part| Some(&part.backend) == status.backend.as_ref());
-        let at_work = at_work.unwrap_or(status.contributions.len() - 1);
-        let count = &mut status.contributions[at_work].samples_per_pixel;
-        *count = (*count + added).saturating_sub(told);
-    }
-    status
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::batch::files::Places;
     use crate::batch::tests::options;
-    use crate::film::{PixelSum, checkpoint};
-    use crate::progressive::{Contribution, Plan, RenderRequest};
-    use crate::render::BackendInfo;
+    use crate::film::checkpoint;
+    use crate::progressive::{Plan, RenderRequest};
 
     #[test]
     fn the_film_is_on_disk_while_the_render_goes_on() {
@@ -215,31 +185,5 @@ mod tests {
         drop(progressive);
         keeper.finish();
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn a_copy_is_the_film() {
-        let mut film = Film::new(3, 2, 2);
-        film.halves_mut()[1][4] = PixelSum([1, 2, 3]);
-        film.record(0..4, 1).unwrap();
-        film.record(8..10, 2).unwrap();
-        assert!(copy(&film).unwrap() == film);
-    }
-
-    #[test]
-    fn the_status_fits_the_film() {
-        let info = |lanes| BackendInfo { name: "cpu", device: String::new(), lanes, threads: 1 };
-        let part = |lanes, samples_per_pixel| Contribution { backend: info(lanes), samples_per_pixel };
-        let status = Status {
-            backend: Some(info(8)),
-            contributions: vec![part(8, 30), part(4, 10)],
-            trace: Duration::from_secs(40),
-            ..Status::default()
-        };
-        let mut film = Film::new(1, 1, 1);
-        film.record(0..70, 0).unwrap();
-        let fitted = status_of(&film, &status, 20);
-        assert_eq!(fitted.contributions, [part(8, 40), part(4, 10)]);
-        assert_eq!(fitted.trace, Duration::from_secs(50));
     }
 }

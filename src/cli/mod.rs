@@ -34,6 +34,7 @@ pub use raw::{DrawWith, ProgressChoice};
 pub use render::CHECKPOINT_INTERVAL;
 pub use render::{BatchOptions, RenderOptions, SaveSceneOptions, WindowOptions};
 pub use report::{ReferenceChoice, ReportBackend, ReportOptions};
+pub use sources::DEFAULT_SCENE;
 pub use stress::StressOptions;
 pub use values::JsonTarget;
 

@@ -89,6 +89,14 @@ pub(super) struct RawRender {
     #[arg(long, value_enum, default_value = "auto", conflicts_with = "batch")]
     pub draw_with: DrawWith,
 
+    /// Open the window with its usual first picture instead of what was shown last
+    #[arg(long, conflicts_with = "batch")]
+    pub fresh: bool,
+
+    /// After how much tracing the window saves the film by itself, and how often, 0.1s to 30d [default: 60s]
+    #[arg(long, value_name = "DURATION", value_parser = parse_duration, allow_hyphen_values = true, hide = true)]
+    pub autosave_every: Option<Duration>,
+
     /// Write the times of the window's frames to a file
     #[arg(long, value_name = "FILE", hide = true)]
     pub frame_log: Option<PathBuf>,

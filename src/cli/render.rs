@@ -63,6 +63,12 @@ pub struct WindowOptions {
     pub stop: Option<Stop>,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// Whether to open the usual first picture instead of what was shown last.
+    pub is_fresh: bool,
+    /// After how much tracing the film is saved, and how often.
+    pub autosave_every: Duration,
+    /// The directory in which the window keeps what it shows; without one, it keeps nothing.
+    pub state_directory: Option<PathBuf>,
     /// What draws the window.
     pub draw_with: DrawWith,
     /// File for the times of the window's frames.
@@ -200,6 +206,9 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         is_picture_given: raw.picture.is_given() || raw.resume.is_some() || raw.estimate_error.is_some(),
         is_device_given: backend::is_given(&raw.backend),
         resume: raw.resume.clone(),
+        is_fresh: raw.fresh,
+        autosave_every: raw.autosave_every.unwrap_or(CHECKPOINT_INTERVAL),
+        state_directory: None,
         draw_with: raw.draw_with,
         frame_log: raw.frame_log.clone(),
         crashes_at: raw.backend.simulate_crash,

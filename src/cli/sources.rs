@@ -8,7 +8,7 @@ use crate::stages::Stage;
 use std::path::Path;
 
 /// The scene that is rendered if none is named.
-const DEFAULT_SCENE: &str = "three-spheres";
+pub const DEFAULT_SCENE: &str = "three-spheres";
 
 /// A recipe and, if it comes from one, its stage.
 #[derive(Clone, Debug)]

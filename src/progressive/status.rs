@@ -1,7 +1,7 @@
 //! The status of a progressive render.
 
 use super::EndReason;
-use crate::film::ErrorEstimate;
+use crate::film::{ErrorEstimate, Film};
 use crate::render::{BackendInfo, Stats};
 use serde::Serialize;
 use std::time::Duration;
@@ -122,6 +122,28 @@ impl Status {
         (offered_lanes > 0).then(|| busy_lanes as f64 / offered_lanes as f64)
     }
 
+    /// The status that belongs to `film`: this one was read some passes before or after. `held_before` is the number of
+    /// samples per pixel that the film held when the render started.
+    pub fn of_film(&self, film: &Film, held_before: u64) -> Status {
+        let mut status = self.clone();
+        let added = film.sample_count().saturating_sub(held_before);
+        let told = status.added();
+        if told > 0 && told != added {
+            status.trace = status.trace.mul_f64(added as f64 / told as f64);
+            let at_work =
+                status.contributions.iter().position(|part| Some(&part.backend) == status.backend.as_ref());
+            let at_work = at_work.unwrap_or(status.contributions.len() - 1);
+            let count = &mut status.contributions[at_work].samples_per_pixel;
+            *count = (*count + added).saturating_sub(told);
+        }
+        status
+    }
+
+    /// Samples per pixel that were added since the start.
+    pub fn added(&self) -> u64 {
+        self.contributions.iter().map(|part| part.samples_per_pixel).sum()
+    }
+
     pub(super) fn say(&mut self, messages: Vec<String>) {
         for message in messages {
             if !self.messages.contains(&message) {
@@ -170,5 +192,22 @@ mod tests {
         let found: Vec<_> =
             status.contributions.iter().map(|part| (part.backend.lanes, part.samples_per_pixel)).collect();
         assert_eq!(found, [(8, 20), (1, 2)]);
+    }
+
+    #[test]
+    fn the_status_fits_the_film() {
+        let info = |lanes| BackendInfo { name: "cpu", device: String::new(), lanes, threads: 1 };
+        let part = |lanes, samples_per_pixel| Contribution { backend: info(lanes), samples_per_pixel };
+        let status = Status {
+            backend: Some(info(8)),
+            contributions: vec![part(8, 30), part(4, 10)],
+            trace: Duration::from_secs(40),
+            ..Status::default()
+        };
+        let mut film = Film::new(1, 1, 1);
+        film.record(0..70, 0).unwrap();
+        let fitted = status.of_film(&film, 20);
+        assert_eq!(fitted.contributions, [part(8, 40), part(4, 10)]);
+        assert_eq!(fitted.trace, Duration::from_secs(50));
     }
 }

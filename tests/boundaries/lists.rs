@@ -291,6 +291,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "compare",
             "stress",
             "files",
+            "interrupt",
         ],
     ),
 ];
@@ -362,6 +363,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("spheres", &["model", "answers", "tracer"]),
     ("panels", &["model", "command", "facts", "widgets", "spheres"]),
     ("info", &["model", "command", "facts", "widgets", "menu"]),
+    ("keeping", &["model", "answers", "tracer", "theme", "places"]),
     ("first_steps", &["model", "command", "facts", "places", "theme"]),
     ("present", &["command", "facts", "theme", "widgets", "status_bar"]),
     (
@@ -391,6 +393,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "frame_log",
             "toasts",
             "first_steps",
+            "keeping",
             "changes",
             "tracer",
             "layers",
@@ -423,7 +426,8 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("perform_spheres", &["model", "command", "navigation", "spheres", "window"]),
     ("perform_slots", &["model", "command", "dialogs", "kept", "slots", "window"]),
     ("receive", &["model", "command", "files", "window"]),
-    ("rescue", &["window"]),
+    ("keep", &["model", "keeping", "changes", "window"]),
+    ("rescue", &["model", "keeping", "window"]),
     ("queries", &["model", "command", "tracer", "window"]),
     (
         "layout",
@@ -457,6 +461,7 @@ pub const TOP: &[&str] = &[
     "perform_sight",
     "perform_spheres",
     "receive",
+    "keep",
     "rescue",
     "layout",
     "frame",

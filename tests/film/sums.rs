@@ -20,6 +20,12 @@ fn ten_million_samples_of_a_constant_have_its_mean() {
 }
 
 #[test]
+fn a_copy_is_the_film() {
+    let film = noisy_film(3, 2, 2, &[0..4, 8..10]);
+    assert_eq!(film.try_clone().unwrap(), film);
+}
+
+#[test]
 fn the_order_of_samples_does_not_matter() {
     let forward = noisy_film(5, 3, 2, &[0..100, 100..128]);
     let backward = noisy_film(5, 3, 2, &[100..128, 7..100, 0..7]);

@@ -86,6 +86,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
     let remembered = window.remembered_mut().clone();
     let document = window.document();
     match command {
+        Command::Fresh => document.name() == "three-spheres",
         Command::Open
         | Command::Save(_)
         | Command::SaveScene

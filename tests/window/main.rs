@@ -20,6 +20,7 @@ mod preview;
 mod recent;
 mod remembered;
 mod resuming;
+mod session;
 mod sights;
 mod size;
 mod slots;

@@ -6,7 +6,8 @@ impl Command {
     /// The menu that contains the command.
     pub fn group(self) -> Group {
         match self {
-            Command::Open
+            Command::Fresh
+            | Command::Open
             | Command::Recent(_)
             | Command::Save(_)
             | Command::SaveScene

@@ -69,6 +69,8 @@ impl Group {
 /// A command that the user can give.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
+    /// Show the usual first picture.
+    Fresh,
     /// Open a picture, film or scene.
     Open,
     /// Open this file of those opened or saved last, counted from 0.
@@ -235,7 +237,8 @@ impl Command {
     /// All commands, in the order of the menus, except those for the files opened or saved last.
     pub fn all() -> Vec<Command> {
         use Command::*;
-        let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
+        let mut all =
+            vec![Fresh, Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
         all.extend([
             SaveScene,
             CopyPicture,

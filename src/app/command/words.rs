@@ -8,6 +8,7 @@ impl Command {
     /// The name in menus and in the palette.
     pub fn name(self) -> String {
         match self {
+            Command::Fresh => "Start fresh".into(),
             Command::Open => "Open…".into(),
             Command::Recent(place) => format!("Open recent {}", place + 1),
             Command::Save(OutputFormat::Png) => "Save as PNG…".into(),
@@ -97,6 +98,7 @@ impl Command {
     /// What the command does, in one sentence.
     pub fn help(self) -> &'static str {
         match self {
+            Command::Fresh => "The usual first picture, as the first window shows it",
             Command::Open => {
                 "Open a scene file (.toml), or restore the view of a .png, .ppm or .exr that Weekender wrote"
             }

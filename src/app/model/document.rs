@@ -57,6 +57,12 @@ impl Document {
         }
     }
 
+    /// The document of a recipe that a film or picture describes.
+    pub fn of_film(recipe: &Recipe, stage: Option<&'static Stage>) -> Self {
+        let document = Document::new(Origin::guess(recipe, stage));
+        Document { camera: recipe.camera, settings: recipe.settings, has_own_size: true, ..document }
+    }
+
     /// Resets everything to the origin's values. A size that follows the viewport or the book stays.
     pub fn reset(&mut self) {
         let before = std::mem::replace(self, Document::of(Arc::clone(&self.origin)));
@@ -73,6 +79,11 @@ impl Document {
     /// Whether the scene is not the origin's.
     pub fn has_changed_scene(&self) -> bool {
         !Arc::ptr_eq(&self.checked, &self.origin.scene)
+    }
+
+    /// Whether scene, camera or settings are not the origin's. A size that follows the viewport is no change.
+    pub fn is_changed(&self) -> bool {
+        *self != Document { stop: self.stop, ..Document::of(Arc::clone(&self.origin)) }
     }
 
     /// The rules of the origin.

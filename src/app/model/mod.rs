@@ -13,6 +13,7 @@ pub mod kept;
 pub mod origin;
 pub mod presentation;
 pub mod remembered;
+pub mod session;
 pub mod show;
 pub mod sizing;
 pub mod slots;
@@ -47,6 +48,8 @@ pub struct Model {
     pub has_first_steps: bool,
     /// The presentation, if there is one.
     pub presentation: Option<Presentation>,
+    /// Whether the card with what other windows left is shown.
+    pub has_recovered: bool,
 }
 
 impl Model {

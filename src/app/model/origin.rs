@@ -1,6 +1,7 @@
 //! The origin of a picture.
 
 use super::checked::CheckedScene;
+use crate::cli::DEFAULT_SCENE;
 use crate::progressive::Stop;
 use crate::recipe::Recipe;
 use crate::stages::{Shading, Stage, SurfaceRule};
@@ -46,6 +47,19 @@ impl Origin {
     /// The origin of a stage.
     pub fn of_stage(stage: &'static Stage) -> Self {
         Origin::new(stage.recipe(), Source::Stage(stage))
+    }
+
+    /// The origin of the picture that is shown if none is named.
+    pub fn usual() -> Self {
+        Recipe::builtin(DEFAULT_SCENE).map_or_else(|| Origin::of_stage(&Stage::ALL[0]), Origin::of_builtin)
+    }
+
+    /// The origin of a built-in scene. One that is also a stage is opened as that stage.
+    pub fn of_builtin(recipe: Recipe) -> Self {
+        match Stage::find(&recipe.name) {
+            Ok(stage) if stage.recipe().scene == recipe.scene => Origin::of_stage(stage),
+            _ => Origin::new(recipe, Source::Builtin),
+        }
     }
 
     /// The origin of an extreme scene.

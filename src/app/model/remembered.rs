@@ -6,7 +6,7 @@ use super::sizing::Sizing;
 use crate::render_cpu::Isa;
 use crate::scene::Camera;
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use std::path::{Path, PathBuf};
 
 /// How many files are remembered.
@@ -95,11 +95,17 @@ pub struct Remembered {
     /// Saved cameras.
     pub bookmarks: Vec<Bookmark>,
     /// The directory of the last saved file.
+    #[serde(serialize_with = "if_unicode")]
     pub directory: Option<PathBuf>,
     /// The files that were opened or saved last, newest first.
     pub recent: Vec<PathBuf>,
     /// What the user has tried of the first steps.
     pub first_steps: FirstSteps,
+}
+
+/// A path that is not Unicode has no place in a text. An error would keep all settings from being stored.
+fn if_unicode<S: Serializer>(path: &Option<PathBuf>, serializer: S) -> Result<S::Ok, S::Error> {
+    path.as_ref().filter(|path| path.to_str().is_some()).serialize(serializer)
 }
 
 impl Default for Remembered {
@@ -174,6 +180,17 @@ mod tests {
         let mended = strange.mended();
         assert_eq!((mended.lanes, mended.threads, mended.bookmarks.len()), (None, None, 1));
         assert_eq!(mended.bookmarks[0].camera(), Camera::BOOK);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_directory_that_is_not_unicode_does_not_keep_settings_from_being_stored() {
+        use std::os::unix::ffi::OsStrExt;
+        let path = PathBuf::from(std::ffi::OsStr::from_bytes(b"/of/\xff"));
+        let remembered = Remembered { has_plot: true, directory: Some(path), ..Remembered::default() };
+        let text = serde_json::to_string(&remembered).unwrap();
+        let found: Remembered = serde_json::from_str(&text).unwrap();
+        assert_eq!((found.has_plot, found.directory), (true, None));
     }
 
     #[test]

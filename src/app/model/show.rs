@@ -5,10 +5,11 @@ use crate::heat::HeatScale;
 use crate::layers::Layer;
 use crate::progressive::{ReferenceMeans, View};
 use crate::stages::Means;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A view of the film.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Show {
     /// The rendered picture.
     #[default]

@@ -11,10 +11,11 @@ use super::tone::Tone;
 use crate::progressive::{ReferenceMeans, View};
 use crate::recipe::Recipe;
 use crate::stages::Stage;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// How two pictures are compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Mode {
     /// The pictures are on the two sides of a divider.
     Wipe,

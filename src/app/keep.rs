@@ -1,0 +1,280 @@
+//! Keeps what the window shows for the next window, and shows it again.
+
+use super::changes::Changes;
+use super::keeping::{Arrival, Choice, Keeping, KeptFiles, Left, Part, Saved, write_film};
+use super::model::document::Document;
+use super::model::origin::Origin;
+use super::model::session::{Restored, Session};
+use super::model::view::ViewState;
+use super::window::Window;
+use crate::describe::counted;
+use crate::interrupt::Interrupt;
+use crate::progressive::{Phase, Stop};
+use crate::saved::{Content, Opened, SavedFilm};
+use eframe::egui::{Context, Rect, Ui, ViewportCommand};
+use std::path::Path;
+use std::sync::Arc;
+
+impl Window {
+    /// Keeps files in `directory` from now on. Shows again what the last window showed, if `may_restore`.
+    pub(super) fn begin_keeping(&mut self, directory: &Path, may_restore: bool, stop: Option<Stop>) {
+        let mut files = match KeptFiles::claim(directory) {
+            Ok(files) => files,
+            Err(reason) => {
+                self.toasts.bad(format!("Nothing is autosaved: {reason}"));
+                return;
+            }
+        };
+        if may_restore && let Err(reason) = self.take_session(&files) {
+            self.toasts.bad(format!("What was shown last cannot be shown again: {reason}"));
+            // What cannot be shown is left as it is, to be offered.
+            drop(files);
+            let Ok(others) = KeptFiles::claim(directory) else { return };
+            files = others;
+        }
+        if let Some(stop) = stop {
+            self.model.document.stop = stop;
+        }
+        self.keeping.files = Some(files);
+    }
+
+    fn take_session(&mut self, files: &KeptFiles) -> Result<(), String> {
+        if !files.take_session().map_err(|error| error.to_string())? {
+            return Ok(());
+        }
+        let Some(session) = files.note()? else { return Ok(()) };
+        let restored = session.restore()?;
+        let document = restored.document.clone();
+        self.show_restored(restored);
+        self.changes = Changes::new(document.clone());
+        if files.has_film() {
+            self.keeping.resuming = Some(document);
+        }
+        Ok(())
+    }
+
+    fn show_restored(&mut self, restored: Restored) {
+        let Restored { document, view, is_paused, note } = restored;
+        self.seconds_before = Some(0.0);
+        self.show_document(document);
+        self.show_view(view);
+        self.model.is_paused = is_paused;
+        if let Some(note) = note {
+            self.toasts.bad(note);
+        }
+    }
+
+    /// Shows another view. A film that was loaded to compare with stays loaded.
+    fn show_view(&mut self, view: ViewState) {
+        let reference = self.model.view.reference.take();
+        self.model.view = view;
+        self.model.view.reference = reference;
+    }
+
+    /// Shows the usual first picture.
+    pub(super) fn start_fresh(&mut self) {
+        self.show_view(ViewState::default());
+        if std::mem::take(&mut self.model.is_paused) {
+            self.main.resume();
+            self.second.resume();
+        }
+        self.seconds_before = Some(0.0);
+        self.show_document(Document::new(Origin::usual()));
+    }
+
+    /// Ends the window in order when one of these signals arrives.
+    pub(super) fn heed(&mut self, interrupt: Arc<Interrupt>) {
+        self.keeping.heed(interrupt);
+    }
+
+    /// Takes what has been found and read.
+    pub(super) fn receive_kept(&mut self) {
+        self.model.has_recovered = self.keeping.follow();
+        while let Some(outcome) = self.keeping.resumed.take() {
+            self.take_resumed(outcome);
+        }
+        while let Some(arrival) = self.keeping.arrivals.take() {
+            if let Some((left, part)) = self.keeping.opening.take() {
+                self.take_arrival(arrival, left, part);
+            }
+        }
+    }
+
+    /// Goes on with the film in the window's own file.
+    fn take_resumed(&mut self, outcome: Result<SavedFilm, String>) {
+        let Some(begun) = self.keeping.resuming.take() else { return };
+        match outcome {
+            Ok(film) if self.document().has_same_film(&begun) => {
+                let samples = film.film.sample_count();
+                self.toasts.good(format!("Continuing with {} per pixel", counted(samples, "sample")));
+                self.go_on_kept(film);
+            }
+            // Undo brings it back.
+            Ok(film) => {
+                let samples = film.film.sample_count();
+                self.keeping.autosave.holds(Some(Saved { document: begun, samples }));
+            }
+            Err(reason) => {
+                self.keeping.autosave.holds(None);
+                let aside = self.keeping.files.as_ref().map(KeptFiles::set_film_aside);
+                let place = match aside {
+                    Some(Ok(path)) => format!("; it is kept as {}", path.display()),
+                    _ => String::new(),
+                };
+                self.toasts.bad(format!("The film of this picture is not continued: {reason}{place}"));
+            }
+        }
+    }
+
+    /// Continues a film that is in the window's own file.
+    fn go_on_kept(&mut self, film: SavedFilm) {
+        let samples = film.film.sample_count();
+        self.adopt(film);
+        self.keeping.autosave.holds(Some(Saved { document: self.model.document.clone(), samples }));
+        self.keeping.note_soon();
+    }
+
+    /// Shows a part of what another window left.
+    fn take_arrival(&mut self, arrival: Arrival, mut left: Left, part: Part) {
+        let Arrival { opened, restored } = arrival;
+        let has_own_film = self.keeping.has_film_of(self.document());
+        let film = match (opened, restored) {
+            (Some(Ok(Opened { content: Content::Film(film), recipe, stage, .. })), restored) => {
+                match restored {
+                    Some(Ok(restored)) => self.show_restored(restored),
+                    _ => {
+                        left.separate();
+                        self.show_document(Document::of_film(&recipe, stage));
+                    }
+                }
+                Some(film)
+            }
+            (None, Some(Ok(restored))) => {
+                self.show_restored(restored);
+                None
+            }
+            (Some(Err(reason)), _) | (None, Some(Err(reason))) => {
+                self.toasts.bad(format!("Not opened: {reason}"));
+                left.mark(part, reason);
+                self.keeping.put_back(0, left);
+                return;
+            }
+            (Some(Ok(_)), _) | (None, None) => {
+                self.toasts.bad(format!("Not opened: {} holds no picture", left.path(part).display()));
+                return;
+            }
+        };
+        self.toasts.good(format!("Opened {}", self.document().title()));
+        if let (Some(film), Some(files)) = (film, &self.keeping.files) {
+            self.keeping.autosave.finish();
+            // The film of the picture that was shown until now is offered by the next window.
+            let aside = if has_own_film { files.set_film_aside().map(drop) } else { Ok(()) };
+            if let Err(error) = aside.and_then(|()| files.take_film(&left.files)) {
+                self.toasts.bad(format!("{} stays where it is: {error}", left.files.film().display()));
+                self.adopt(film);
+                return;
+            }
+            self.go_on_kept(film);
+        }
+        left.settle(part);
+        self.keeping.note_soon();
+        self.keeping.put_back(0, left);
+    }
+
+    /// Draws the card with what was kept of other windows.
+    pub(super) fn offer_kept(&mut self, ui: &Ui, room: Rect) {
+        let Keeping { card, left, opening, resuming, .. } = &mut self.keeping;
+        match card.ui(ui, room, left, opening.is_some() || resuming.is_some()) {
+            Some(Choice::Open(index, part)) => self.keeping.open(ui.ctx(), index, part),
+            Some(Choice::Discard(index, part)) => self.keeping.discard(index, part),
+            Some(Choice::Later) => self.keeping.left.clear(),
+            None => {}
+        }
+        self.model.has_recovered = !self.keeping.left.is_empty();
+    }
+
+    /// Has the film and what the window shows written if it is time, also while the window is hidden.
+    pub(super) fn keep(&mut self, context: &Context) {
+        if self.keeping.interrupt().is_some_and(|interrupt| interrupt.is_set()) {
+            context.send_viewport_cmd(ViewportCommand::Close);
+        }
+        if !self.keeping.is_time(context) {
+            return;
+        }
+        let status = self.main.newest_status();
+        self.keeping.is_working = status.phase.is_working();
+        let Keeping { files, autosave, resuming, .. } = &mut self.keeping;
+        let document = &self.model.document;
+        if let Some(files) = files.as_ref().filter(|_| resuming.is_none())
+            && let Some(words) =
+                autosave.look(context, files.film(), (document, &self.main), &status, self.seconds_before)
+        {
+            self.toasts.bad(words);
+        }
+        // Undo has brought a picture back.
+        let is_behind = |saved: &Saved| {
+            saved.document.has_same_film(document) && status.samples_per_pixel < saved.samples
+        };
+        let is_settled =
+            !matches!(status.phase, Phase::Idle | Phase::Preparing) && self.main.is_full(document);
+        if is_settled && resuming.is_none() && autosave.saved().is_some_and(is_behind) {
+            self.keeping.resume(context, document);
+        }
+        let shown = (document, &self.model.view);
+        if let Some(reason) = self.keeping.note(context, shown, self.model.is_paused) {
+            self.toasts.bad(format!("What this window shows is not kept: {reason}"));
+        }
+    }
+
+    /// Leaves what the window shows to the next one, with the film if tracing it took long.
+    pub fn end_in_order(&mut self) {
+        let Some(files) = self.keeping.files.take() else { return };
+        let interrupt = self.keeping.interrupt().cloned();
+        let _writing = interrupt.as_ref().map(|interrupt| interrupt.while_writing("the picture"));
+        self.keeping.autosave.finish();
+        self.keeping.finish_notes();
+        let document = self.model.document.clone();
+        let has_film = match self.keeping.resuming.take() {
+            // The film is still being read, so it is as it was.
+            Some(begun) if begun.has_same_film(&document) => true,
+            Some(_) => {
+                // If that fails, the film stays with the picture, and the next window says that it is of another one.
+                let _ = files.set_film_aside();
+                false
+            }
+            None => self.keep_film(&files, &document),
+        };
+        let session = Session::of(&document, &self.model.view, self.model.is_paused);
+        if document.job(1).is_ok()
+            && let Err(reason) = files.write_note(&session.with_film(has_film))
+        {
+            crate::console::note(&format!("weekender: what the window showed is not kept: {reason}"));
+        }
+        if let Err(error) = files.leave_session() {
+            crate::console::note(&format!("weekender: what the window showed is not kept: {error}"));
+        }
+    }
+
+    /// Writes the film of `document` if tracing it took long, and deletes that of another picture.
+    fn keep_film(&mut self, files: &KeptFiles, document: &Document) -> bool {
+        let status = self.main.newest_status();
+        let is_long = self.keeping.autosave.is_long(document, &self.main, &status, self.seconds_before);
+        if !is_long {
+            files.delete_film();
+            return false;
+        }
+        let saved = self.keeping.autosave.saved().filter(|saved| saved.document.has_same_film(document));
+        let saved = saved.map(|saved| saved.samples);
+        if saved.is_some_and(|saved| saved >= status.samples_per_pixel) {
+            return true;
+        }
+        let Some(film) = self.main.take_film() else { return saved.is_some() };
+        match write_film(files.film(), &film, (document, &status), self.seconds_before) {
+            Ok(_) => true,
+            Err(reason) => {
+                crate::console::note(&format!("weekender: the film is not kept: {reason}"));
+                saved.is_some()
+            }
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! What a window left that ended without being closed.
+
+use super::kept_files::KeptFiles;
+use crate::app::model::session::Session;
+use crate::describe::counted;
+use crate::film::{checkpoint, key};
+use crate::stages::Stage;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+/// A part of what was left that is opened or deleted by itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// A film, with the picture that it belongs to.
+    Film,
+    /// A changed picture without samples.
+    Picture,
+}
+
+/// A part in words.
+pub struct Row {
+    /// Which part.
+    pub part: Part,
+    /// The name of the picture.
+    pub title: String,
+    /// Samples, size and age.
+    pub about: String,
+    /// Why it cannot be opened, if so.
+    pub fault: Option<String>,
+}
+
+/// What a film file says about itself.
+struct FilmWords {
+    title: String,
+    samples: u64,
+    size: [u32; 2],
+}
+
+impl FilmWords {
+    fn read(path: &Path) -> Result<FilmWords, String> {
+        let head = checkpoint::read_head(path).map_err(|error| error.to_string())?;
+        let stage = head.description.get(key::STAGE).and_then(|id| Stage::find(id).ok());
+        let scene = || head.description.get(key::SCENE).unwrap_or("A film").to_owned();
+        Ok(FilmWords {
+            title: stage.map_or_else(scene, |stage| format!("{} {}", stage.section, stage.title)),
+            samples: head.samples.count(),
+            size: [head.width, head.height],
+        })
+    }
+}
+
+/// Files that were left, and what they hold.
+pub struct Left {
+    /// The files, which no other window takes meanwhile.
+    pub files: KeptFiles,
+    session: Option<Result<Session, String>>,
+    film: Option<Result<FilmWords, String>>,
+    changed: Option<SystemTime>,
+}
+
+impl Left {
+    /// What is in `directory`, newest first. What nothing would be lost with is deleted.
+    pub fn all_in(directory: &Path) -> Vec<Left> {
+        let mut all: Vec<Left> = KeptFiles::left_in(directory).into_iter().map(Left::of).collect();
+        all.iter().for_each(Left::tidy);
+        all.retain(|left| left.rows().next().is_some());
+        all
+    }
+
+    fn of(files: KeptFiles) -> Left {
+        Left {
+            session: files.note().transpose(),
+            film: files.has_film().then(|| FilmWords::read(files.film())),
+            changed: files.changed(),
+            files,
+        }
+    }
+
+    /// Deletes a note that says nothing more than the film, or that names an unchanged picture.
+    fn tidy(&self) {
+        if self.rows().next().is_none() {
+            self.files.delete_note();
+        }
+    }
+
+    /// The note that belongs to this part.
+    pub fn session(&self, part: Part) -> Option<&Session> {
+        let session = self.session.as_ref()?.as_ref().ok()?;
+        (part == Part::Picture || session.has_film).then_some(session)
+    }
+
+    /// The file of a part.
+    pub fn path(&self, part: Part) -> PathBuf {
+        match part {
+            Part::Film => self.files.film().to_owned(),
+            Part::Picture => self.files.film().with_extension("json"),
+        }
+    }
+
+    /// Notes why a part cannot be opened.
+    pub fn mark(&mut self, part: Part, fault: String) {
+        match part {
+            Part::Film => self.film = Some(Err(fault)),
+            Part::Picture => self.session = Some(Err(fault)),
+        }
+    }
+
+    /// Notes that the film is not of the noted picture, so that each is offered by itself.
+    pub fn separate(&mut self) {
+        if let Some(Ok(session)) = &mut self.session
+            && session.has_film
+        {
+            session.has_film = false;
+            // If it cannot be written, the two are told apart again when they are opened.
+            let _ = self.files.write_note(session);
+        }
+    }
+
+    /// Forgets a part that was opened or deleted, and deletes what is left of its files.
+    pub fn settle(&mut self, part: Part) {
+        if part == Part::Film {
+            self.files.delete_film();
+            self.film = None;
+        }
+        if part == Part::Picture || self.session(Part::Film).is_some() {
+            self.files.delete_note();
+            self.session = None;
+        }
+        self.tidy();
+    }
+
+    /// The parts in words.
+    pub fn rows(&self) -> impl Iterator<Item = Row> {
+        let age = self.changed.and_then(|changed| changed.elapsed().ok()).map(ago).unwrap_or_default();
+        let row = |part, title: &str, about: &str, fault| Row {
+            part,
+            title: title.to_owned(),
+            about: if about.is_empty() { age.clone() } else { format!("{about}, {age}") },
+            fault,
+        };
+        let session = self.session.as_ref();
+        let known = self.session(Part::Film).map(|session| session.title.as_str());
+        let film = self.film.as_ref().map(|film| match film {
+            Ok(FilmWords { title, samples, size: [width, height] }) => {
+                let about = format!("{} per pixel, {width}x{height}", counted(*samples, "sample"));
+                row(Part::Film, known.unwrap_or(title), &about, None)
+            }
+            Err(fault) => row(Part::Film, known.unwrap_or("A film"), "", Some(fault.clone())),
+        });
+        let picture = match session {
+            Some(Ok(session)) if session.is_changed && !(session.has_film && self.film.is_some()) => {
+                Some(row(Part::Picture, &session.title, "changed camera, settings or spheres", None))
+            }
+            Some(Err(fault)) => Some(row(Part::Picture, "A picture", "", Some(fault.clone()))),
+            _ => None,
+        };
+        film.into_iter().chain(picture)
+    }
+}
+
+/// How long ago something was, in words.
+fn ago(age: Duration) -> String {
+    let minutes = age.as_secs() / 60;
+    match minutes {
+        0 => "just now".to_owned(),
+        1..60 => format!("{minutes} min ago"),
+        60..2880 => format!("{} h ago", minutes / 60),
+        _ => format!("{} days ago", minutes / 1440),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ages_are_short() {
+        let words = [59, 60, 3599, 7200, 3 * 86400].map(|seconds| ago(Duration::from_secs(seconds)));
+        assert_eq!(words, ["just now", "1 min ago", "59 min ago", "2 h ago", "3 days ago"]);
+    }
+
+    #[test]
+    fn what_nothing_is_lost_with_is_not_offered() {
+        let directory = tempfile::tempdir().unwrap();
+        let write = |is_changed: bool, has_film: bool| {
+            let files = KeptFiles::claim(directory.path()).unwrap();
+            let session = serde_json::json!({ "title": "x", "is_changed": is_changed, "has_film": has_film });
+            let session: Session = serde_json::from_value(session).unwrap();
+            files.write_note(&session).unwrap();
+        };
+        write(false, false);
+        write(false, true);
+        assert!(Left::all_in(directory.path()).is_empty());
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+        // The film that it mentions is gone.
+        write(true, true);
+        let [left] = Left::all_in(directory.path()).try_into().ok().unwrap();
+        assert_eq!(left.rows().map(|row| row.part).collect::<Vec<_>>(), [Part::Picture]);
+    }
+
+    #[test]
+    fn damaged_files_are_named_until_they_are_deleted() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        std::fs::write(at("window-1-1.exr"), "not a film").unwrap();
+        std::fs::write(at("window-1-1.json"), "{").unwrap();
+        let mut all = Left::all_in(directory.path());
+        for (part, name) in [(Part::Film, "window-1-1.exr"), (Part::Picture, "window-1-1.json")] {
+            let fault = all[0].rows().find(|row| row.part == part).unwrap().fault.unwrap();
+            assert!(fault.contains(name), "{fault}");
+        }
+        all[0].settle(Part::Film);
+        assert!(!at("window-1-1.exr").exists() && at("window-1-1.json").exists());
+        all[0].settle(Part::Picture);
+        drop(all);
+        assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,396 @@
+//! What a window shows, as text: the next window can show it again.
+
+use super::checked::CheckedScene;
+use super::document::Document;
+use super::origin::{Origin, Source};
+use super::show::Show;
+use super::view::{Mode, ViewState, With};
+use crate::describe::SOFTWARE;
+use crate::progressive::Stop;
+use crate::recipe::{Recipe, file};
+use crate::scene::Scene;
+use crate::stages::Stage;
+use crate::stress::shown_cases;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// The most spheres whose text is kept. More are kept only if the origin says what they are.
+pub const SPHERES_LIMIT: usize = 50_000;
+
+/// The label of texts in messages.
+const LABEL: &str = "what was kept of the last window";
+
+/// Origin, changes and view of a picture, without its samples.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Session {
+    /// The program that wrote this.
+    pub software: String,
+    /// The name of the picture in the window.
+    pub title: String,
+    /// Camera, settings or spheres differ from those of the origin.
+    pub is_changed: bool,
+    /// The film that is kept beside this is of this picture.
+    pub has_film: bool,
+    origin: KeptOrigin,
+    /// A scene file with camera and settings, and with the scene if that was changed.
+    recipe: String,
+    has_changed_scene: bool,
+    has_own_size: bool,
+    samples: Option<u64>,
+    seconds: Option<f64>,
+    noise: Option<f64>,
+    is_paused: bool,
+    /// A [`KeptView`]. A view that another version of the program does not know costs only the view.
+    view: serde_json::Value,
+}
+
+/// An [`Origin`] as text.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+enum KeptOrigin {
+    #[default]
+    None,
+    Stage(String),
+    Builtin(String),
+    Extreme(String),
+    File {
+        path: Option<PathBuf>,
+        name: String,
+        recipe: Option<String>,
+    },
+    Recipe {
+        name: String,
+        recipe: String,
+    },
+    /// Too many spheres to be kept.
+    TooLarge {
+        spheres: usize,
+    },
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(default)]
+struct KeptView {
+    show: Show,
+    mode: Option<Mode>,
+    is_by_book: bool,
+    is_with_next: bool,
+    divider: f32,
+    exposure: f64,
+    range: [f64; 2],
+}
+
+impl Default for KeptView {
+    fn default() -> Self {
+        KeptView::of(&ViewState::default())
+    }
+}
+
+impl KeptView {
+    fn of(view: &ViewState) -> Self {
+        KeptView {
+            // The film of a difference is not kept.
+            show: if view.show() == Show::Difference { Show::Picture } else { view.show() },
+            // Nor is a picture in a slot.
+            mode: view.mode().filter(|_| view.compared_slot().is_none()),
+            is_by_book: view.with() == With::Book,
+            is_with_next: view.is_with_next,
+            divider: view.divider,
+            exposure: view.tone.exposure,
+            range: view.tone.range,
+        }
+    }
+
+    fn view(self) -> ViewState {
+        let mut view = ViewState::default();
+        match self.mode {
+            Some(mode) => view.toggle(mode, if self.is_by_book { With::Book } else { With::Stage }),
+            None => view.choose(self.show),
+        }
+        view.is_with_next = self.is_with_next;
+        if (0.0..=1.0).contains(&self.divider) {
+            (view.divider, view.is_divider_unplaced) = (self.divider, false);
+        }
+        if self.exposure.is_finite() {
+            view.tone.expose(self.exposure);
+        }
+        let [low, high] = self.range;
+        if low < high && self.range.iter().all(|end| super::tone::Tone::RANGES.contains(end)) {
+            view.tone.range = self.range;
+        }
+        view
+    }
+}
+
+/// A session that can be shown again.
+#[derive(Debug)]
+pub struct Restored {
+    /// The picture.
+    pub document: Document,
+    /// How it is shown.
+    pub view: ViewState,
+    /// Whether tracing was paused.
+    pub is_paused: bool,
+    /// What could not be restored, in words.
+    pub note: Option<String>,
+}
+
+impl Session {
+    /// What a window with this picture and view shows. Takes seconds for a scene of many spheres.
+    pub fn of(document: &Document, view: &ViewState, is_paused: bool) -> Self {
+        let origin = &document.origin;
+        let Stop { samples, seconds, noise } = document.stop;
+        let has_changed_scene = document.has_changed_scene();
+        let is_large = |scene: &Scene| scene.spheres.len() > SPHERES_LIMIT;
+        let text_of = |recipe: &Recipe| (!is_large(&recipe.scene)).then(|| file::to_picture_toml(recipe));
+        let too_large = |scene: &Scene| KeptOrigin::TooLarge { spheres: scene.spheres.len() };
+        let name = origin.recipe.name.clone();
+        let kept = match &origin.source {
+            _ if has_changed_scene && is_large(document.scene()) => too_large(document.scene()),
+            Source::Stage(stage) => KeptOrigin::Stage(stage.id.to_owned()),
+            Source::Builtin => KeptOrigin::Builtin(name),
+            Source::Extreme(case) => KeptOrigin::Extreme(case.id.clone()),
+            Source::File(path) => {
+                // JSON has no place for a path that is not Unicode.
+                let path = std::path::absolute(path).ok().filter(|path| path.to_str().is_some());
+                match (path, text_of(&origin.recipe)) {
+                    (None, None) => too_large(&origin.recipe.scene),
+                    (path, recipe) => KeptOrigin::File { path, name, recipe },
+                }
+            }
+            Source::ByTheBook | Source::Embedded => match text_of(&origin.recipe) {
+                Some(recipe) => KeptOrigin::Recipe { name, recipe },
+                None => too_large(&origin.recipe.scene),
+            },
+        };
+        let mut recipe = Recipe { camera: document.camera, keyframes: Vec::new(), ..document.recipe() };
+        if !has_changed_scene || is_large(&recipe.scene) {
+            recipe.scene = Arc::default();
+        }
+        Session {
+            software: SOFTWARE.to_owned(),
+            title: document.title(),
+            is_changed: document.is_changed(),
+            has_film: false,
+            origin: kept,
+            recipe: file::to_toml(&recipe),
+            has_changed_scene,
+            has_own_size: document.has_own_size,
+            samples,
+            seconds,
+            noise,
+            is_paused,
+            view: serde_json::to_value(KeptView::of(view)).unwrap_or_default(),
+        }
+    }
+
+    /// The same, with or without a film beside it.
+    pub fn with_film(self, has_film: bool) -> Self {
+        Session { has_film, ..self }
+    }
+
+    /// Makes the picture and the view again.
+    ///
+    /// # Errors
+    /// Why that is impossible, in words.
+    pub fn restore(&self) -> Result<Restored, String> {
+        let (origin, note) = self.origin.origin(&self.software)?;
+        let changes = parse(&self.recipe)?;
+        let mut document = Document::new(origin);
+        document.camera = changes.camera;
+        (document.settings, document.has_own_size) = (changes.settings, self.has_own_size);
+        document.stop = Stop { samples: self.samples, seconds: self.seconds, noise: self.noise };
+        if self.has_changed_scene && changes.scene != document.origin.recipe.scene {
+            let checked = CheckedScene::new(changes.scene, *document.rules());
+            checked.check().map_err(|error| error.to_string())?;
+            document.checked = Arc::new(checked);
+        }
+        document.job(1).map_err(|error| error.to_string())?;
+        let view: KeptView = serde_json::from_value(self.view.clone()).unwrap_or_default();
+        Ok(Restored { document, view: view.view(), is_paused: self.is_paused, note })
+    }
+}
+
+impl KeptOrigin {
+    /// The origin, and what is different about it.
+    fn origin(&self, software: &str) -> Result<(Origin, Option<String>), String> {
+        let of_text = |name: &str, text: &str| {
+            parse(text)
+                .map(|recipe| Origin::new(Recipe { name: name.to_owned(), ..recipe }, Source::Embedded))
+        };
+        let unknown = |kind: &str, name: &str| {
+            format!("{software} showed the {kind} {name:?}, which {SOFTWARE} does not have")
+        };
+        let origin = match self {
+            KeptOrigin::None => return Err(format!("what {software} wrote names no picture")),
+            KeptOrigin::Stage(id) => Origin::of_stage(Stage::find(id).map_err(|_| unknown("stage", id))?),
+            KeptOrigin::Builtin(name) => {
+                Origin::new(Recipe::find(name).map_err(|error| error.to_string())?, Source::Builtin)
+            }
+            KeptOrigin::Extreme(id) => {
+                let case = shown_cases().iter().find(|case| case.id == *id);
+                Origin::of_case(case.ok_or_else(|| unknown("extreme scene", id))?)
+            }
+            KeptOrigin::File { path: Some(path), name, recipe } => match (file::load(path), recipe) {
+                (Ok(recipe), _) => Origin::new(recipe, Source::File(path.clone())),
+                (Err(error), Some(text)) => {
+                    return Ok((of_text(name, text)?, Some(format!("{error}; this is the scene as it was"))));
+                }
+                (Err(error), None) => return Err(error.to_string()),
+            },
+            KeptOrigin::File { path: None, name, recipe: Some(text) }
+            | KeptOrigin::Recipe { name, recipe: text } => of_text(name, text)?,
+            KeptOrigin::File { path: None, recipe: None, .. } => {
+                return Err("the path of its scene file could not be kept".to_owned());
+            }
+            KeptOrigin::TooLarge { spheres } => {
+                return Err(format!(
+                    "its {spheres} spheres are in no file, and no more than {SPHERES_LIMIT} are kept; save the scene \
+                     file of such a scene"
+                ));
+            }
+        };
+        Ok((origin, None))
+    }
+}
+
+fn parse(text: &str) -> Result<Recipe, String> {
+    file::parse(text, LABEL).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Camera;
+    use glam::DVec3;
+
+    /// What comes back of a document after it was written and read.
+    fn again(document: &Document, view: &ViewState) -> Restored {
+        let text = serde_json::to_string(&Session::of(document, view, false)).unwrap();
+        serde_json::from_str::<Session>(&text).unwrap().restore().unwrap()
+    }
+
+    fn changed(mut document: Document) -> Document {
+        document.camera = Camera {
+            look_from: DVec3::new(-1.1, 1e-20, 1.0 / 3.0),
+            vfov_degrees: 33.3,
+            // A pinhole has no focus, but the number comes back.
+            focus_distance: Some(0.1 + 0.2),
+            ..Camera::BOOK
+        };
+        (document.settings.width, document.settings.seed) = (31, 9);
+        document.stop = Stop { samples: None, seconds: Some(1e3), noise: Some(1e-3) };
+        document
+    }
+
+    fn assert_same(mine: &Document, found: &Document, what: &str) {
+        assert_eq!(found.job(1).unwrap(), mine.job(1).unwrap(), "{what}");
+        assert_eq!((found.camera, found.stop), (mine.camera, mine.stop), "{what}");
+        assert_eq!((&found.origin.source, found.title()), (&mine.origin.source, mine.title()), "{what}");
+        assert_eq!(found.origin.recipe, mine.origin.recipe, "{what}");
+    }
+
+    fn with_a_sphere_moved(mut document: Document) -> Document {
+        let mut scene = document.scene().clone();
+        scene.spheres[0].center.x += 1.0 / 3.0;
+        document.checked = Arc::new(CheckedScene::new(Arc::new(scene), *document.rules()));
+        document
+    }
+
+    #[test]
+    fn every_kind_of_picture_comes_back_as_it_was() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("mine.toml");
+        let scene = Recipe { name: "mine".to_owned(), ..Stage::find("glass-schlick").unwrap().recipe() };
+        std::fs::write(&path, file::to_toml(&scene)).unwrap();
+        let mut origins: Vec<Origin> = Stage::ALL.iter().map(Origin::of_stage).collect();
+        origins.extend(shown_cases().iter().map(Origin::of_case));
+        origins.push(Origin::new(Recipe::builtin("field:60000").unwrap(), Source::Builtin));
+        origins.push(Origin::new(file::load(&path).unwrap(), Source::File(path.clone())));
+        origins.push(Origin::new(Recipe { name: "x".to_owned(), ..scene }, Source::Embedded));
+        let view = ViewState::default();
+        for origin in origins {
+            let document = Document::new(origin);
+            let what = document.title();
+            assert_same(&document, &again(&document, &view).document, &what);
+            let document = changed(document);
+            assert_same(&document, &again(&document, &view).document, &what);
+            if !document.scene().spheres.is_empty() && document.scene().spheres.len() < SPHERES_LIMIT {
+                let document = with_a_sphere_moved(document);
+                let found = again(&document, &view).document;
+                assert_same(&document, &found, &what);
+                assert!(found.has_changed_scene(), "{what}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_scene_file_that_is_gone_is_replaced_by_what_it_said() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("mine.toml");
+        let recipe = Stage::find("metal").unwrap().recipe();
+        std::fs::write(&path, file::to_toml(&recipe)).unwrap();
+        let document = Document::new(Origin::new(file::load(&path).unwrap(), Source::File(path.clone())));
+        let session = Session::of(&document, &ViewState::default(), false);
+        // The file as it is now counts, unless the scene was changed in the window.
+        let newer = Recipe { scene: Stage::find("metal-fuzzy").unwrap().recipe().scene, ..recipe };
+        std::fs::write(&path, file::to_toml(&newer)).unwrap();
+        let found = session.restore().unwrap();
+        assert_eq!((found.document.scene(), found.note), (&*newer.scene, None));
+        std::fs::remove_file(&path).unwrap();
+        let found = session.restore().unwrap();
+        assert_eq!(found.document.job(1).unwrap(), document.job(1).unwrap());
+        assert_eq!(found.document.origin.source, Source::Embedded);
+        assert!(found.note.is_some_and(|note| note.contains("mine.toml")));
+    }
+
+    #[test]
+    fn what_is_too_large_is_said() {
+        let field = Document::new(Origin::new(Recipe::builtin("field:60000").unwrap(), Source::Builtin));
+        let moved = with_a_sphere_moved(field.clone());
+        let told = Session::of(&moved, &ViewState::default(), false).restore().unwrap_err();
+        assert!(told.contains(&moved.scene().spheres.len().to_string()), "{told}");
+        assert!(Session::of(&field, &ViewState::default(), false).restore().is_ok());
+    }
+
+    #[test]
+    fn the_view_comes_back() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut view = ViewState::default();
+        view.choose(Show::Luminance);
+        view.tone = super::super::tone::Tone { exposure: -1.5, range: [-3.0, 2.5] };
+        let found = again(&document, &view).view;
+        assert_eq!((found.show(), found.tone), (Show::Luminance, view.tone));
+        view.toggle(Mode::Wipe, With::Book);
+        view.divider = 0.25;
+        let found = again(&document, &view).view;
+        assert_eq!((found.mode(), found.with(), found.divider), (Some(Mode::Wipe), With::Book, 0.25));
+        assert!(!found.is_divider_unplaced);
+    }
+
+    #[test]
+    fn what_another_version_wrote_costs_as_little_as_possible() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut session = Session::of(&document, &ViewState::default(), true);
+        session.view = serde_json::json!({ "show": "Smell", "divider": 3 });
+        let found = session.restore().unwrap();
+        assert_eq!((found.view.show(), found.view.divider, found.is_paused), (Show::Picture, 0.5, true));
+        let (mut strange, known) = (session.clone(), session.recipe.clone());
+        strange.software = "Weekender 9".to_owned();
+        strange.origin = KeptOrigin::Stage("radiosity".to_owned());
+        let told = strange.restore().unwrap_err();
+        assert!(told.contains("Weekender 9") && told.contains("radiosity"), "{told}");
+        for recipe in
+            ["", "vfov_degrees = 3", &known.replace("vup = [0.0, 1.0, 0.0]", "vup = [0.0, 0.0, 0.0]")]
+        {
+            assert!(Session { recipe: recipe.to_owned(), ..session.clone() }.restore().is_err(), "{recipe}");
+        }
+        // Neither a new field nor a missing one matters.
+        let mut value = serde_json::to_value(&session).unwrap();
+        value.as_object_mut().unwrap().insert("mood".to_owned(), "fine".into());
+        value.as_object_mut().unwrap().remove("is_paused");
+        let found: Session = serde_json::from_value(value).unwrap();
+        assert_eq!(found, Session { is_paused: false, ..session });
+    }
+}
