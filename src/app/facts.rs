@@ -131,7 +131,7 @@ impl Facts {
         if let Command::Look(number) = command
             && let Some(slot) = self.model.view.slots.get(number)
         {
-            return format!("{}: {}", command.name(), slot.name);
+            return format!("{}: {}", command.name(), shortened(&slot.name));
         }
         let Some(path) = self.path(command) else { return command.name() };
         let name = path.file_name().unwrap_or(path.as_os_str()).display();
@@ -325,6 +325,15 @@ impl Facts {
             },
             _ => None,
         }
+    }
+}
+
+/// A name that fits into a line of a menu.
+fn shortened(name: &str) -> String {
+    const MOST: usize = 22;
+    match name.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{}…", name[..end].trim_end()),
+        None => name.to_owned(),
     }
 }
 

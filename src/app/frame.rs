@@ -167,9 +167,14 @@ impl Window {
             is_documents: main.is_of(&self.model.document),
             seconds: self.seconds_before.unwrap_or(f64::INFINITY) + main.status().trace.as_secs_f64(),
             // A reference film has the size that it has.
-            is_needed: self.pending_save.is_some() || self.pending_copy || view.show() == Show::Difference,
+            is_needed: self.pending_save.is_some()
+                || self.pending_crop.is_some()
+                || self.pending_copy
+                || view.show() == Show::Difference,
         };
-        let wish = (self.model.remembered.sizing, self.viewport.room_pixels());
+        // Pictures of another size could not be compared with those in the slots.
+        let room = view.slots.room().unwrap_or(self.viewport.room_pixels());
+        let wish = (self.model.remembered.sizing, room);
         self.sizer.follow(context, &mut self.model.document, wish, &present);
     }
 

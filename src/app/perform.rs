@@ -299,14 +299,21 @@ impl Window {
         }
         let directory = self.model.remembered.directory.as_deref();
         let mut path_box = PathBox::new(purpose, &name, directory);
-        if matches!(purpose, Purpose::Save(_)) {
-            path_box.say(self.size_words());
+        match (purpose, self.model.view.crop.flatten()) {
+            (Purpose::Save(_), _) => path_box.say(self.size_words()),
+            (Purpose::SaveCrop, Some(crop)) => path_box.say(format!("The crop: {}", crop.words())),
+            _ => {}
         }
         self.dialogs.open(Dialog::Path(path_box));
     }
 
     /// What is saved now, in words.
     fn size_words(&self) -> String {
+        let slots = &self.model.view.slots;
+        if let (Some(number), Some(kept)) = (slots.looked(), slots.shown()) {
+            let [width, height] = kept.size();
+            return format!("{}: {width}x{height}", slots.title(number));
+        }
         let size = self.document().size_words(self.model.remembered.sizing);
         match self.sizer.offer() {
             Some([width, height]) => format!("The picture: {size} when it began (now {width}x{height})"),

@@ -83,7 +83,7 @@ impl Film {
     ///
     /// # Errors
     /// [`FilmError::Memory`], before any memory is allocated.
-    pub fn try_clone(&self) -> Result<Self, FilmError> {
+    pub fn try_copy(&self) -> Result<Self, FilmError> {
         let mut copy = Film::try_new(self.width, self.height, self.halves.len())?;
         for (sums, own) in copy.halves.iter_mut().zip(&self.halves) {
             sums.copy_from_slice(own);

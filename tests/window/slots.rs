@@ -207,6 +207,34 @@ fn pictures_of_different_sizes_are_not_compared() {
     assert_eq!(aspect(&harness), 32.0);
 }
 
+/// The strip takes room from the picture, which must not change its size because of that.
+#[test]
+fn pictures_keep_their_size_while_slots_are_in_use() {
+    let mut harness = open_sized("--stage glass-schlick --samples 1", [700.0, 500.0]);
+    let wait = |harness: &mut Harness<'_, Window>| {
+        for _ in 0..40 {
+            std::thread::sleep(Duration::from_millis(10));
+            harness.step();
+        }
+    };
+    wait(&mut harness);
+    until(&mut harness, "the end", is_done);
+    wait(&mut harness);
+    let (size, height) = (harness.state().document().size(), harness.state().picture_rect().height());
+    keep(&mut harness, Command::Keep, ONE);
+    wait(&mut harness);
+    assert_eq!(harness.state().document().size(), size);
+    assert!(harness.state().picture_rect().height() <= height);
+    send(&mut harness, Command::NextStage);
+    wait(&mut harness);
+    until(&mut harness, "the next stage", is_done);
+    assert_eq!(harness.state().document().size(), size);
+    assert_eq!(harness.state().disabled_reason(Command::SlotWipe), None);
+    send(&mut harness, Command::DeleteSlot);
+    send(&mut harness, Command::Size(weekender::app::Sizing::Viewport));
+    assert_eq!(harness.state().document().size(), size, "as before there was a slot");
+}
+
 /// The words of the verdict, once it is there.
 fn verdict(harness: &mut Harness<'_, Window>) -> (String, String) {
     send(harness, Command::OnlyNoise);

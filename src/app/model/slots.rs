@@ -103,6 +103,13 @@ impl Slots {
         self.looked.and_then(|number| self.get(number)).map(|slot| &slot.kept)
     }
 
+    /// The size of the chosen picture, or else of the first one, that had the size of the viewport when it was kept.
+    pub fn room(&self) -> Option<[u32; 2]> {
+        let has_room = |slot: &&Slot| !slot.kept.document.has_own_size;
+        let chosen = self.chosen.and_then(|number| self.get(number)).filter(has_room);
+        chosen.or_else(|| self.used().map(|(_, slot)| slot).find(has_room)).map(|slot| slot.kept.size())
+    }
+
     /// The slot that commands without a number are for: the one that was looked at, kept or clicked last.
     pub fn chosen(&self) -> Option<SlotNumber> {
         self.chosen

@@ -87,7 +87,7 @@ impl Keeper {
         let (document, status) = (document.clone(), Arc::clone(main.status()));
         let answer = self.copied.answer(context);
         main.inspect(move |film| {
-            answer.give(match film.try_clone() {
+            answer.give(match film.try_copy() {
                 Ok(film) => Ok(Copied { number, kept: Kept::new(document, film, status, seconds_before) }),
                 Err(error) => Err(error.to_string()),
             });
@@ -101,7 +101,7 @@ impl Keeper {
         self.thread.run(move || {
             let seconds = kept.seconds_before.map(|before| before + kept.status.trace.as_secs_f64());
             let document = kept.document.clone();
-            let copy = kept.film.try_clone().map_err(|error| error.to_string());
+            let copy = kept.film.try_copy().map_err(|error| error.to_string());
             answer.give(copy.map(|film| Reopened { document, film: Some((film, seconds)) }));
         });
     }

@@ -20,7 +20,7 @@ const HEIGHT: f32 = 66.0;
 const THUMBNAIL: f32 = 112.0;
 
 /// Width of a name in points.
-const NAME: f32 = 178.0;
+const NAME: f32 = 206.0;
 
 /// The thumbnails of the slots.
 #[derive(Default)]
@@ -35,8 +35,7 @@ impl Strip {
         let frame = theme::panel(egui::Margin::symmetric(10, 5));
         egui::Panel::bottom("slots").frame(frame).show(ui, |ui| {
             egui::ScrollArea::horizontal().auto_shrink([false, true]).show(ui, |ui| {
-                ui.horizontal(|ui| {
-                    ui.set_min_height(HEIGHT);
+                ui.horizontal_top(|ui| {
                     ui.spacing_mut().item_spacing.x = 6.0;
                     live(ui, facts, commands);
                     for number in SlotNumber::ALL {
@@ -64,14 +63,14 @@ impl Strip {
         let is_compared = facts.model.view.compared_slot() == Some(number);
         let mut is_touched = false;
         let framed = egui::Frame::new().inner_margin(egui::Margin::same(4)).show(ui, |ui| {
-            ui.horizontal(|ui| {
+            ui.horizontal_top(|ui| {
                 if self.thumbnail(ui, number, &slot) {
                     commands.push(if is_shown { Command::LookLive } else { Command::Look(number) });
                 }
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
                     if let Some(name) = slots.name_mut(number) {
-                        let edit = TextEdit::singleline(name).desired_width(NAME - 8.0);
+                        let edit = TextEdit::singleline(name).desired_width(NAME).margin(vec2(4.0, 1.0));
                         let response =
                             ui.add(edit).on_hover_text("The name of this slot; click to change it");
                         let response = response.accessible_name(format!("Name of slot {number}"));
@@ -176,7 +175,8 @@ fn buttons(
             is_given = true;
         }
     }
-    let menu = ui.menu_button("More", |ui| {
+    let more = egui::containers::menu::MenuButton::from_button(Button::new("More").small());
+    let (response, inner) = more.ui(ui, |ui| {
         ui.set_width(250.0);
         let before = commands.len();
         item(ui, facts, commands, Command::OpenSlot);
@@ -200,8 +200,8 @@ fn buttons(
         commands.len() > before
     });
     let help = "Go on from this picture, save it, or delete it";
-    menu.response.on_hover_text(help).accessible_name(format!("More about slot {number}"));
-    is_given | menu.inner.unwrap_or_default()
+    response.on_hover_text(help).accessible_name(format!("More about slot {number}"));
+    is_given | inner.is_some_and(|inner| inner.inner)
 }
 
 fn memory_words(slot: &Slot, slots: &Slots) -> String {

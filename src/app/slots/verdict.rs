@@ -7,7 +7,7 @@ use crate::app::theme;
 use crate::compare::{Side, compare_sides, told};
 use crate::film::Film;
 use crate::recipe::Recipe;
-use eframe::egui::{self, Align2, RichText};
+use eframe::egui::{self, Align2, RichText, Sense, TextStyle, vec2};
 use std::sync::Arc;
 
 /// A picture to compare.
@@ -57,7 +57,7 @@ impl Verdict {
         let shared = subject.shared_film();
         // The live film goes on, so it is copied first.
         subject.inspect(move |film| {
-            let copy = shared.map_or_else(|| film.try_clone().map(Arc::new), Ok);
+            let copy = shared.map_or_else(|| film.try_copy().map(Arc::new), Ok);
             match copy {
                 Ok(film) => {
                     recipe.samples_per_pixel = film.sample_count();
@@ -105,10 +105,10 @@ impl Verdict {
             .open(&mut is_open)
             .pivot(Align2::CENTER_CENTER)
             .default_pos(room.center())
-            .max_width((room.width() - 60.0).min(680.0))
             .collapsible(false)
             .resizable(false)
             .show(context, |ui| {
+                ui.set_width((room.width() - 60.0).min(640.0));
                 ui.add(egui::Label::new(RichText::new(format!("{first}  and  {second}")).weak()).wrap());
                 ui.add_space(4.0);
                 match &self.found {
@@ -152,17 +152,17 @@ impl Verdict {
 
 /// Draws the lines of a comparison: a label, and words that may need several lines.
 fn text(ui: &mut egui::Ui, text: &str) {
-    egui::Grid::new("comparison").num_columns(2).spacing([12.0, 4.0]).show(ui, |ui| {
-        for line in text.lines() {
-            let (label, words) = line.split_once(' ').unwrap_or((line, ""));
-            ui.label(RichText::new(label).color(ui.visuals().weak_text_color()));
-            ui.scope(|ui| {
-                ui.set_max_width(ui.available_width().min(560.0));
-                ui.add(egui::Label::new(words.trim()).wrap());
-            });
-            ui.end_row();
-        }
-    });
+    const LABELS: f32 = 76.0;
+    for line in text.lines() {
+        let (label, words) = line.split_once(' ').unwrap_or((line, ""));
+        ui.horizontal_top(|ui| {
+            let size = vec2(LABELS, ui.text_style_height(&TextStyle::Body));
+            let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+            let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().weak_text_color());
+            ui.painter().text(place.min, Align2::LEFT_TOP, label, font, colour);
+            ui.add(egui::Label::new(words.trim()).wrap());
+        });
+    }
 }
 
 fn compare_on_thread(

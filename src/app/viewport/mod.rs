@@ -4,6 +4,7 @@ mod crop;
 mod paint;
 mod placement;
 mod selection;
+mod still;
 
 pub use paint::Pictures;
 pub use placement::Placement;
@@ -132,7 +133,7 @@ impl Viewport {
         // A picture that was kept does not change, and a part that is being marked stays where it is.
         let is_still = is_kept || crop.is_some();
         if is_still && !is_held {
-            self.handle_still_drag(ui, &response, crop.is_none());
+            still::handle(ui, &response, &mut self.placement, crop.is_none());
             is_held = true;
         }
         if !is_held {
@@ -231,23 +232,6 @@ impl Viewport {
         }
     }
 
-    /// Handles drags and the wheel on a picture whose camera stays: they move and zoom the picture.
-    fn handle_still_drag(&mut self, ui: &Ui, response: &Response, is_primary_free: bool) {
-        let (modifiers, scroll, zoom) =
-            ui.input(|input| (input.modifiers, input.smooth_scroll_delta().y, input.zoom_delta()));
-        let is_primary = response.dragged_by(PointerButton::Primary) && (is_primary_free || modifiers.shift);
-        if is_primary || response.dragged_by(PointerButton::Middle) {
-            self.placement.pan_by(response.drag_delta());
-            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
-        }
-        if let Some(pointer) = response.hover_pos() {
-            let factor = zoom * (scroll * DOLLY_PER_POINT as f32).exp();
-            if factor != 1.0 {
-                self.placement.zoom_at(pointer, factor);
-            }
-        }
-    }
-
     fn handle_click(
         &mut self,
         ui: &Ui,
@@ -328,20 +312,7 @@ impl Viewport {
         touch: &mut Touch,
     ) {
         ui.set_width(menu::MENU_WIDTH);
-        if facts.model.view.crop.is_some() {
-            for command in [Command::CopyCrop, Command::SaveCrop, Command::Crop] {
-                menu::item(ui, facts, commands, command);
-            }
-            return;
-        }
-        if facts.model.view.slots.looked().is_some() {
-            for command in [Command::LookLive, Command::Swap, Command::OpenSlot, Command::DeleteSlot] {
-                menu::item(ui, facts, commands, command);
-            }
-            ui.separator();
-            for command in [Command::CopyPicture, Command::Crop, Command::CopyCommand] {
-                menu::item(ui, facts, commands, command);
-            }
+        if still::menu(ui, facts, commands) {
             return;
         }
         if let Some(at) = self.menu_at {
