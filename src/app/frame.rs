@@ -6,9 +6,11 @@ use super::model::Model;
 use super::model::show::Show;
 use super::theme;
 use super::tracer::{Shown, Want};
+use super::widgets;
 use super::window::Window;
 use crate::scene::Camera;
 use eframe::egui;
+use glam::DVec3;
 use std::time::{Duration, Instant};
 
 /// Seconds between press and release of a click. A frame can take long while the device prepares a large scene.
@@ -25,6 +27,7 @@ impl Window {
         self.fit_on_screen(&context);
         self.poll(&context);
         self.receive(&context);
+        self.go_on_flying(&context);
         self.take_input(&context);
         self.perform_all(&context);
         self.layout(ui);
@@ -102,7 +105,7 @@ impl Window {
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
         let before = self.model.document.camera;
         if is_free && input::fly(context, &mut self.model.document.camera) {
-            self.stop_at_surfaces(&before);
+            self.stop_at_surfaces(&before, None);
             self.changes.note_move();
         }
     }
@@ -122,10 +125,11 @@ impl Window {
         }
     }
 
-    /// Ends a move of the camera from `before` in front of the first surface.
-    pub(super) fn stop_at_surfaces(&mut self, before: &Camera) {
+    /// Ends a move of the camera from `before` in front of the first surface. `pivot` is the point that the move keeps where
+    /// it is in the picture, if there is one.
+    pub(super) fn stop_at_surfaces(&mut self, before: &Camera, pivot: Option<DVec3>) {
         let document = &self.model.document;
-        let stopped = self.surfaces.stop(document, before, &document.camera);
+        let stopped = self.surfaces.stop(document, before, &document.camera, pivot);
         self.model.document.camera = stopped;
     }
 
@@ -140,7 +144,7 @@ impl Window {
         if let Err(reason) = self.spheres.follow(context, &mut self.model) {
             self.toasts.bad(reason);
         }
-        if self.changes.follow(context, &self.model.document) {
+        if self.changes.follow(context, &self.model.document, widgets::is_typing(context)) {
             self.seconds_before = Some(0.0);
             if let Some(log) = &mut self.frame_log {
                 log.changed();

@@ -117,7 +117,7 @@ impl Window {
                 notices: surfaces.inside(document).into_iter().chain(same).collect(),
             };
             let (camera, divider) = (&mut document.camera, &mut view.divider);
-            let handle = Handle { camera, divider, selected };
+            let handle = Handle { camera, divider, selected, surfaces };
             viewport.ui(ui, handle, pictures, &facts, commands)
         });
         let touch = touch.inner;
@@ -129,7 +129,7 @@ impl Window {
             self.paths.list(&self.model.document, pixel, ui.ctx());
         }
         if touch.is_move {
-            self.stop_at_surfaces(&before);
+            self.stop_at_surfaces(&before, touch.pivot);
         }
         if touch.is_orbit && facts.no_rays().is_none() {
             self.note_step(Step::Orbit);

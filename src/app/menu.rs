@@ -97,8 +97,9 @@ fn section(command: Command) -> u8 {
         Command::CopyPicture | Command::CopyCommand => 2,
         Command::LoadReference => 3,
         Command::Quit => 4,
-        Command::Home | Command::ResetAll => 1,
-        Command::AddBookmark => 2,
+        Command::ResetAll | Command::ViewFrom(_) => 1,
+        Command::AddBookmark | Command::FlyBookmarks | Command::SaveFlight => 2,
+        Command::Flights => 3,
         Command::NextSphere | Command::PreviousSphere | Command::Deselect => 1,
         Command::FocusSphere | Command::LookAtSphere => 2,
         Command::ResetSpheres => 3,
@@ -109,6 +110,7 @@ fn section(command: Command) -> u8 {
         | Command::Info
         | Command::Plot
         | Command::Packet
+        | Command::Gizmo
         | Command::NextPanel
         | Command::FullScreen => 3,
         Command::Theme(_) => 4,

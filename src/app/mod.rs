@@ -15,6 +15,7 @@ mod dialogs;
 mod facts;
 mod files;
 mod first_steps;
+mod flight;
 mod frame;
 mod frame_log;
 mod identity;
@@ -30,6 +31,7 @@ mod packet;
 mod panels;
 mod paths;
 mod perform;
+mod perform_flights;
 mod perform_spheres;
 mod pixel_values;
 mod places;
@@ -58,6 +60,7 @@ pub use model::document::Document;
 pub use model::origin::{Origin, Source};
 pub use model::remembered::Theme;
 pub use model::show::Show;
+pub use model::side::Side;
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
@@ -83,10 +86,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
     for &renderer in renderers(options.draw_with) {
         let (native, options) = (native_options(renderer), options.clone());
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
-            let mut window = Window::new(options, context.storage)?;
-            // Before the first frame, which would have egui's own style otherwise.
-            window.dress(&context.egui_ctx);
-            Ok(Box::new(window) as Box<dyn eframe::App>)
+            Ok(Box::new(create(options, &context.egui_ctx, context.storage)?) as Box<dyn eframe::App>)
         });
         match eframe::run_native("weekender", native, create) {
             Ok(()) => return Ok(ExitCode::SUCCESS),
@@ -98,6 +98,17 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         }
     }
     Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
+}
+
+/// Makes the window before its first frame, which would have egui's own style otherwise.
+fn create(
+    options: WindowOptions,
+    context: &egui::Context,
+    storage: Option<&dyn eframe::Storage>,
+) -> Result<Window> {
+    let mut window = Window::new(options, storage)?;
+    window.dress(context);
+    Ok(window)
 }
 
 /// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu
@@ -137,4 +148,35 @@ fn display() -> String {
     let values = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].map(std::env::var_os);
     let named: Vec<_> = values.iter().flatten().map(|value| value.to_string_lossy()).collect();
     named.join(" ").trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Request, parse};
+
+    #[test]
+    fn the_first_frame_has_the_style_of_those_that_follow() {
+        let context = egui::Context::default();
+        let own = context.global_style();
+        let words = "weekender --stage normals --size 16x9 --samples 1";
+        let Request::Window(options) = parse(words.split_whitespace().map(Into::into)).unwrap() else {
+            panic!("{words}");
+        };
+        let mut window = create(*options, &context, None).unwrap();
+        let mut styles = Vec::new();
+        for _ in 0..3 {
+            let input = egui::RawInput {
+                screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0))),
+                ..egui::RawInput::default()
+            };
+            let _ = context.run_ui(input, |ui| {
+                styles.push(ui.style().as_ref().clone());
+                window.ui_in(ui);
+            });
+        }
+        let [first, .., last] = &styles[..] else { panic!("{} frames", styles.len()) };
+        assert!(first == last, "the first frame has another style");
+        assert!(*first != *own, "the style is egui's own");
+    }
 }

@@ -4,8 +4,9 @@
 use super::answers::Answers;
 use super::model::checked::CheckedScene;
 use super::model::document::Document;
+use super::navigation;
 use crate::prepared::hierarchy::Hierarchy;
-use crate::scene::{Camera, Scene, Sphere};
+use crate::scene::{Camera, Nearest, Pick, Scene, Sphere};
 use crate::stages::Shading;
 use eframe::egui::Context;
 use glam::DVec3;
@@ -80,9 +81,15 @@ impl Surfaces {
         Some(format!("the camera is inside sphere {sphere} ({material})"))
     }
 
+    /// Where the ray through the point `place` of the picture hits the scene.
+    pub fn pick(&self, document: &Document, camera: &Camera, place: [f64; 2]) -> Option<Pick> {
+        let direction = camera.direction_through(place, document.aspect());
+        self.near(document).pick(camera.look_from, direction)
+    }
+
     /// The camera that a move from `before` to `after` leads to: it stays outside of the spheres that `before` is
-    /// outside of.
-    pub fn stop(&self, document: &Document, before: &Camera, after: &Camera) -> Camera {
+    /// outside of. `pivot` is the point that the move keeps where it is in the picture, if there is one.
+    pub fn stop(&self, document: &Document, before: &Camera, after: &Camera, pivot: Option<DVec3>) -> Camera {
         if before.look_from == after.look_from {
             return *after;
         }
@@ -90,16 +97,19 @@ impl Surfaces {
         let [low, high] = GAP_SHARES.map(|share| share * distance);
         let gap = after.lens_radius().clamp(low, high);
         let near = self.near(document);
-        let mut look_from = near.slide(before.look_from, after.look_from, gap);
-        if look_from != after.look_from && is_orbit(before, after) {
-            // Sliding led off the circle.
-            let away = (look_from - after.look_at).normalize_or_zero();
-            look_from = near.slide(look_from, after.look_at + distance * away, gap);
+        let look_from = near.slide(before.look_from, after.look_from, gap);
+        if look_from == after.look_from {
+            return *after;
         }
-        // A flying camera looks in the same direction as before; one that orbits looks at the same point.
-        let is_flying = before.look_at != after.look_at;
-        let off = if is_flying { look_from - after.look_from } else { DVec3::ZERO };
-        let stopped = Camera { look_from, look_at: after.look_at + off, ..*after };
+        if let Some(pivot) = pivot.filter(|pivot| is_orbit(before, after, *pivot)) {
+            // Sliding led off the circle.
+            let away = (look_from - pivot).normalize_or_zero();
+            let onto = pivot + after.look_from.distance(pivot) * away;
+            return navigation::orbited_to(after, pivot, near.slide(look_from, onto, gap));
+        }
+        // It looks in the same direction as before, and at a point as far away.
+        let look_at = before.look_at + (look_from - before.look_from);
+        let stopped = Camera { look_from, look_at, ..*before };
         if stopped.validate().is_ok() { stopped } else { *before }
     }
 
@@ -113,10 +123,10 @@ impl Surfaces {
     }
 }
 
-/// Whether a move keeps the distance to the point that the camera looks at.
-fn is_orbit(before: &Camera, after: &Camera) -> bool {
-    let [old, new] = [before, after].map(|camera| camera.look_from.distance(camera.look_at));
-    before.look_at == after.look_at && (old - new).abs() <= 1e-6 * old
+/// Whether a move keeps the distance to the pivot.
+fn is_orbit(before: &Camera, after: &Camera, pivot: DVec3) -> bool {
+    let [old, new] = [before, after].map(|camera| camera.look_from.distance(pivot));
+    (old - new).abs() <= 1e-6 * old
 }
 
 /// The spheres of a scene by place.
@@ -143,6 +153,17 @@ impl Near<'_> {
                 }
             }
         }
+    }
+
+    /// The first hit of a ray, as [`Scene::pick`] finds it.
+    fn pick(&self, eye: DVec3, direction: DVec3) -> Option<Pick> {
+        let Some(Tree { hierarchy, origin }) = self.tree else { return self.scene.pick(eye, direction) };
+        let mut nearest = Nearest::default();
+        hierarchy.along(eye - *origin, direction, |sphere| {
+            nearest.take(self.scene, sphere, eye, direction);
+            nearest.distance()
+        });
+        self.scene.picked(nearest, eye, direction)
     }
 
     /// The smallest sphere that `point` is inside of.
@@ -239,11 +260,12 @@ mod tests {
     }
 
     /// Moves the camera many times and checks it each time.
-    fn moved(name: &str, step: impl Fn(&Camera) -> Camera) -> (Document, Camera) {
+    fn moved(name: &str, step: impl Fn(&Camera) -> (Camera, Option<DVec3>)) -> (Document, Camera) {
         let (document, surfaces) = opened(name);
         let (first, mut camera) = (document.camera, document.camera);
         for _ in 0..400 {
-            camera = surfaces.stop(&document, &camera, &step(&camera));
+            let (after, pivot) = step(&camera);
+            camera = surfaces.stop(&document, &camera, &after, pivot);
             let clearance = clearance(&document, camera.look_from);
             assert!(clearance > 0.0, "{name}: {clearance} at {}", camera.look_from);
         }
@@ -254,7 +276,10 @@ mod tests {
     #[test]
     fn an_orbit_downwards_stays_above_the_ground() {
         for name in ["book", "field:10000"] {
-            let (document, camera) = moved(name, |camera| navigation::orbit(camera, 0.003, -0.02));
+            let (document, camera) = moved(name, |camera| {
+                let pivot = camera.look_at;
+                (navigation::orbit(camera, pivot, 0.003, -0.02), Some(pivot))
+            });
             let (before, after) =
                 [document.camera, camera].map(|camera| camera.look_from.distance(camera.look_at)).into();
             assert!(after > 0.5 * before && after < 2.0 * before, "{name}: from {before} to {after}");
@@ -267,24 +292,34 @@ mod tests {
         Arc::make_mut(&mut recipe.scene).spheres.truncate(1);
         let document = Document::new(Origin::new(recipe, Source::Builtin));
         let (surfaces, before) = (Surfaces::default(), document.camera);
-        for down in [0.02, 0.6] {
+        for (down, aside) in [(0.02, [0.5, 0.5]), (0.6, [0.5, 0.5]), (0.02, [0.7, 0.8])] {
             let mut camera = before;
+            let pivot = match aside {
+                [0.5, 0.5] => before.look_at,
+                _ => surfaces.pick(&document, &before, aside).unwrap().point,
+            };
             for _ in 0..100 {
-                camera = surfaces.stop(&document, &camera, &navigation::orbit(&camera, 0.003, -down));
+                let after = navigation::orbit(&camera, pivot, 0.003, -down);
+                camera = surfaces.stop(&document, &camera, &after, Some(pivot));
             }
-            let [old, new] = [before, camera].map(|camera| camera.look_from.distance(camera.look_at));
+            let [old, new] = [before, camera].map(|camera| camera.look_from.distance(pivot));
             assert!((new / old - 1.0).abs() < 0.01, "{down}: from {old} to {new}");
             assert!(clearance(&document, camera.look_from) < 0.01 * old, "{down}: {}", camera.look_from);
+            let place = camera.place_of(pivot, document.aspect()).unwrap();
+            let off = [0, 1].map(|axis| (place[axis] - aside[axis]).abs());
+            assert!(off[0] < 0.02 && off[1] < 0.02, "{down}: the pivot went from {aside:?} to {place:?}");
         }
     }
 
     #[test]
     fn a_dolly_stops_in_front_and_a_flight_keeps_its_direction() {
-        let (document, camera) = moved("three-spheres", |camera| navigation::dolly(camera, 0.9));
+        let (document, camera) = moved("three-spheres", |camera| {
+            (navigation::dolly(camera, camera.look_at, 0.9), Some(camera.look_at))
+        });
         assert!(clearance(&document, camera.look_from) < 0.01, "close to the ball: {}", camera.look_from);
         let ahead = |camera: &Camera| (camera.look_at - camera.look_from).normalize();
         for by in [DVec3::Z, DVec3::NEG_Y, DVec3::X, DVec3::new(0.3, -1.0, 1.0)] {
-            let (document, camera) = moved("book", |camera| navigation::fly(camera, 0.2 * by));
+            let (document, camera) = moved("book", |camera| (navigation::fly(camera, 0.2 * by), None));
             assert!(ahead(&camera).distance(ahead(&document.camera)) < 1e-9, "{by}");
         }
     }
@@ -343,18 +378,67 @@ mod tests {
     }
 
     #[test]
+    fn the_wheel_never_leads_through_what_is_under_the_pointer() {
+        for (name, place) in
+            [("three-spheres", [0.62, 0.5]), ("book", [0.3, 0.7]), ("field:10000", [0.5, 0.9])]
+        {
+            let (document, surfaces) = opened(name);
+            let (first, aspect) = (document.camera, document.aspect());
+            let direction = first.direction_through(place, aspect);
+            let target = surfaces.pick(&document, &first, place).unwrap();
+            let mut camera = first;
+            for _ in 0..200 {
+                let point = surfaces.pick(&document, &camera, place).unwrap().point;
+                let after = navigation::dolly(&camera, point, 0.8);
+                camera = surfaces.stop(&document, &camera, &after, Some(point));
+                assert!(clearance(&document, camera.look_from) > 0.0, "{name}");
+            }
+            let left = camera.look_from.distance(target.point);
+            assert!(left < 0.06 * target.distance, "{name}: {left} of {}", target.distance);
+            assert!(camera.direction_through(place, aspect).distance(direction) < 1e-9, "{name}");
+            // A blocked wheel does not go on to bring what is looked at nearer.
+            let ahead = camera.look_from.distance(camera.look_at);
+            assert!(ahead > 0.1 * left, "{name}: looks {ahead} ahead, {left} before the surface");
+        }
+    }
+
+    #[test]
+    fn the_hierarchy_picks_what_a_scan_picks() {
+        let (document, surfaces) = opened("field:10000");
+        let (camera, scene) = (document.camera, document.scene());
+        let mut hits = 0;
+        for y in 0..40 {
+            for x in 0..60 {
+                let place = [(f64::from(x) + 0.5) / 60.0, (f64::from(y) + 0.5) / 40.0];
+                let direction = camera.direction_through(place, document.aspect());
+                let scanned = scene.pick(camera.look_from, direction);
+                assert_eq!(surfaces.pick(&document, &camera, place), scanned, "{place:?}");
+                hits += usize::from(scanned.is_some_and(|pick| pick.sphere > 0));
+                // From within a sphere, and along the axes of the boxes.
+                let eye = scene.spheres[1 + 4 * (60 * y as usize + x as usize)].center;
+                for direction in [direction, DVec3::X, DVec3::NEG_Y] {
+                    let picked = surfaces.near(&document).pick(eye, direction);
+                    assert_eq!(picked, scene.pick(eye, direction), "{eye} {direction}");
+                }
+            }
+        }
+        assert!(hits > 300, "{hits}");
+    }
+
+    #[test]
     fn a_move_among_a_million_spheres_costs_no_frame() {
         let (document, surfaces) = opened("field:1000000");
         let mut camera = document.camera;
         let mut slowest = Duration::ZERO;
         for step in 0..300 {
+            let pivot = camera.look_at;
             let wanted = match step % 3 {
-                0 => navigation::orbit(&camera, 0.01, -0.02),
-                1 => navigation::dolly(&camera, 0.97),
+                0 => navigation::orbit(&camera, pivot, 0.01, -0.02),
+                1 => navigation::dolly(&camera, pivot, 0.97),
                 _ => navigation::fly(&camera, DVec3::new(0.0, -0.5, 2.0)),
             };
             let begin = Instant::now();
-            camera = surfaces.stop(&document, &camera, &wanted);
+            camera = surfaces.stop(&document, &camera, &wanted, Some(pivot));
             slowest = slowest.max(begin.elapsed());
         }
         assert!(slowest < Duration::from_millis(8), "{slowest:?}");

@@ -8,6 +8,7 @@ use super::dialogs::Dialogs;
 use super::facts::Facts;
 use super::files::Files;
 use super::first_steps::Card;
+use super::flight::Flight;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::identity::Identity;
 use super::inspector::Inspector;
@@ -69,6 +70,8 @@ pub struct Window {
     pub(super) dialogs: Dialogs,
     pub(super) toasts: Toasts,
     pub(super) first_steps: Card,
+    /// The flight of the camera, if it moves by itself.
+    pub(super) flight: Option<Flight>,
     /// Commands to be carried out.
     pub(super) commands: Vec<Command>,
     /// A film to be read once a frame can be woken, and its job.
@@ -165,6 +168,7 @@ impl Window {
             dialogs: Dialogs::default(),
             toasts: Toasts::default(),
             first_steps: Card::default(),
+            flight: None,
             commands: Vec::new(),
             pending_resume,
             pending_save: None,

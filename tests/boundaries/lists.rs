@@ -329,7 +329,8 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("texture", &[]),
     ("widgets", &[]),
     ("navigation", &[]),
-    ("surfaces", &["model", "answers"]),
+    ("surfaces", &["model", "answers", "navigation"]),
+    ("flight", &["model"]),
     ("speed", &[]),
     ("frame_log", &[]),
     ("prediction", &[]),
@@ -365,6 +366,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "theme",
             "texture",
             "navigation",
+            "surfaces",
             "paths",
             "pixel_values",
             "menu",
@@ -382,6 +384,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "frame_log",
             "toasts",
             "first_steps",
+            "flight",
             "changes",
             "tracer",
             "layers",
@@ -405,6 +408,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ),
     ("perform", &["model", "command", "facts", "theme", "places", "plot", "dialogs", "window"]),
     ("perform_spheres", &["model", "command", "navigation", "spheres", "window"]),
+    ("perform_flights", &["model", "command", "flight", "window"]),
     ("receive", &["model", "command", "files", "window"]),
     ("rescue", &["window"]),
     ("queries", &["model", "command", "window"]),
@@ -424,10 +428,20 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "window",
         ],
     ),
-    ("frame", &["model", "theme", "frame_log", "tracer", "input", "window"]),
+    ("frame", &["model", "theme", "frame_log", "tracer", "widgets", "input", "window"]),
     ("mod", &["model", "command", "theme", "window"]),
 ];
 
 /// Files that may use the whole window.
-pub const TOP: &[&str] =
-    &["window", "queries", "perform", "perform_spheres", "receive", "rescue", "layout", "frame", "mod"];
+pub const TOP: &[&str] = &[
+    "window",
+    "queries",
+    "perform",
+    "perform_spheres",
+    "perform_flights",
+    "receive",
+    "rescue",
+    "layout",
+    "frame",
+    "mod",
+];

@@ -12,6 +12,8 @@ pub enum Purpose {
     Save(OutputFormat),
     /// To save the scene.
     SaveScene,
+    /// To save the scene with the bookmarks as keyframes.
+    SaveFlight,
     /// To save the plot's points.
     SavePlot,
     /// To load it as a film to compare with.
@@ -27,6 +29,7 @@ impl Purpose {
             Purpose::Save(OutputFormat::P6) => "Save picture as PPM",
             Purpose::Save(OutputFormat::Exr) => "Save film as EXR",
             Purpose::SaveScene => "Save scene file",
+            Purpose::SaveFlight => "Save scene file with keyframes",
             Purpose::SavePlot => "Save error against time as CSV",
             Purpose::ReferenceFilm => "Load reference film",
         }
@@ -42,7 +45,7 @@ impl Purpose {
 
     /// Whether the file will be written.
     pub fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save(_) | Purpose::SaveScene | Purpose::SavePlot)
+        matches!(self, Purpose::Save(_) | Purpose::SaveScene | Purpose::SaveFlight | Purpose::SavePlot)
     }
 
     /// The possible file endings, without the dot.
@@ -52,7 +55,7 @@ impl Purpose {
             Purpose::Save(OutputFormat::Png) => &["png"],
             Purpose::Save(OutputFormat::P6) => &["ppm"],
             Purpose::Save(OutputFormat::Exr) | Purpose::ReferenceFilm => &["exr"],
-            Purpose::SaveScene => &["toml"],
+            Purpose::SaveScene | Purpose::SaveFlight => &["toml"],
             Purpose::SavePlot => &["csv"],
         }
     }

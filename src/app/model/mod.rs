@@ -11,6 +11,7 @@ pub mod further;
 pub mod origin;
 pub mod remembered;
 pub mod show;
+pub mod side;
 pub mod tone;
 pub mod view;
 

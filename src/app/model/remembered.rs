@@ -83,6 +83,10 @@ pub struct Remembered {
     pub has_packet: bool,
     /// Whether the code of the stage is shown.
     pub has_code: bool,
+    /// Whether the axes are shown in a corner of the viewport.
+    pub has_gizmo: bool,
+    /// Whether the camera flies to a bookmark; otherwise it jumps.
+    pub has_flights: bool,
     /// The device that traces.
     pub device: Device,
     /// Lanes per packet; `None` for as many as a register holds.
@@ -109,6 +113,8 @@ impl Default for Remembered {
             has_plot: false,
             has_packet: false,
             has_code: false,
+            has_gizmo: true,
+            has_flights: true,
             device: Device::Cpu,
             lanes: None,
             threads: None,
