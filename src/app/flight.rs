@@ -125,7 +125,7 @@ fn direction_between(from: &Camera, to: &Camera, share: f64) -> (DVec3, DVec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::side::Side;
+    use crate::app::model::viewpoint::Viewpoint;
 
     const CAMERA: Camera =
         Camera { look_from: DVec3::new(0.0, 1.0, 5.0), look_at: DVec3::new(0.0, 0.0, -1.0), ..Camera::BOOK };
@@ -145,7 +145,8 @@ mod tests {
 
     #[test]
     fn a_flight_ends_at_its_camera_to_the_bit_and_never_jumps() {
-        let mut targets: Vec<Camera> = Side::ALL.iter().map(|side| side.camera(&CAMERA, DVec3::Y)).collect();
+        let mut targets: Vec<Camera> =
+            Viewpoint::ALL.iter().map(|side| side.camera(&CAMERA, DVec3::Y)).collect();
         targets.push(Camera {
             look_from: DVec3::new(-30.0, 4.0, 2.0),
             look_at: DVec3::new(4.0, 1.0, 0.1),

@@ -60,7 +60,7 @@ pub use model::document::Document;
 pub use model::origin::{Origin, Source};
 pub use model::remembered::Theme;
 pub use model::show::Show;
-pub use model::side::Side;
+pub use model::viewpoint::Viewpoint;
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};

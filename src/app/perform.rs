@@ -262,7 +262,10 @@ impl Window {
     }
 
     fn ask_path(&mut self, purpose: Purpose) {
-        let name = self.document().name();
+        let mut name = self.document().name();
+        if purpose == Purpose::SaveFlight {
+            name.push_str("-path");
+        }
         let directory = self.model.remembered.directory.as_deref();
         self.dialogs.open(Dialog::Path(PathBox::new(purpose, &name, directory)));
     }

@@ -51,13 +51,13 @@ impl Camera {
 impl Scene {
     /// Finds the first sphere that a ray hits. `direction` must have length 1.
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Pick> {
-        let mut nearest = Nearest::default();
+        let mut nearest = NearestHit::default();
         (0..self.spheres.len()).for_each(|sphere| nearest.take(self, sphere, origin, direction));
         self.picked(nearest, origin, direction)
     }
 
     /// The hit of a ray after all spheres that it may hit have been taken.
-    pub fn picked(&self, nearest: Nearest, origin: DVec3, direction: DVec3) -> Option<Pick> {
+    pub fn picked(&self, nearest: NearestHit, origin: DVec3, direction: DVec3) -> Option<Pick> {
         let (sphere, distance) = nearest.0?;
         let point = origin + distance * direction;
         let outward = (point - self.spheres[sphere].center) / self.spheres[sphere].radius;
@@ -68,9 +68,9 @@ impl Scene {
 
 /// The nearest hit of a ray among the spheres taken so far, in any order: the index of the sphere, and the distance.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Nearest(Option<(usize, f64)>);
+pub struct NearestHit(Option<(usize, f64)>);
 
-impl Nearest {
+impl NearestHit {
     /// Takes a sphere. Of two hits at the same distance, the sphere that comes first in the scene wins.
     pub fn take(&mut self, scene: &Scene, sphere: usize, origin: DVec3, direction: DVec3) {
         let Sphere { center, radius, .. } = scene.spheres[sphere];

@@ -6,7 +6,7 @@ use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
-use weekender::app::{Command, Side, Window};
+use weekender::app::{Command, Viewpoint, Window};
 use weekender::cli::{self, Request};
 use weekender::scene::Camera;
 
@@ -179,7 +179,7 @@ fn a_click_on_the_axes_flies_to_that_side_in_one_undo_step() {
 #[test]
 fn a_view_from_the_top_can_be_turned() {
     let mut harness = opened("view-distant");
-    send(&mut harness, Command::ViewFrom(Side::Top));
+    send(&mut harness, Command::ViewFrom(Viewpoint::Top));
     harness.run_steps(60);
     assert_eq!(camera(&harness).vup, DVec3::NEG_Z);
     let (start, above) = (sky_or_corner(&harness), camera(&harness));
@@ -230,7 +230,7 @@ fn the_axes_can_be_hidden_and_stages_without_rays_have_none() {
     assert!(!is_shown(&harness), "nothing but the picture");
     let mut harness = opened("ppm-tiny");
     assert!(!is_shown(&harness));
-    assert!(harness.state().disabled_reason(Command::ViewFrom(Side::Top)).is_some());
+    assert!(harness.state().disabled_reason(Command::ViewFrom(Viewpoint::Top)).is_some());
     harness.step();
 }
 
@@ -238,7 +238,7 @@ fn the_axes_can_be_hidden_and_stages_without_rays_have_none() {
 #[test]
 fn the_axes_hide_the_picture_from_the_mouse() {
     let mut harness = opened("view-distant");
-    let ends = Side::ALL.map(|side| control(&harness, side.name()).rect());
+    let ends = Viewpoint::ALL.map(|side| control(&harness, side.name()).rect());
     let all = ends.into_iter().fold(egui::Rect::NOTHING, egui::Rect::union);
     let (pos, button, modifiers) = (all.center(), PointerButton::Primary, Modifiers::NONE);
     assert!(ends.iter().all(|end| !end.contains(pos)), "{ends:?}");

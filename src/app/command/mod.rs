@@ -7,7 +7,7 @@ mod words;
 use super::model::device::Device;
 use super::model::remembered::Theme;
 use super::model::show::Show;
-use super::model::side::Side;
+use super::model::viewpoint::Viewpoint;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
@@ -97,7 +97,7 @@ pub enum Command {
     /// Reset everything to the values of the stage.
     ResetAll,
     /// Look at the same point from this side.
-    ViewFrom(Side),
+    ViewFrom(Viewpoint),
     /// Add a bookmark of the camera.
     AddBookmark,
     /// Go to this bookmark, counted from 0.
@@ -211,7 +211,7 @@ impl Command {
         let mut all = vec![Open, Save(OutputFormat::Png), Save(OutputFormat::P6), Save(OutputFormat::Exr)];
         all.extend([SaveScene, CopyPicture, CopyCommand, LoadReference, CopyPlot, SavePlot, Quit]);
         all.extend([Undo, Redo, ResetAll, Home]);
-        all.extend(self::Side::ALL.map(ViewFrom));
+        all.extend(self::Viewpoint::ALL.map(ViewFrom));
         all.extend([AddBookmark, FlyBookmarks, SaveFlight, Flights]);
         all.extend([AddSphere, DuplicateSphere, DeleteSphere, NextSphere, PreviousSphere, Deselect]);
         all.extend([FocusSphere, LookAtSphere, ResetSpheres]);

@@ -11,9 +11,9 @@ pub mod further;
 pub mod origin;
 pub mod remembered;
 pub mod show;
-pub mod side;
 pub mod tone;
 pub mod view;
+pub mod viewpoint;
 
 use crate::backends::BackendChoice;
 use device::DeviceOptions;

@@ -4,7 +4,7 @@
 use super::Touch;
 use super::moving::{Sight, angles};
 use crate::app::command::Command;
-use crate::app::model::side::Side;
+use crate::app::model::viewpoint::Viewpoint;
 use crate::app::navigation;
 use crate::app::theme;
 use crate::scene::Camera;
@@ -34,7 +34,7 @@ const LETTERS: [&str; 3] = ["x", "y", "z"];
 
 /// An end of an axis on the screen.
 struct End {
-    side: Side,
+    side: Viewpoint,
     at: Pos2,
     /// Towards the viewer, -1 to 1.
     depth: f64,
@@ -101,15 +101,15 @@ fn orbit(held: &Response, (camera, sight): (&mut Camera, Sight<'_>), touch: &mut
     }
 }
 
-/// The ends in the order of [`Side::ALL`], in which the keyboard goes through them.
+/// The ends in the order of [`Viewpoint::ALL`], in which the keyboard goes through them.
 fn ends(camera: &Camera, middle: Pos2) -> Vec<End> {
     let basis = camera.basis();
-    let end = |side: Side| {
+    let end = |side: Viewpoint| {
         let direction = side.direction();
         let [right, up, depth] = [basis.u, basis.v, basis.w].map(|axis| axis.dot(direction));
         End { side, at: middle + LENGTH * vec2(right as f32, -up as f32), depth }
     };
-    Side::ALL.map(end).into()
+    Viewpoint::ALL.map(end).into()
 }
 
 /// The end in front at a point of the screen.
@@ -118,7 +118,7 @@ fn front(ends: &[End], at: Pos2) -> Option<&End> {
     there.max_by(|a, b| a.depth.total_cmp(&b.depth))
 }
 
-fn paint(ui: &Ui, middle: Pos2, mut ends: Vec<End>, hot: Option<Side>) {
+fn paint(ui: &Ui, middle: Pos2, mut ends: Vec<End>, hot: Option<Viewpoint>) {
     ends.sort_by(|a, b| a.depth.total_cmp(&b.depth));
     let painter = ui.painter();
     let font = FontId::proportional(11.0);
@@ -153,21 +153,21 @@ mod tests {
 
     #[test]
     fn the_ends_lie_as_the_scene_is_seen() {
-        let at = |side: Side| {
+        let at = |side: Viewpoint| {
             let found = ends(&Camera::BOOK, pos2(100.0, 100.0));
             found.iter().find(|end| end.side == side).map(|end| (end.at, end.depth)).unwrap()
         };
-        assert_eq!(at(Side::Right), (pos2(100.0 + LENGTH, 100.0), 0.0));
-        assert_eq!(at(Side::Top), (pos2(100.0, 100.0 - LENGTH), 0.0));
-        assert_eq!(at(Side::Front), (pos2(100.0, 100.0), 1.0));
-        assert_eq!(at(Side::Back), (pos2(100.0, 100.0), -1.0));
+        assert_eq!(at(Viewpoint::Right), (pos2(100.0 + LENGTH, 100.0), 0.0));
+        assert_eq!(at(Viewpoint::Top), (pos2(100.0, 100.0 - LENGTH), 0.0));
+        assert_eq!(at(Viewpoint::Front), (pos2(100.0, 100.0), 1.0));
+        assert_eq!(at(Viewpoint::Back), (pos2(100.0, 100.0), -1.0));
     }
 
     #[test]
     fn of_two_ends_the_one_in_front_is_meant() {
         let found = ends(&Camera::BOOK, pos2(100.0, 100.0));
-        assert_eq!(front(&found, pos2(101.0, 99.0)).map(|end| end.side), Some(Side::Front));
-        assert_eq!(front(&found, pos2(100.0 - LENGTH, 100.0)).map(|end| end.side), Some(Side::Left));
+        assert_eq!(front(&found, pos2(101.0, 99.0)).map(|end| end.side), Some(Viewpoint::Front));
+        assert_eq!(front(&found, pos2(100.0 - LENGTH, 100.0)).map(|end| end.side), Some(Viewpoint::Left));
         assert!(front(&found, pos2(115.0, 85.0)).is_none());
     }
 }

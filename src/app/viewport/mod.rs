@@ -120,6 +120,8 @@ impl Viewport {
         if !is_held {
             self.moving.handle(ui, &response, &mut self.placement, (camera, sight), &mut touch);
             self.handle_click(ui, &response, sight, camera, &mut touch);
+        } else {
+            self.moving = Moving::default();
         }
         let document = Document { camera: *camera, ..facts.document().clone() };
         paint(ui, [room, rect], &self.placement, *divider, pictures, &document, facts);

@@ -1,15 +1,18 @@
 //! The surfaces around the camera: a camera that moves stops at them and slides along, and a camera inside a sphere is
 //! told so.
 
+mod near;
+
 use super::answers::Answers;
 use super::model::checked::CheckedScene;
 use super::model::document::Document;
 use super::navigation;
 use crate::prepared::hierarchy::Hierarchy;
-use crate::scene::{Camera, Nearest, Pick, Scene, Sphere};
+use crate::scene::{Camera, Pick};
 use crate::stages::Shading;
 use eframe::egui::Context;
 use glam::DVec3;
+use near::{Near, Tree};
 use std::sync::Arc;
 
 /// With more spheres than this, a hierarchy finds the near ones.
@@ -18,15 +21,6 @@ const SCAN_LIMIT: usize = 2_000;
 /// How far from a surface the camera stops, as shares of the distance to `look_at`. Between these limits it is the
 /// radius of the lens, so that no ray starts inside the sphere.
 const GAP_SHARES: [f64; 2] = [1e-3, 0.05];
-
-/// The most surfaces that one move slides along.
-const SLIDES: usize = 8;
-
-/// A hierarchy over the spheres of a scene, with coordinates relative to `origin`.
-struct Tree {
-    hierarchy: Hierarchy<f32>,
-    origin: DVec3,
-}
 
 /// The surfaces of the document's scene.
 #[derive(Default)]
@@ -97,15 +91,17 @@ impl Surfaces {
         let [low, high] = GAP_SHARES.map(|share| share * distance);
         let gap = after.lens_radius().clamp(low, high);
         let near = self.near(document);
-        let look_from = near.slide(before.look_from, after.look_from, gap);
+        let circled = pivot.filter(|pivot| is_orbit(before, after, *pivot));
+        let target = pivot.filter(|_| circled.is_none());
+        let look_from = near.slide(before.look_from, after.look_from, gap, target);
         if look_from == after.look_from {
             return *after;
         }
-        if let Some(pivot) = pivot.filter(|pivot| is_orbit(before, after, *pivot)) {
+        if let Some(pivot) = circled {
             // Sliding led off the circle.
             let away = (look_from - pivot).normalize_or_zero();
             let onto = pivot + after.look_from.distance(pivot) * away;
-            return navigation::orbited_to(after, pivot, near.slide(look_from, onto, gap));
+            return navigation::orbited_to(after, pivot, near.slide(look_from, onto, gap, None));
         }
         // It looks in the same direction as before, and at a point as far away.
         let look_at = before.look_at + (look_from - before.look_from);
@@ -129,115 +125,13 @@ fn is_orbit(before: &Camera, after: &Camera, pivot: DVec3) -> bool {
     (old - new).abs() <= 1e-6 * old
 }
 
-/// The spheres of a scene by place.
-struct Near<'a> {
-    scene: &'a Scene,
-    tree: Option<&'a Tree>,
-}
-
-impl Near<'_> {
-    /// Calls `each` for every sphere that may touch a cube.
-    fn each(&self, middle: DVec3, reach: f64, mut each: impl FnMut(usize, &Sphere)) {
-        let spheres = &self.scene.spheres;
-        match self.tree {
-            Some(Tree { hierarchy, origin }) => {
-                let middle = middle - *origin;
-                hierarchy.near(middle - reach, middle + reach, |index| each(index, &spheres[index]));
-            }
-            None => {
-                for (index, sphere) in spheres.iter().enumerate() {
-                    let far = (sphere.center - middle).abs().max_element();
-                    if far <= sphere.radius + reach {
-                        each(index, sphere);
-                    }
-                }
-            }
-        }
-    }
-
-    /// The first hit of a ray, as [`Scene::pick`] finds it.
-    fn pick(&self, eye: DVec3, direction: DVec3) -> Option<Pick> {
-        let Some(Tree { hierarchy, origin }) = self.tree else { return self.scene.pick(eye, direction) };
-        let mut nearest = Nearest::default();
-        hierarchy.along(eye - *origin, direction, |sphere| {
-            nearest.take(self.scene, sphere, eye, direction);
-            nearest.distance()
-        });
-        self.scene.picked(nearest, eye, direction)
-    }
-
-    /// The smallest sphere that `point` is inside of.
-    fn innermost(&self, point: DVec3) -> Option<usize> {
-        let mut found: Option<(usize, f64)> = None;
-        self.each(point, 0.0, |index, sphere| {
-            let is_smaller = found.is_none_or(|(_, radius)| sphere.radius < radius);
-            if is_smaller && is_inside(sphere, point) {
-                found = Some((index, sphere.radius));
-            }
-        });
-        found.map(|(index, _)| index)
-    }
-
-    /// Where a straight move ends that stops `gap` in front of each sphere and slides along it. Where `from` is nearer
-    /// to a sphere than that, it may come no nearer. Spheres that `from` is inside of are no obstacle.
-    fn slide(&self, from: DVec3, to: DVec3, gap: f64) -> DVec3 {
-        let mut obstacles = Vec::new();
-        self.each(from, from.distance(to) + gap, |_, sphere| {
-            if !is_inside(sphere, from) {
-                let clearance = from.distance(sphere.center) - sphere.radius;
-                obstacles.push((sphere.center, sphere.radius + clearance.clamp(0.0, gap)));
-            }
-        });
-        let (mut at, mut left) = (from, to - from);
-        for _ in 0..SLIDES {
-            let hit = obstacles
-                .iter()
-                .filter_map(|(center, radius)| {
-                    Some((share_to(at - *center, *radius, left)?, *center, *radius))
-                })
-                .min_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((share, center, radius)) = hit else { return at + left };
-            at += share * left;
-            let Some(normal) = (at - center).try_normalize() else { return at };
-            at += normal * (radius - at.distance(center)).max(0.0);
-            left *= 1.0 - share;
-            left -= normal * left.dot(normal);
-        }
-        at
-    }
-}
-
-/// Whether a point is inside a sphere by more than the rounding of its distance.
-fn is_inside(sphere: &Sphere, point: DVec3) -> bool {
-    let size = sphere.center.abs().max_element() + sphere.radius + point.abs().max_element();
-    point.distance(sphere.center) - sphere.radius < -4.0 * f64::EPSILON * size
-}
-
-/// The share of the move `by` up to a sphere; `from` is relative to its centre. `None` if the move does not lead there.
-fn share_to(from: DVec3, radius: f64, by: DVec3) -> Option<f64> {
-    /// Moves at a smaller sine to the surface than this go along it.
-    const ALONG: f64 = 1e-12;
-    let (distance, length) = (from.length(), by.length());
-    let towards = -from.dot(by);
-    if towards <= ALONG * distance * length {
-        return None;
-    }
-    let outside = (distance - radius) * (distance + radius);
-    if outside <= 0.0 {
-        return Some(0.0);
-    }
-    let squared = towards * towards - length * length * outside;
-    let share = outside / (towards + squared.max(0.0).sqrt());
-    (squared >= 0.0 && share <= 1.0).then_some(share)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::app::model::origin::{Origin, Source};
     use crate::app::navigation;
     use crate::recipe::Recipe;
-    use crate::scene::Material;
+    use crate::scene::Sphere;
     use std::time::{Duration, Instant};
 
     fn opened(name: &str) -> (Document, Surfaces) {
@@ -325,25 +219,6 @@ mod tests {
     }
 
     #[test]
-    fn a_fast_move_does_not_jump_over_a_sphere() {
-        let mut scene = Scene::default();
-        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
-        scene.add_sphere(DVec3::new(0.0, 0.0, -5.0), 0.1, grey);
-        let near = Near { scene: &scene, tree: None };
-        let stopped = near.slide(DVec3::ZERO, DVec3::new(0.0, 0.0, -100.0), 0.01);
-        assert!((stopped.z + 4.89).abs() < 1e-12, "{stopped}");
-        // Inside, there is no obstacle, and outside of the gap neither.
-        let inside = DVec3::new(0.0, 0.0, -5.0);
-        assert_eq!(near.slide(inside, DVec3::X, 0.01), DVec3::X);
-        assert_eq!(near.slide(DVec3::ZERO, DVec3::Z, 0.01), DVec3::Z);
-        // Nearer than the gap, the camera can move away and along.
-        let close = DVec3::new(0.0, 0.0, -4.899);
-        assert_eq!(near.slide(close, DVec3::ZERO, 0.01), DVec3::ZERO);
-        let along = near.slide(close, close + DVec3::X, 0.01);
-        assert!(along.distance(close + DVec3::X) < 1e-9, "{along}");
-    }
-
-    #[test]
     fn the_innermost_sphere_is_named() {
         let (mut document, mut surfaces) = opened("three-spheres");
         let context = Context::default();
@@ -371,7 +246,7 @@ mod tests {
         for (index, sphere) in document.scene().spheres.iter().enumerate().skip(1).step_by(97) {
             assert_eq!(tree.innermost(sphere.center), scan.innermost(sphere.center));
             let [from, to] = [2.0, -2.0].map(|up| sphere.center + DVec3::new(0.1, up, 0.2));
-            assert_eq!(tree.slide(from, to, 0.01), scan.slide(from, to, 0.01), "sphere {index}");
+            assert_eq!(tree.slide(from, to, 0.01, None), scan.slide(from, to, 0.01, None), "sphere {index}");
             found += 1;
         }
         assert!(found > 50);

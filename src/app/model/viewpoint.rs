@@ -1,11 +1,11 @@
-//! The six sides that the scene can be looked at from, along the axes.
+//! The six points that the scene can be viewed from, along the axes.
 
 use crate::scene::Camera;
 use glam::DVec3;
 
 /// A side of the scene. With y up, as in the book, x points right and z to the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum Viewpoint {
     /// +x.
     Right,
     /// +y.
@@ -20,34 +20,41 @@ pub enum Side {
     Back,
 }
 
-impl Side {
+impl Viewpoint {
     /// All sides; those of the positive axes come first.
-    pub const ALL: [Side; 6] = [Side::Right, Side::Top, Side::Front, Side::Left, Side::Bottom, Side::Back];
+    pub const ALL: [Viewpoint; 6] = [
+        Viewpoint::Right,
+        Viewpoint::Top,
+        Viewpoint::Front,
+        Viewpoint::Left,
+        Viewpoint::Bottom,
+        Viewpoint::Back,
+    ];
 
     /// The name of its view.
     pub fn name(self) -> &'static str {
         match self {
-            Side::Right => "View from the right (+x)",
-            Side::Top => "View from the top (+y)",
-            Side::Front => "View from the front (+z)",
-            Side::Left => "View from the left (-x)",
-            Side::Bottom => "View from the bottom (-y)",
-            Side::Back => "View from the back (-z)",
+            Viewpoint::Right => "View from the right (+x)",
+            Viewpoint::Top => "View from the top (+y)",
+            Viewpoint::Front => "View from the front (+z)",
+            Viewpoint::Left => "View from the left (-x)",
+            Viewpoint::Bottom => "View from the bottom (-y)",
+            Viewpoint::Back => "View from the back (-z)",
         }
     }
 
     /// The number of its axis, 0 to 2.
     pub fn axis(self) -> usize {
         match self {
-            Side::Right | Side::Left => 0,
-            Side::Top | Side::Bottom => 1,
-            Side::Front | Side::Back => 2,
+            Viewpoint::Right | Viewpoint::Left => 0,
+            Viewpoint::Top | Viewpoint::Bottom => 1,
+            Viewpoint::Front | Viewpoint::Back => 2,
         }
     }
 
     /// Whether it is the end of a positive axis.
     pub fn is_positive(self) -> bool {
-        matches!(self, Side::Right | Side::Top | Side::Front)
+        matches!(self, Viewpoint::Right | Viewpoint::Top | Viewpoint::Front)
     }
 
     /// The unit vector that points to this side.
@@ -82,7 +89,7 @@ mod tests {
     #[test]
     fn every_view_is_valid_and_shows_the_same_point() {
         for up in [DVec3::Y, DVec3::X, DVec3::NEG_Z, DVec3::new(0.2, 1.0, 0.1), DVec3::Y * 1e200] {
-            for side in Side::ALL {
+            for side in Viewpoint::ALL {
                 let camera = side.camera(&CAMERA, up);
                 camera.validate().unwrap();
                 assert!(camera.basis().w.distance(side.direction()) < 1e-12, "{side:?}");
@@ -95,14 +102,14 @@ mod tests {
 
     #[test]
     fn views_are_the_right_way_round() {
-        let basis = |side: Side| side.camera(&CAMERA, DVec3::Y).basis();
+        let basis = |side: Viewpoint| side.camera(&CAMERA, DVec3::Y).basis();
         for (side, right, up) in [
-            (Side::Front, DVec3::X, DVec3::Y),
-            (Side::Back, DVec3::NEG_X, DVec3::Y),
-            (Side::Right, DVec3::NEG_Z, DVec3::Y),
-            (Side::Left, DVec3::Z, DVec3::Y),
-            (Side::Top, DVec3::X, DVec3::NEG_Z),
-            (Side::Bottom, DVec3::X, DVec3::Z),
+            (Viewpoint::Front, DVec3::X, DVec3::Y),
+            (Viewpoint::Back, DVec3::NEG_X, DVec3::Y),
+            (Viewpoint::Right, DVec3::NEG_Z, DVec3::Y),
+            (Viewpoint::Left, DVec3::Z, DVec3::Y),
+            (Viewpoint::Top, DVec3::X, DVec3::NEG_Z),
+            (Viewpoint::Bottom, DVec3::X, DVec3::Z),
         ] {
             assert!(basis(side).u.distance(right) < 1e-12 && basis(side).v.distance(up) < 1e-12, "{side:?}");
         }
