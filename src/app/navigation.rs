@@ -48,7 +48,12 @@ pub fn orbited_to(camera: &Camera, pivot: DVec3, eye: DVec3) -> Camera {
 /// distance in focus changes by the same factor. So does that of `look_at`, which a camera that comes closer also brings
 /// nearer to the depth of `point`: flying and turning then suit what it has come to.
 pub fn dolly(camera: &Camera, point: DVec3, factor: f64) -> Camera {
+    /// The least distance to `point`, as a share of its coordinates. Closer, rounding would turn the camera.
+    const LEAST: f64 = 1e-9;
     let look_from = point + (camera.look_from - point) * factor;
+    if factor < 1.0 && look_from.distance(point) < LEAST * point.abs().max_element() {
+        return *camera;
+    }
     let ahead = camera.look_at - camera.look_from;
     let (distance, depth) = (ahead.length(), camera.depth_of(point));
     let share = if depth > 0.0 { (distance / depth).powf(factor.min(1.0) - 1.0) } else { 1.0 };

@@ -267,6 +267,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "memory",
             "scene",
             "stages",
+            "animation",
             "film",
             "render",
             "heat",

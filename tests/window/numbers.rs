@@ -109,6 +109,7 @@ fn escape_takes_back_what_a_pause_has_applied() {
     pause(&mut harness);
     assert_eq!(angle(&harness), before);
     harness.key_press(Key::Escape);
+    harness.run_steps(3);
     // A number that is only looked at stays as it is.
     number(&harness, "Depth").focus();
     pause(&mut harness);
