@@ -1,7 +1,10 @@
 //! Tracks what the user has changed since the previous frame: moves, gestures and undo steps.
 
 use super::model::document::Document;
-use eframe::egui::{Context, util::undoer::Undoer};
+use eframe::egui::{
+    Context,
+    util::undoer::{Settings, Undoer},
+};
 use std::time::{Duration, Instant};
 
 /// After this long without a move the picture is rendered at its full size.
@@ -22,7 +25,10 @@ impl Changes {
     /// A history that starts with `document`.
     pub fn new(document: Document) -> Self {
         Changes {
-            undo: Undoer::default(),
+            undo: Undoer::with_settings(Settings {
+                auto_save_interval: f32::INFINITY,
+                ..Settings::default()
+            }),
             last: document,
             moved: None,
             is_in_gesture: false,
@@ -83,13 +89,15 @@ impl Changes {
         self.last = document.clone();
     }
 
-    /// Notes what has changed in this frame. Returns whether the document now needs a different film.
-    pub fn follow(&mut self, context: &Context, document: &Document) -> bool {
+    /// Notes what has changed in this frame. Returns whether the document now needs a different film. `is_typing` says that
+    /// the user may still go on to type a number that has been applied.
+    pub fn follow(&mut self, context: &Context, document: &Document, is_typing: bool) -> bool {
         let is_by_hand = context.input(|input| input.pointer.any_down());
         let is_other_film = !document.has_same_film(&self.last);
         if *document != self.last {
             // Undo returns to the state before a change, or before a whole gesture.
-            if !self.is_in_gesture && !self.is_undoing {
+            let goes_on = self.is_in_gesture || is_typing && !self.is_moving();
+            if !goes_on && !self.is_undoing {
                 self.undo.add_undo(&self.last);
             }
             if is_other_film && is_by_hand {
@@ -99,8 +107,10 @@ impl Changes {
         self.last.clone_from(document);
         self.is_undoing = false;
         self.is_in_gesture = self.is_moving() || is_by_hand;
-        let now = context.input(|input| input.time);
-        self.undo.feed_state(now, document);
+        // What lasts becomes a step of its own.
+        if !is_typing {
+            self.undo.feed_state(context.input(|input| input.time), document);
+        }
         is_other_film
     }
 }

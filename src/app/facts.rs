@@ -94,6 +94,8 @@ impl Facts {
             Command::Plot => remembered.has_plot,
             Command::Packet => remembered.has_packet,
             Command::Code => remembered.has_code,
+            Command::Gizmo => remembered.has_gizmo,
+            Command::Flights => remembered.has_flights,
             Command::FirstSteps => self.model.has_first_steps,
             Command::FullScreen => self.model.is_full_screen,
             Command::Present => self.model.presentation.is_some(),
@@ -120,18 +122,28 @@ impl Facts {
         (0..self.model.remembered.recent.len()).map(Command::Recent)
     }
 
+    /// The commands that go to the bookmarks, in their order.
+    pub fn bookmarks(&self) -> impl Iterator<Item = Command> {
+        (0..self.model.remembered.bookmarks.len()).map(Command::Bookmark)
+    }
+
     /// The file that a command opens, if it was opened or saved before.
     pub fn path(&self, command: Command) -> Option<&Path> {
         let Command::Recent(place) = command else { return None };
         self.model.remembered.recent.get(place).map(PathBuf::as_path)
     }
 
-    /// The name of a command, with the file that it opens.
+    /// The name of a command, with the file that it opens or the bookmark that it goes to.
     pub fn name(&self, command: Command) -> String {
         if let Command::Look(number) = command
             && let Some(slot) = self.model.view.slots.get(number)
         {
             return format!("{}: {}", command.name(), shortened(&slot.name));
+        }
+        if let Command::Bookmark(place) = command
+            && let Some(bookmark) = self.model.remembered.bookmarks.get(place)
+        {
+            return format!("Go to {}", bookmark.name);
         }
         let Some(path) = self.path(command) else { return command.name() };
         let name = path.file_name().unwrap_or(path.as_os_str()).display();
@@ -188,6 +200,10 @@ impl Facts {
             }
             Command::Home if document.camera == document.origin.recipe.camera => {
                 no("This is already the stage's camera")
+            }
+            Command::ViewFrom(_) => self.no_rays().map(str::to_owned),
+            Command::FlyBookmarks | Command::SaveFlight if self.model.remembered.bookmarks.len() < 2 => {
+                no("A path needs two bookmarks; press Ctrl+B where it begins and where it ends")
             }
             Command::Blank if self.model.presentation.is_none() => {
                 no("Only a presentation can be blanked; press F5 first")

@@ -8,9 +8,11 @@ use super::model::show::Show;
 use super::sizer::Present;
 use super::theme;
 use super::tracer::{Shown, Want};
+use super::widgets;
 use super::window::Window;
 use crate::scene::Camera;
 use eframe::egui;
+use glam::DVec3;
 use std::time::{Duration, Instant};
 
 /// Seconds between press and release of a click. A frame can take long while the device prepares a large scene.
@@ -28,6 +30,7 @@ impl Window {
         self.poll(&context);
         self.receive(&context);
         self.receive_kept();
+        self.go_on_flying(&context);
         self.take_input(&context);
         self.perform_all(&context);
         self.layout(ui);
@@ -120,7 +123,7 @@ impl Window {
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
         let before = self.model.document.camera;
         if is_free && !is_at_slot && input::fly(context, &mut self.model.document.camera) {
-            self.stop_at_surfaces(&before);
+            self.stop_at_surfaces(&before, None);
             self.changes.note_move();
         }
     }
@@ -143,10 +146,11 @@ impl Window {
         }
     }
 
-    /// Ends a move of the camera from `before` in front of the first surface.
-    pub(super) fn stop_at_surfaces(&mut self, before: &Camera) {
+    /// Ends a move of the camera from `before` in front of the first surface. `pivot` is the point that the move keeps where
+    /// it is in the picture, if there is one.
+    pub(super) fn stop_at_surfaces(&mut self, before: &Camera, pivot: Option<DVec3>) {
         let document = &self.model.document;
-        let stopped = self.surfaces.stop(document, before, &document.camera);
+        let stopped = self.surfaces.stop(document, before, &document.camera, pivot);
         self.model.document.camera = stopped;
     }
 
@@ -184,7 +188,7 @@ impl Window {
             self.toasts.bad(reason);
         }
         self.follow_size(context);
-        if self.changes.follow(context, &self.model.document) {
+        if self.changes.follow(context, &self.model.document, widgets::is_typing(context)) {
             self.seconds_before = Some(0.0);
             // A change is seen in the live picture.
             self.model.view.look(None);

@@ -145,7 +145,7 @@ impl Window {
                 notices: slot_notice(&facts).into_iter().chain(caption).chain(inside).chain(same).collect(),
             };
             let (camera, divider) = (&mut document.camera, &mut view.divider);
-            let handle = Handle { camera, divider, selected, crop: &mut view.crop };
+            let handle = Handle { camera, divider, selected, surfaces, crop: &mut view.crop };
             viewport.ui(ui, handle, pictures, &facts, commands)
         });
         let touch = touch.inner;
@@ -160,7 +160,7 @@ impl Window {
             self.paths.list(&self.model.document, pixel, ui.ctx());
         }
         if touch.is_move {
-            self.stop_at_surfaces(&before);
+            self.stop_at_surfaces(&before, touch.pivot);
         }
         if touch.is_orbit && facts.no_rays().is_none() {
             self.note_step(Step::Orbit);

@@ -110,8 +110,9 @@ fn section(command: Command) -> u8 {
         | Command::CopyCommand => 2,
         Command::LoadReference => 3,
         Command::Quit => 4,
-        Command::Home | Command::ResetAll => 1,
-        Command::AddBookmark => 2,
+        Command::ResetAll | Command::ViewFrom(_) => 1,
+        Command::AddBookmark | Command::FlyBookmarks | Command::SaveFlight => 2,
+        Command::Flights => 3,
         Command::NextSphere | Command::PreviousSphere | Command::Deselect => 1,
         Command::FocusSphere | Command::LookAtSphere => 2,
         Command::ResetSpheres => 3,
@@ -122,6 +123,7 @@ fn section(command: Command) -> u8 {
         | Command::Info
         | Command::Plot
         | Command::Packet
+        | Command::Gizmo
         | Command::NextPanel
         | Command::FullScreen
         | Command::Present

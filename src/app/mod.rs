@@ -15,6 +15,7 @@ mod dialogs;
 mod facts;
 mod files;
 mod first_steps;
+mod flight;
 mod frame;
 mod frame_log;
 mod identity;
@@ -33,6 +34,7 @@ mod packet;
 mod panels;
 mod paths;
 mod perform;
+mod perform_flights;
 mod perform_present;
 mod perform_sight;
 mod perform_slots;
@@ -73,6 +75,7 @@ pub use model::remembered::Theme;
 pub use model::show::Show;
 pub use model::sizing::Sizing;
 pub use model::slots::SlotNumber;
+pub use model::viewpoint::Viewpoint;
 pub use window::Window;
 
 use crate::cli::{DrawWith, WindowOptions};
@@ -112,10 +115,8 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let (native, options) = (native_options(renderer), options.clone());
         let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
-            let mut window = Window::new(options, context.storage)?;
+            let mut window = create(options, &context.egui_ctx, context.storage)?;
             window.show_thumbnails(cache_directory());
-            // Before the first frame, which would have egui's own style otherwise.
-            window.dress(&context.egui_ctx);
             window.heed(heeded);
             // A second renderer has a context of its own, but the first one never drew.
             let _ = drawn.set(context.egui_ctx.clone());
@@ -132,6 +133,17 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         }
     }
     Err(anyhow!("the window cannot be opened; {}; {REMEDY}", failures.join("; ")))
+}
+
+/// Makes the window before its first frame, which would have egui's own style otherwise.
+fn create(
+    options: WindowOptions,
+    context: &egui::Context,
+    storage: Option<&dyn eframe::Storage>,
+) -> Result<Window> {
+    let mut window = Window::new(options, storage)?;
+    window.dress(context);
+    Ok(window)
 }
 
 /// The renderers to try for drawing the window, in order. Without a GPU a frame takes several times as long with wgpu
@@ -171,4 +183,35 @@ fn display() -> String {
     let values = ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].map(std::env::var_os);
     let named: Vec<_> = values.iter().flatten().map(|value| value.to_string_lossy()).collect();
     named.join(" ").trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Request, parse};
+
+    #[test]
+    fn the_first_frame_has_the_style_of_those_that_follow() {
+        let context = egui::Context::default();
+        let own = context.global_style();
+        let words = "weekender --stage normals --size 16x9 --samples 1";
+        let Request::Window(options) = parse(words.split_whitespace().map(Into::into)).unwrap() else {
+            panic!("{words}");
+        };
+        let mut window = create(*options, &context, None).unwrap();
+        let mut styles = Vec::new();
+        for _ in 0..3 {
+            let input = egui::RawInput {
+                screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0))),
+                ..egui::RawInput::default()
+            };
+            let _ = context.run_ui(input, |ui| {
+                styles.push(ui.style().as_ref().clone());
+                window.ui_in(ui);
+            });
+        }
+        let [first, .., last] = &styles[..] else { panic!("{} frames", styles.len()) };
+        assert!(first == last, "the first frame has another style");
+        assert!(*first != *own, "the style is egui's own");
+    }
 }

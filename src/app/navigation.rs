@@ -3,26 +3,85 @@
 
 use crate::scene::Camera;
 use glam::{DQuat, DVec3};
+use std::f64::consts::{PI, TAU};
 
 /// The view direction stays at least this far from the poles, so that left stays left.
 const POLE_DEGREES: f64 = 1.0;
 
-/// Orbits around `look_at`: `right` and `up` in radians, in the direction in which the scene appears to turn.
-pub fn orbit(camera: &Camera, right: f64, up: f64) -> Camera {
-    let away = turned(camera, camera.look_from - camera.look_at, -right, up);
-    kept(camera, Camera { look_from: camera.look_at + away, ..*camera })
+/// Turns camera and `look_at` about `pivot`, which stays where it is in the picture: `right` and `up` in radians, in the
+/// direction in which the scene appears to turn.
+pub fn orbit(camera: &Camera, pivot: DVec3, right: f64, up: f64) -> Camera {
+    let turn = rotation(camera, -right, up);
+    let [look_from, look_at] = [camera.look_from, camera.look_at].map(|at| pivot + turn * (at - pivot));
+    kept(camera, Camera { look_from, look_at, ..*camera })
 }
 
 /// Turns the camera in place: `right` and `up` in radians.
 pub fn look(camera: &Camera, right: f64, up: f64) -> Camera {
-    let ahead = turned(camera, camera.look_at - camera.look_from, -right, up);
-    kept(camera, Camera { look_at: camera.look_from + ahead, ..*camera })
+    orbit(camera, camera.look_from, right, -up)
 }
 
-/// Moves towards `look_at` (`factor` below 1) or away from it.
-pub fn dolly(camera: &Camera, factor: f64) -> Camera {
-    let look_from = camera.look_at + (camera.look_from - camera.look_at) * factor;
-    kept(camera, Camera { look_from, ..*camera })
+/// The camera at `eye`, turned as by [`orbit`] so that `pivot` stays where it is in the picture. Where the eye is not as
+/// far from `pivot` as before, or too far up, it stays there as nearly as possible.
+pub fn orbited_to(camera: &Camera, pivot: DVec3, eye: DVec3) -> Camera {
+    let (old, new) = (camera.look_from - pivot, eye - pivot);
+    let Some(up) = camera.vup.try_normalize() else { return *camera };
+    // At right angles to the picture's horizontal axis, an orbit up or down is a turn in the plane of these two.
+    let side = camera.basis().u;
+    let back = side.cross(up);
+    let (height, depth) = (old.dot(up), old.dot(back));
+    let wanted = new.dot(up) * old.length() / new.length();
+    let rise = (wanted / height.hypot(depth)).clamp(-1.0, 1.0).asin();
+    let end = if depth < 0.0 { PI - rise } else { rise };
+    let raised = (end - height.atan2(depth) + PI).rem_euclid(TAU) - PI;
+    let level = |arm: DVec3| arm - up * arm.dot(up);
+    let (from, to) = (level(DQuat::from_axis_angle(-side, raised) * old), level(new));
+    let turned = up.dot(from.cross(to)).atan2(from.dot(to));
+    if !(raised.is_finite() && turned.is_finite()) {
+        return *camera;
+    }
+    let ahead = rotation(camera, turned, raised) * (camera.look_at - camera.look_from);
+    kept(camera, Camera { look_from: eye, look_at: eye + ahead, ..*camera })
+}
+
+/// Moves along the line through `point`, which stays where it is in the picture: to `factor` times its distance. The
+/// distance in focus changes by the same factor. So does that of `look_at`, which a camera that comes closer also brings
+/// nearer to the depth of `point`: flying and turning then suit what it has come to.
+pub fn dolly(camera: &Camera, point: DVec3, factor: f64) -> Camera {
+    /// The least distance to `point`, as a share of its coordinates. Closer, rounding would turn the camera.
+    const LEAST: f64 = 1e-9;
+    let look_from = point + (camera.look_from - point) * factor;
+    if factor < 1.0 && look_from.distance(point) < LEAST * point.abs().max_element() {
+        return *camera;
+    }
+    let ahead = camera.look_at - camera.look_from;
+    let (distance, depth) = (ahead.length(), camera.depth_of(point));
+    let share = if depth > 0.0 { (distance / depth).powf(factor.min(1.0) - 1.0) } else { 1.0 };
+    let look_at = look_from + ahead * (factor * share);
+    let focus_distance = camera.focus_distance.map(|distance| distance * factor);
+    kept(camera, Camera { look_from, look_at, focus_distance, ..*camera })
+}
+
+/// The point under `place` of the picture at the depth of `look_at`: what the wheel moves to where there is only sky.
+pub fn at_depth(camera: &Camera, place: [f64; 2], aspect: f64) -> DVec3 {
+    let direction = camera.direction_through(place, aspect);
+    let ahead = camera.look_at - camera.look_from;
+    camera.look_from + direction * (ahead.length_squared() / ahead.dot(direction))
+}
+
+/// A camera with `up` as its up direction that shows nearly the same, if it looks along `up`, as a view from the top does;
+/// otherwise the camera itself. About `up`, it can be turned as from anywhere else.
+pub fn upright(camera: &Camera, pivot: DVec3, up: DVec3) -> Camera {
+    /// Below this sine of the angle between view and up, the camera looks along it.
+    const ALONG_SINE: f64 = 1e-6;
+    let basis = camera.basis();
+    let Some(up) = up.try_normalize().filter(|up| up.cross(basis.w).length() < ALONG_SINE) else {
+        return *camera;
+    };
+    // Towards the pole that is in sight, what is up in the picture stays up.
+    let turn = DQuat::from_axis_angle(basis.u, POLE_DEGREES.to_radians() * up.dot(basis.w).signum());
+    let [look_from, look_at] = [camera.look_from, camera.look_at].map(|at| pivot + turn * (at - pivot));
+    kept(camera, Camera { look_from, look_at, vup: up, ..*camera })
 }
 
 /// Moves the camera and `look_at`: `by` is right, up and forward, in scene units.
@@ -42,15 +101,16 @@ pub fn focus(camera: &Camera, point: DVec3) -> Camera {
     kept(camera, Camera { focus_distance: Some(camera.depth_of(point)), ..*camera })
 }
 
-/// Rotates `v` around `vup`, then towards it.
-fn turned(camera: &Camera, v: DVec3, about_up: f64, towards_up: f64) -> DVec3 {
-    let Some(up) = camera.vup.try_normalize() else { return v };
-    let v = DQuat::from_axis_angle(up, about_up) * v;
-    let Some(side) = v.cross(up).try_normalize() else { return v };
-    let angle_to_up = v.angle_between(up);
+/// The turn that rotates the view about `vup`, then brings the eye `up` towards it, as far as the poles allow.
+fn rotation(camera: &Camera, about_up: f64, up: f64) -> DQuat {
+    let Some(axis) = camera.vup.try_normalize() else { return DQuat::IDENTITY };
+    let level = DQuat::from_axis_angle(axis, about_up);
+    let back = level * camera.basis().w;
+    let Some(side) = back.cross(axis).try_normalize() else { return level };
+    let angle_to_up = back.angle_between(axis);
     let pole = POLE_DEGREES.to_radians();
-    let wanted = (angle_to_up - towards_up).clamp(pole, std::f64::consts::PI - pole);
-    DQuat::from_axis_angle(side, angle_to_up - wanted) * v
+    let wanted = (angle_to_up - up).clamp(pole, PI - pole);
+    DQuat::from_axis_angle(side, angle_to_up - wanted) * level
 }
 
 fn kept(old: &Camera, new: Camera) -> Camera {
@@ -69,24 +129,107 @@ mod tests {
     fn moves_go_where_they_say() {
         let close = |a: DVec3, b: DVec3| assert!(a.distance(b) < 1e-9, "{a} {b}");
         let quarter = std::f64::consts::FRAC_PI_2;
-        close(orbit(&CAMERA, quarter, 0.0).look_from, DVec3::new(-4.0, 0.0, 0.0));
+        close(orbit(&CAMERA, DVec3::ZERO, quarter, 0.0).look_from, DVec3::new(-4.0, 0.0, 0.0));
         close(look(&CAMERA, quarter, 0.0).look_at, DVec3::new(4.0, 0.0, 4.0));
-        assert!(orbit(&CAMERA, 0.0, 0.3).look_from.y > 0.0);
+        assert!(orbit(&CAMERA, DVec3::ZERO, 0.0, 0.3).look_from.y > 0.0);
         assert!(look(&CAMERA, 0.0, 0.3).look_at.y > 0.0);
-        close(dolly(&CAMERA, 0.5).look_from, DVec3::new(0.0, 0.0, 2.0));
+        close(dolly(&CAMERA, DVec3::ZERO, 0.5).look_from, DVec3::new(0.0, 0.0, 2.0));
         close(fly(&CAMERA, DVec3::new(1.0, 2.0, 3.0)).look_from, DVec3::new(1.0, 2.0, 1.0));
         assert_eq!(focus(&CAMERA, DVec3::new(9.0, 9.0, 1.0)).focus_distance, Some(3.0));
         assert_eq!(recentre(&CAMERA, CAMERA.look_from), CAMERA, "no direction: not made");
         assert_eq!(focus(&CAMERA, DVec3::new(0.0, 0.0, 5.0)), CAMERA, "behind the eye: not made");
     }
 
+    /// Having come close, the camera looks at a point about as far away as what it has come to.
+    #[test]
+    fn a_dolly_leads_look_at_to_the_depth_of_its_point() {
+        for depth in [0.5, 80.0] {
+            let point = CAMERA.look_from - DVec3::Z * depth;
+            let mut camera = CAMERA;
+            let step = |camera: &mut Camera, factor| {
+                let before = camera.effective_focus_distance();
+                *camera = dolly(camera, point, factor);
+                camera.effective_focus_distance() / before
+            };
+            for _ in 0..30 {
+                let share = step(&mut camera, 0.9);
+                assert!((0.7..=1.3).contains(&share), "{depth}: a jump by {share}");
+            }
+            let ratio = camera.effective_focus_distance() / camera.depth_of(point);
+            assert!((0.8..1.25).contains(&ratio), "{depth}: {ratio}");
+            for _ in 0..30 {
+                assert!(
+                    (step(&mut camera, 1.1) - 1.1).abs() < 1e-9,
+                    "{depth}: away, both distances grow alike"
+                );
+            }
+        }
+        assert_eq!(dolly(&CAMERA, CAMERA.look_from, 0.5).look_from, CAMERA.look_from);
+    }
+
+    #[test]
+    fn the_sky_is_at_the_depth_of_look_at() {
+        let point = at_depth(&CAMERA, [0.5, 0.5], 1.5);
+        assert!(point.distance(CAMERA.look_at) < 1e-12);
+        let point = at_depth(&CAMERA, [0.9, 0.2], 1.5);
+        assert!((CAMERA.depth_of(point) - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_view_from_the_top_can_be_turned_from_there() {
+        for (eye, vup) in [(DVec3::Y, DVec3::NEG_Z), (DVec3::NEG_Y, DVec3::Z), (DVec3::Y, DVec3::X)] {
+            let above = Camera { look_from: 4.0 * eye, vup, ..CAMERA };
+            let turned = upright(&above, above.look_at, DVec3::Y);
+            turned.validate().unwrap();
+            assert_eq!((turned.vup, turned.look_at), (DVec3::Y, above.look_at));
+            let (old, new) = (above.basis(), turned.basis());
+            let degrees = |a: DVec3, b: DVec3| a.angle_between(b).to_degrees();
+            assert!(
+                degrees(old.v, new.v) < 1.01 && degrees(old.w, new.w) < 1.01 && degrees(old.u, new.u) < 1e-6
+            );
+        }
+        assert_eq!(upright(&CAMERA, DVec3::ZERO, DVec3::Y), CAMERA);
+    }
+
     proptest! {
         #[test]
         fn turning_keeps_distances_and_never_turns_over(right in -9.0..9.0f64, up in -9.0..9.0f64) {
-            for camera in [orbit(&CAMERA, right, up), look(&CAMERA, right, up)] {
+            for camera in [orbit(&CAMERA, CAMERA.look_at, right, up), look(&CAMERA, right, up)] {
                 prop_assert!((camera.effective_focus_distance() - 4.0).abs() < 1e-9);
                 prop_assert!(camera.basis().v.y > 0.0);
             }
+        }
+
+        #[test]
+        fn the_pivot_of_an_orbit_stays_where_it_is(
+            x in 0.0..1.0f64, y in 0.0..1.0f64, far in 0.1..50.0f64, right in -3.0..3.0f64, up in -3.0..3.0f64,
+        ) {
+            let pivot = CAMERA.look_from + far * CAMERA.direction_through([x, y], 1.5);
+            let orbited = orbit(&CAMERA, pivot, right, up);
+            prop_assert_eq!(orbited.vup, CAMERA.vup);
+            prop_assert!((orbited.look_from.distance(pivot) / far - 1.0).abs() < 1e-9);
+            prop_assert!((orbited.effective_focus_distance() - 4.0).abs() < 1e-9);
+            prop_assert!(orbited.basis().v.y > 0.0);
+            let place = orbited.place_of(pivot, 1.5).unwrap();
+            prop_assert!((place[0] - x).abs() < 1e-7 && (place[1] - y).abs() < 1e-7, "{:?}", place);
+            // The same camera is found again from where its eye is.
+            let found = orbited_to(&CAMERA, pivot, orbited.look_from);
+            let place = found.place_of(pivot, 1.5).unwrap();
+            prop_assert!((place[0] - x).abs() < 1e-6 && (place[1] - y).abs() < 1e-6, "found {:?}", place);
+            prop_assert!(found.look_from == orbited.look_from && found.basis().v.y > 0.0);
+        }
+
+        #[test]
+        fn what_a_dolly_goes_to_stays_where_it_is(
+            x in 0.0..1.0f64, y in 0.0..1.0f64, far in 0.1..50.0f64, factor in 0.02..3.0f64,
+        ) {
+            let point = CAMERA.look_from + far * CAMERA.direction_through([x, y], 1.5);
+            let camera = Camera { focus_distance: Some(3.0), ..CAMERA };
+            let moved = dolly(&camera, point, factor);
+            prop_assert!((moved.look_from.distance(point) / (far * factor) - 1.0).abs() < 1e-9);
+            let place = moved.place_of(point, 1.5).unwrap();
+            prop_assert!((place[0] - x).abs() < 1e-7 && (place[1] - y).abs() < 1e-7, "{:?}", place);
+            prop_assert!((moved.effective_focus_distance() - 3.0 * factor).abs() < 1e-12);
         }
     }
 }

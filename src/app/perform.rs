@@ -53,6 +53,7 @@ impl Window {
             Command::SaveScene => self.ask_path(Purpose::SaveScene),
             Command::LoadReference => self.ask_path(Purpose::ReferenceFilm),
             Command::SavePlot => self.ask_path(Purpose::SavePlot),
+            Command::SaveFlight => self.ask_path(Purpose::SaveFlight),
             Command::CopyPicture => self.pending_copy = true,
             Command::CopyCommand => self.copy_command(context),
             Command::CopyPlot => {
@@ -71,10 +72,17 @@ impl Window {
             Command::AddBookmark => {
                 let bookmarks = &mut self.model.remembered.bookmarks;
                 let document = &self.model.document;
-                let name = format!("{} {}", document.origin.recipe.name, bookmarks.len() + 1);
+                let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
+                let mut names = (1..).map(|number| format!("{} {number}", document.origin.recipe.name));
+                let name = names.find(is_free).unwrap_or_default();
                 bookmarks.push(Bookmark::new(name, &document.camera));
                 self.toasts.good("Bookmarked; see the Camera panel");
             }
+            Command::ViewFrom(_) | Command::Bookmark(_) | Command::FlyBookmarks => {
+                self.perform_flight(context, command);
+            }
+            Command::Flights => self.model.remembered.has_flights ^= true,
+            Command::Gizmo => self.model.remembered.has_gizmo ^= true,
             Command::AddSphere
             | Command::DuplicateSphere
             | Command::DeleteSphere
@@ -294,8 +302,10 @@ impl Window {
 
     pub(super) fn ask_path(&mut self, purpose: Purpose) {
         let mut name = self.subject().document().name();
-        if purpose == Purpose::SaveCrop {
-            name.push_str("-crop");
+        match purpose {
+            Purpose::SaveCrop => name.push_str("-crop"),
+            Purpose::SaveFlight => name.push_str("-path"),
+            _ => {}
         }
         let directory = self.model.remembered.directory.as_deref();
         let mut path_box = PathBox::new(purpose, &name, directory);
@@ -332,6 +342,7 @@ impl Window {
             Purpose::SaveScene => {
                 self.files.save_scene(context, path, self.subject().document());
             }
+            Purpose::SaveFlight => self.save_flight(context, path),
             Purpose::SavePlot => {
                 self.files.save_text(context, &path, &plot::csv(&self.main.status().history));
             }

@@ -17,7 +17,9 @@ impl Window {
         let selected = self.spheres.selected(&self.model);
         match (command, selected) {
             (Command::AddSphere, _) => {
-                let body = new_body(scene, &camera, document.aspect(), self.viewport.aim());
+                let place = self.viewport.aim();
+                let hit = self.surfaces.pick(document, &camera, place);
+                let body = new_body(hit, &camera, document.aspect(), place);
                 self.edit(Edit::Add(body));
             }
             (Command::NextSphere | Command::PreviousSphere, _) => {

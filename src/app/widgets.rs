@@ -125,8 +125,9 @@ pub fn vector(
     })
 }
 
-/// A number to type or drag. A typed number counts when the edit is complete. The control keeps its size, however long
-/// the text is, and a number beyond the limits is told with [`tell`].
+/// A number to type or drag. A typed number counts when the edit is complete, or after a pause in typing. Until the edit is
+/// complete, Escape takes it back. The control keeps its size, however long the text is, and a number beyond the limits is
+/// told with [`tell`].
 pub fn number(
     ui: &mut Ui,
     (name, size): (&str, Vec2),
@@ -134,36 +135,103 @@ pub fn number(
     limits: RangeInclusive<f64>,
     change: impl FnOnce(DragValue<'_>) -> DragValue<'_>,
 ) -> Response {
-    let before = *value;
-    let beyond = Cell::new(None);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let layout = egui::Layout::centered_and_justified(egui::Direction::LeftToRight);
     let mut within = ui.new_child(UiBuilder::new().max_rect(rect).layout(layout));
     within.shrink_clip_rect(rect);
-    let is_given_up = is_given_up(&within, within.next_auto_id());
+    let id = within.next_auto_id();
+    let mut typing = Typing::of(&within, id, *value);
+    // While a number is typed, the control keeps the number from before: with another one, it would replace the text.
+    let before = typing.map_or(*value, |typing| typing.before);
+    let mut shown = before;
+    let is_given_up = is_given_up(&within, id);
+    let is_complete = !within.memory(|memory| memory.has_focus(id));
+    if typing.is_some_and(|typing| typing.applied.is_some()) {
+        ui.data_mut(|data| data.insert_temp(typed(), ui.ctx().cumulative_frame_nr()));
+    }
+    let (beyond, last) = (Cell::new(None), Cell::new(None));
     let parse = |text: &str| {
-        let typed = if is_given_up { before } else { parsed(text, before)? };
-        let kept = typed.clamp(*limits.start(), *limits.end());
-        beyond.set((typed != kept).then_some((typed, kept)));
-        Some(kept)
+        last.set(Some(None));
+        let number = if is_given_up { before } else { parsed(text, before)? };
+        let kept = number.clamp(*limits.start(), *limits.end());
+        last.set(Some(Some(kept)));
+        beyond.set((number != kept && is_complete).then_some((number, kept)));
+        is_complete.then_some(kept)
     };
-    let drag = DragValue::new(value)
+    let drag = DragValue::new(&mut shown)
         .range(limits.clone())
-        .update_while_editing(false)
         .custom_formatter(|n, _| compact(n))
         .custom_parser(parse)
         .clip_text(true)
         .min_size(size);
-    let response = within.add(change(drag));
+    let mut response = within.add(change(drag));
     named(&response, name);
-    if !value.is_finite() {
-        *value = before;
+    let now = ui.input(|input| input.time);
+    if shown != before || is_complete {
+        typing = None;
+        if shown == before && last.get().is_none() && !is_given_up {
+            // The edit ended while the control was not drawn: what a pause has applied stays.
+            shown = *value;
+        }
+    } else if let Some(last) = last.get() {
+        let applied = typing.and_then(|typing| typing.applied);
+        typing = Some(Typing { before, applied, last: last.map(|number| (number, now + PAUSE)) });
+        ui.ctx().request_repaint_after_secs(PAUSE as f32);
+    } else if let Some(Typing { applied, last, .. }) = &mut typing {
+        *applied = last.take_if(|(_, due)| now >= *due).map(|(number, _)| number).or(*applied);
+        shown = applied.unwrap_or(before);
     }
-    if let Some((typed, kept)) = beyond.get() {
-        let (typed, kept) = (compact(typed), compact(kept));
-        tell(ui.ctx(), format!("{name} is {kept}, its limit: {typed} is beyond it"));
+    if typing.is_none_or(|typing| typing.last.is_none()) && shown.is_finite() && *value != shown {
+        *value = shown;
+        response.mark_changed();
+    }
+    Typing::keep(typing, ui, id);
+    if let Some((number, kept)) = beyond.get() {
+        let (number, kept) = (compact(number), compact(kept));
+        tell(ui.ctx(), format!("{name} is {kept}, its limit: {number} is beyond it"));
     }
     response
+}
+
+/// A typed number counts after so many seconds without a key.
+const PAUSE: f64 = 0.8;
+
+/// A number that is being typed.
+#[derive(Clone, Copy)]
+struct Typing {
+    /// The number from before.
+    before: f64,
+    /// The number that a pause has applied.
+    applied: Option<f64>,
+    /// The number that was typed last, if it has not been applied yet, and when it will be, in seconds of the window's
+    /// clock.
+    last: Option<(f64, f64)>,
+}
+
+impl Typing {
+    /// What is being typed in the control `id`, unless its `value` has been changed by something else.
+    fn of(ui: &Ui, id: egui::Id, value: f64) -> Option<Typing> {
+        let typing: Typing = ui.data(|data| data.get_temp(id.with("typing")))?;
+        Some(typing).filter(|typing| typing.applied.unwrap_or(typing.before) == value)
+    }
+
+    /// Keeps what is being typed until the next frame.
+    fn keep(typing: Option<Typing>, ui: &Ui, id: egui::Id) {
+        ui.data_mut(|data| match typing {
+            Some(typing) => _ = data.insert_temp(id.with("typing"), typing),
+            None => data.remove::<Typing>(id.with("typing")),
+        });
+    }
+}
+
+fn typed() -> egui::Id {
+    egui::Id::unique("typed into a control")
+}
+
+/// Whether the user may still go on to type a number that a pause has applied: what comes of it is the same change.
+pub fn is_typing(context: &egui::Context) -> bool {
+    let frame: Option<u64> = context.data(|data| data.get_temp(typed()));
+    frame == Some(context.cumulative_frame_nr())
 }
 
 /// Whether Escape has ended the edit of the number `id` a moment ago. egui sees it in the first of the two frames in which

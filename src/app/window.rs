@@ -8,6 +8,7 @@ use super::dialogs::Dialogs;
 use super::facts::Facts;
 use super::files::Files;
 use super::first_steps::Card;
+use super::flight::Flight;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::identity::Identity;
 use super::inspector::Inspector;
@@ -83,6 +84,8 @@ pub struct Window {
     /// The sight that is shown.
     pub(super) sight: Option<Sighted>,
     pub(super) keeping: Keeping,
+    /// The flight of the camera, if it moves by itself.
+    pub(super) flight: Option<Flight>,
     /// Commands to be carried out.
     pub(super) commands: Vec<Command>,
     /// A film to be read once a frame can be woken, and its job.
@@ -189,6 +192,7 @@ impl Window {
             thumbnails: Thumbnails::default(),
             sight: None,
             keeping: Keeping::new(options.autosave_every),
+            flight: None,
             commands: Vec::new(),
             pending_resume,
             pending_save: None,

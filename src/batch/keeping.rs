@@ -111,7 +111,7 @@ impl Keeper {
             (self.is_under_way, self.asked) = (true, status.samples_per_pixel);
             let (writer, snapshots, status) =
                 (Arc::clone(&self.writer), self.snapshots.clone(), status.clone());
-            progressive.inspect(move |film| match (film.try_clone().ok(), snapshots) {
+            progressive.inspect(move |film| match (film.try_copy().ok(), snapshots) {
                 (Some(film), Some(snapshots)) => {
                     // The writer lives as long as the render.
                     let _ = snapshots.send(Snapshot { film, status });

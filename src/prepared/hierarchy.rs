@@ -130,6 +130,50 @@ impl<R> Hierarchy<R> {
         }
     }
 
+    /// Calls `each` with the place in the list of every sphere that a ray may hit, the near boxes first. `each` returns the
+    /// distance of the nearest hit so far: boxes that begin beyond it are left out. `origin` is relative to the hierarchy's
+    /// origin, and `direction` has length 1.
+    pub fn along(&self, origin: DVec3, direction: DVec3, mut each: impl FnMut(usize) -> f64)
+    where
+        R: Into<f64> + Copy,
+    {
+        let inverse = direction.recip();
+        // Where the ray enters the box of a node; infinite if it misses it.
+        let entry = |index: u32| {
+            let node = &self.nodes[index as usize];
+            let (mut enters, mut leaves) = (0.0_f64, f64::INFINITY);
+            for axis in 0..3 {
+                let (low, high): (f64, f64) = (node.low[axis].into(), node.high[axis].into());
+                let [a, b] = [low, high].map(|side| (side - origin[axis]) * inverse[axis]);
+                // A ray in the plane of a side counts as a miss: boxes are wider than their spheres.
+                enters = enters.max(a.min(b));
+                leaves = leaves.min(a.max(b));
+            }
+            if enters <= leaves { enters } else { f64::INFINITY }
+        };
+        let mut nearest = f64::INFINITY;
+        let mut open = vec![(0_u32, entry(0))];
+        while let Some((index, enters)) = open.pop() {
+            if enters == f64::INFINITY || enters > nearest {
+                continue;
+            }
+            let node = &self.nodes[index as usize];
+            match node.count & COUNT_MASK {
+                0 => {
+                    let mut children = [node.first, node.first + 1].map(|child| (child, entry(child)));
+                    children.sort_by(|a, b| b.1.total_cmp(&a.1));
+                    open.extend(children);
+                }
+                count => {
+                    let leaf = node.first as usize..(node.first + count) as usize;
+                    for rank in &self.ranks[leaf] {
+                        nearest = each(*rank as usize);
+                    }
+                }
+            }
+        }
+    }
+
     /// The number of nodes on the longest path from the root to a leaf.
     pub fn depth(&self) -> usize {
         levels(|index| {

@@ -1,6 +1,6 @@
 //! Finds what is under a point of the picture, with one exact `f64` ray through the middle of the lens.
 
-use super::{Camera, Scene};
+use super::{Camera, Scene, Sphere};
 use glam::DVec3;
 
 /// The first hit of a ray.
@@ -51,20 +51,39 @@ impl Camera {
 impl Scene {
     /// Finds the first sphere that a ray hits. `direction` must have length 1.
     pub fn pick(&self, origin: DVec3, direction: DVec3) -> Option<Pick> {
-        let nearest = self
-            .spheres
-            .iter()
-            .enumerate()
-            .filter_map(|(index, sphere)| {
-                let distance = root(sphere.center - origin, sphere.radius, direction)?;
-                Some((index, distance))
-            })
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        let (sphere, distance) = nearest?;
+        let mut nearest = NearestHit::default();
+        (0..self.spheres.len()).for_each(|sphere| nearest.take(self, sphere, origin, direction));
+        self.picked(nearest, origin, direction)
+    }
+
+    /// The hit of a ray after all spheres that it may hit have been taken.
+    pub fn picked(&self, nearest: NearestHit, origin: DVec3, direction: DVec3) -> Option<Pick> {
+        let (sphere, distance) = nearest.0?;
         let point = origin + distance * direction;
         let outward = (point - self.spheres[sphere].center) / self.spheres[sphere].radius;
         let normal = if outward.dot(direction) > 0.0 { -outward } else { outward };
         Some(Pick { sphere, distance, point, normal })
+    }
+}
+
+/// The nearest hit of a ray among the spheres taken so far, in any order: the index of the sphere, and the distance.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NearestHit(Option<(usize, f64)>);
+
+impl NearestHit {
+    /// Takes a sphere. Of two hits at the same distance, the sphere that comes first in the scene wins.
+    pub fn take(&mut self, scene: &Scene, sphere: usize, origin: DVec3, direction: DVec3) {
+        let Sphere { center, radius, .. } = scene.spheres[sphere];
+        let Some(distance) = root(center - origin, radius, direction) else { return };
+        let is_nearer = |(other, least)| distance < least || distance == least && sphere < other;
+        if self.0.is_none_or(is_nearer) {
+            self.0 = Some((sphere, distance));
+        }
+    }
+
+    /// The distance of the hit, scene units; infinite if nothing has been hit.
+    pub fn distance(&self) -> f64 {
+        self.0.map_or(f64::INFINITY, |(_, distance)| distance)
     }
 }
 

@@ -22,7 +22,7 @@ fn ten_million_samples_of_a_constant_have_its_mean() {
 #[test]
 fn a_copy_is_the_film() {
     let film = noisy_film(3, 2, 2, &[0..4, 8..10]);
-    assert_eq!(film.try_clone().unwrap(), film);
+    assert_eq!(film.try_copy().unwrap(), film);
 }
 
 #[test]

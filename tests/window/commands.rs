@@ -60,7 +60,7 @@ fn every_command_is_found_in_the_palette() {
 #[test]
 fn every_menu_lists_its_commands() {
     let mut harness = open(SMALL);
-    for menu in ["File", "Edit", "Spheres", "View", "Slots", "Render", "Extreme scenes", "Help"] {
+    for menu in ["File", "Edit", "Camera", "Spheres", "View", "Slots", "Render", "Extreme scenes", "Help"] {
         control(&harness, menu).click();
         harness.run_steps(3);
         for command in Command::all().into_iter().filter(|command| command.group().name() == menu) {
@@ -92,6 +92,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         | Command::SaveScene
         | Command::LoadReference
         | Command::SavePlot
+        | Command::SaveFlight
         | Command::Palette
         | Command::Help => window.has_dialog(),
         Command::CopyPlot => window.messages().iter().any(|text| text.starts_with("Copied")),
@@ -106,6 +107,10 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::Deselect => window.selected().is_none(),
         Command::FocusSphere | Command::LookAtSphere => document.camera != before.camera,
         Command::AddBookmark => remembered.bookmarks.len() == 1,
+        Command::Flights => !remembered.has_flights,
+        Command::Gizmo => !remembered.has_gizmo,
+        // See moving.rs and flights.rs.
+        Command::ViewFrom(_) | Command::Bookmark(_) | Command::FlyBookmarks => true,
         Command::Show(show) => window.show() == show,
         Command::Wipe | Command::WipeDifference | Command::BookArithmetic => window.is_comparing(),
         Command::Extreme(case) => document.case() == Some(case),
@@ -172,6 +177,10 @@ fn every_command_does_what_it_says() {
         }
         if command == Command::Redo {
             send(&mut harness, Command::Undo);
+        }
+        if matches!(command, Command::FlyBookmarks | Command::SaveFlight) {
+            send(&mut harness, Command::AddBookmark);
+            send(&mut harness, Command::AddBookmark);
         }
         if harness.state().disabled_reason(command).is_some() {
             continue;

@@ -10,6 +10,8 @@ mod extreme;
 mod faults;
 mod files;
 mod first_steps;
+mod flights;
+mod moving;
 mod numbers;
 mod objects;
 mod panels;

@@ -51,6 +51,98 @@ fn a_typed_number_is_one_change_when_it_is_complete() {
     }
 }
 
+/// Draws frames for more than the pause after which a typed number counts.
+fn pause(harness: &mut Harness<'_, Window>) {
+    harness.run_steps(55);
+}
+
+#[test]
+fn a_typed_number_counts_after_a_pause_and_stays_one_change() {
+    let mut harness = open("--stage view-distant --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    harness.run_steps(90);
+    let angle = |harness: &Harness<'_, Window>| harness.state().document().camera.vfov_degrees;
+    let text = |harness: &Harness<'_, Window>| number(harness, "Field of view").value();
+    let before = angle(&harness);
+    edit(&mut harness, "Field of view", "4");
+    harness.run_steps(30);
+    assert_eq!(angle(&harness), before, "half a second is no pause");
+    pause(&mut harness);
+    assert_eq!(angle(&harness), 4.0);
+    // The text stays as it was typed, and what follows belongs to the same change.
+    for (letter, expected) in [("5", 45.0), (".", 45.0), ("5", 45.5), ("0", 45.5)] {
+        harness.event(eframe::egui::Event::Text(letter.to_owned()));
+        pause(&mut harness);
+        assert_eq!(angle(&harness), expected);
+        // Longer than a state has to last to become a step of its own.
+        harness.run_steps(70);
+    }
+    assert_eq!(text(&harness).as_deref(), Some("45.50"));
+    harness.event(eframe::egui::Event::Text("1".to_owned()));
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(angle(&harness), 45.501);
+    harness.run_steps(90);
+    send(&mut harness, Command::Undo);
+    assert_eq!(angle(&harness), before, "one step back");
+    assert!(harness.state().disabled_reason(Command::Undo).is_some());
+    send(&mut harness, Command::Redo);
+    assert_eq!(angle(&harness), 45.501);
+}
+
+#[test]
+fn escape_takes_back_what_a_pause_has_applied() {
+    let mut harness = open("--stage view-distant --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    harness.run_steps(90);
+    let angle = |harness: &Harness<'_, Window>| harness.state().document().camera.vfov_degrees;
+    let before = angle(&harness);
+    edit(&mut harness, "Field of view", "45");
+    pause(&mut harness);
+    assert_eq!(angle(&harness), 45.0);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert_eq!(angle(&harness), before);
+    // A text that is no number changes nothing.
+    edit(&mut harness, "Field of view", "4");
+    harness.event(eframe::egui::Event::Text("x".to_owned()));
+    pause(&mut harness);
+    assert_eq!(angle(&harness), before);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    // A number that is only looked at stays as it is.
+    number(&harness, "Depth").focus();
+    pause(&mut harness);
+    assert!(harness.state().disabled_reason(Command::Undo).is_some());
+    // A sphere's number and a whole number.
+    edit(&mut harness, "Seed", "77");
+    pause(&mut harness);
+    assert_eq!(harness.state().document().settings.seed, 77);
+}
+
+#[test]
+fn a_move_while_a_number_has_the_keyboard_is_a_step_of_its_own() {
+    let mut harness = open("--stage view-distant --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    harness.run_steps(90);
+    let camera = |harness: &Harness<'_, Window>| harness.state().document().camera;
+    edit(&mut harness, "Field of view", "45");
+    pause(&mut harness);
+    let typed = camera(&harness);
+    harness.event(eframe::egui::Event::PointerMoved(harness.state().picture_rect().center()));
+    harness.event(eframe::egui::Event::MouseWheel {
+        unit: eframe::egui::MouseWheelUnit::Line,
+        delta: eframe::egui::vec2(0.0, 2.0),
+        phase: eframe::egui::TouchPhase::Move,
+        source: eframe::egui::MouseWheelSource::Wheel,
+        modifiers: eframe::egui::Modifiers::NONE,
+    });
+    harness.run_steps(40);
+    assert_ne!(camera(&harness), typed);
+    send(&mut harness, Command::Undo);
+    assert_eq!(camera(&harness), typed);
+}
+
 #[test]
 fn a_number_that_is_not_edited_keeps_its_digits() {
     let mut harness = open(SMALL);

@@ -20,9 +20,14 @@ impl Command {
             | Command::CopyPlot
             | Command::SavePlot
             | Command::Quit => Group::File,
-            Command::Undo | Command::Redo | Command::Home | Command::ResetAll | Command::AddBookmark => {
-                Group::Edit
-            }
+            Command::Undo | Command::Redo | Command::ResetAll => Group::Edit,
+            Command::Home
+            | Command::ViewFrom(_)
+            | Command::AddBookmark
+            | Command::Bookmark(_)
+            | Command::FlyBookmarks
+            | Command::SaveFlight
+            | Command::Flights => Group::Camera,
             Command::AddSphere
             | Command::DuplicateSphere
             | Command::DeleteSphere

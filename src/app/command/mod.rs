@@ -9,6 +9,7 @@ use super::model::remembered::Theme;
 use super::model::show::Show;
 use super::model::sizing::Sizing;
 use super::model::slots::SlotNumber;
+use super::model::viewpoint::Viewpoint;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
@@ -18,8 +19,10 @@ use crate::stress::{Case, shown_cases};
 pub enum Group {
     /// Opening, saving and copying.
     File,
-    /// Undo, reset and bookmarks.
+    /// Undo and reset.
     Edit,
+    /// Views, bookmarks and flights.
+    Camera,
     /// Selecting and editing the spheres of the scene.
     Spheres,
     /// What the window shows.
@@ -38,9 +41,10 @@ pub enum Group {
 
 impl Group {
     /// The menus, in order.
-    pub const ALL: [Group; 9] = [
+    pub const ALL: [Group; 10] = [
         Group::File,
         Group::Edit,
+        Group::Camera,
         Group::Spheres,
         Group::View,
         Group::Slots,
@@ -55,6 +59,7 @@ impl Group {
         match self {
             Group::File => "File",
             Group::Edit => "Edit",
+            Group::Camera => "Camera",
             Group::Spheres => "Spheres",
             Group::View => "View",
             Group::Slots => "Slots",
@@ -105,8 +110,18 @@ pub enum Command {
     Home,
     /// Reset everything to the values of the stage.
     ResetAll,
+    /// Look at the same point from this side.
+    ViewFrom(Viewpoint),
     /// Add a bookmark of the camera.
     AddBookmark,
+    /// Go to this bookmark, counted from 0.
+    Bookmark(usize),
+    /// Fly from the first bookmark to the last.
+    FlyBookmarks,
+    /// Save the scene with the bookmarks as keyframes of an animation.
+    SaveFlight,
+    /// Fly to views and bookmarks, or jump there.
+    Flights,
     /// Add a sphere where the pointer is.
     AddSphere,
     /// Add a copy of the selected sphere.
@@ -161,6 +176,8 @@ pub enum Command {
     Plot,
     /// Show or hide the steps of a packet's lanes.
     Packet,
+    /// Show or hide the axes in the corner.
+    Gizmo,
     /// Full screen.
     FullScreen,
     /// Explain the next ray of the highlighted path.
@@ -234,7 +251,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// All commands, in the order of the menus, except those for the files opened or saved last.
+    /// All commands, in the order of the menus, except those for bookmarks and for the files opened or saved last.
     pub fn all() -> Vec<Command> {
         use Command::*;
         let mut all =
@@ -251,7 +268,9 @@ impl Command {
             SavePlot,
             Quit,
         ]);
-        all.extend([Undo, Redo, Home, ResetAll, AddBookmark]);
+        all.extend([Undo, Redo, ResetAll, Home]);
+        all.extend(self::Viewpoint::ALL.map(ViewFrom));
+        all.extend([AddBookmark, FlyBookmarks, SaveFlight, Flights]);
         all.extend([AddSphere, DuplicateSphere, DeleteSphere, NextSphere, PreviousSphere, Deselect]);
         all.extend([FocusSphere, LookAtSphere, ResetSpheres]);
         all.extend(self::Show::ALL.map(Show));
@@ -265,6 +284,7 @@ impl Command {
             Info,
             Plot,
             Packet,
+            Gizmo,
             NextPanel,
             FullScreen,
             Present,
@@ -289,8 +309,11 @@ impl Command {
 
     /// Whether the command opens a dialog first.
     pub fn opens_dialog(self) -> bool {
-        use Command::{Help, LoadReference, Open, Palette, Save, SaveCrop, SavePlot, SaveScene};
-        matches!(self, Open | Save(_) | SaveCrop | SaveScene | SavePlot | LoadReference | Palette | Help)
+        use Command::{Help, LoadReference, Open, Palette, Save, SaveCrop, SaveFlight, SavePlot, SaveScene};
+        matches!(
+            self,
+            Open | Save(_) | SaveCrop | SaveScene | SaveFlight | SavePlot | LoadReference | Palette | Help
+        )
     }
 }
 

@@ -4,10 +4,10 @@ use super::outcome::Outcome;
 use crate::app::command::{Command, Group};
 use eframe::egui::{self, RichText, Ui};
 
-const MOUSE: [(&str, &str); 15] = [
-    ("Drag", "orbit around the point looked at"),
+const MOUSE: [(&str, &str); 17] = [
+    ("Drag", "orbit around what is there; in the sky, around the point looked at"),
     ("Right drag", "look around"),
-    ("Wheel", "move closer or away"),
+    ("Wheel", "move towards what is there, or away"),
     ("Ctrl and wheel", "zoom the picture at the pointer"),
     ("Middle or Shift drag", "move the picture"),
     ("Click", "select a sphere; on the sky: none"),
@@ -18,6 +18,8 @@ const MOUSE: [(&str, &str); 15] = [
     ("Right click", "a menu of what is there"),
     ("T; Alt and click", "list the paths of a pixel"),
     ("W A S D, Q E", "fly; with Shift fast"),
+    ("Click an end of the axes", "look from that side; drag them to orbit"),
+    ("Shift", "jump to a view or bookmark instead of flying"),
     ("Drop a file", "open a picture, film or scene"),
     ("Escape", "leave a control, a crop, a comparison, a view, a slot, full screen"),
 ];
@@ -27,7 +29,7 @@ const TWO_COLUMNS: f32 = 640.0;
 
 /// The groups of each column; `None` stands for the mouse actions.
 const COLUMNS: [&[Option<Group>]; 2] = [
-    &[None, Some(Group::File), Some(Group::Edit), Some(Group::Spheres)],
+    &[None, Some(Group::File), Some(Group::Edit), Some(Group::Camera), Some(Group::Spheres)],
     &[Some(Group::View), Some(Group::Slots), Some(Group::Render), Some(Group::Stage), Some(Group::Help)],
 ];
 

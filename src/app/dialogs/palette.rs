@@ -31,9 +31,10 @@ fn matching(text: &str, commands: impl Iterator<Item = (Command, String)>) -> Ve
     found.into_iter().map(|(_, command, name)| (command, name)).collect()
 }
 
-/// All commands, and the files that were opened or saved last.
+/// All commands, the bookmarks, and the files that were opened or saved last.
 fn listed(facts: &Facts) -> impl Iterator<Item = (Command, String)> {
-    Command::all().into_iter().chain(facts.recent()).map(|command| (command, facts.name(command)))
+    let further = facts.bookmarks().chain(facts.recent());
+    Command::all().into_iter().chain(further).map(|command| (command, facts.name(command)))
 }
 
 impl Palette {

@@ -14,6 +14,8 @@ pub enum Purpose {
     SaveCrop,
     /// To save the scene.
     SaveScene,
+    /// To save the scene with the bookmarks as keyframes.
+    SaveFlight,
     /// To save the plot's points.
     SavePlot,
     /// To load it as a film to compare with.
@@ -30,6 +32,7 @@ impl Purpose {
             Purpose::Save(OutputFormat::Exr) => "Save film as EXR",
             Purpose::SaveCrop => "Save crop as PNG",
             Purpose::SaveScene => "Save scene file",
+            Purpose::SaveFlight => "Save scene file with keyframes",
             Purpose::SavePlot => "Save error against time as CSV",
             Purpose::ReferenceFilm => "Load reference film",
         }
@@ -45,7 +48,8 @@ impl Purpose {
 
     /// Whether the file will be written.
     pub fn is_saving(self) -> bool {
-        matches!(self, Purpose::Save(_) | Purpose::SaveCrop | Purpose::SaveScene | Purpose::SavePlot)
+        use Purpose::{Save, SaveCrop, SaveFlight, SavePlot, SaveScene};
+        matches!(self, Save(_) | SaveCrop | SaveScene | SaveFlight | SavePlot)
     }
 
     /// The possible file endings, without the dot.
@@ -55,7 +59,7 @@ impl Purpose {
             Purpose::Save(OutputFormat::Png) | Purpose::SaveCrop => &["png"],
             Purpose::Save(OutputFormat::P6) => &["ppm"],
             Purpose::Save(OutputFormat::Exr) | Purpose::ReferenceFilm => &["exr"],
-            Purpose::SaveScene => &["toml"],
+            Purpose::SaveScene | Purpose::SaveFlight => &["toml"],
             Purpose::SavePlot => &["csv"],
         }
     }

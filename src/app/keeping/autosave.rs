@@ -201,7 +201,7 @@ impl Writing {
         if film.sample_count() == 0 {
             return;
         }
-        let Some(copy) = film.try_clone().ok() else {
+        let Some(copy) = film.try_copy().ok() else {
             self.write(film);
             return;
         };

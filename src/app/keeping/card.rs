@@ -80,14 +80,14 @@ impl Card {
                     let label = RichText::new("Open").color(ui.visuals().selection.stroke.color);
                     let open = Button::new(label).fill(theme::accent(ui));
                     let open = ui.add_enabled(row.fault.is_none() && !is_busy, open);
-                    let open = open.accessible_name(&format!("Open {}", row.title));
+                    let open = open.accessible_name(format!("Open {}", row.title));
                     if open.on_hover_text(format!("Show it in this window: {file}")).clicked() {
                         choice = Some(Choice::Open(index, row.part));
                     }
                     let is_doubted = self.doubted == Some((index, row.part));
                     let word = if is_doubted { "Discard for good" } else { "Discard" };
                     let discard = ui.add_enabled(!is_busy, Button::new(word));
-                    let discard = discard.accessible_name(&format!("{word}: {}", row.title));
+                    let discard = discard.accessible_name(format!("{word}: {}", row.title));
                     if discard.on_hover_text(format!("Delete {file}; asks once more")).clicked() {
                         choice = Some(Choice::Discard(index, row.part));
                     }

@@ -336,9 +336,11 @@ mod tests {
         drop(left);
         assert_eq!(KeptFiles::left_in(at).len(), 1, "and gives it back");
         let [left] = KeptFiles::left_in(at).try_into().unwrap();
-        (left.delete_film(), left.delete_note());
+        left.delete_film();
+        left.delete_note();
         drop(left);
-        (second.delete_note(), drop(second));
+        second.delete_note();
+        drop(second);
         assert_eq!(names(at), <[&str; 0]>::default(), "nothing stays where nothing was kept");
     }
 

@@ -19,6 +19,7 @@ pub mod sizing;
 pub mod slots;
 pub mod tone;
 pub mod view;
+pub mod viewpoint;
 
 use crate::backends::BackendChoice;
 use device::DeviceOptions;

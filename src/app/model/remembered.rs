@@ -86,6 +86,10 @@ pub struct Remembered {
     pub has_code: bool,
     /// The size of pictures that have no size of their own.
     pub sizing: Sizing,
+    /// Whether the axes are shown in a corner of the viewport.
+    pub has_gizmo: bool,
+    /// Whether the camera flies to a bookmark; otherwise it jumps.
+    pub has_flights: bool,
     /// The device that traces.
     pub device: Device,
     /// Lanes per packet; `None` for as many as a register holds.
@@ -119,6 +123,8 @@ impl Default for Remembered {
             has_packet: false,
             has_code: false,
             sizing: Sizing::Viewport,
+            has_gizmo: true,
+            has_flights: true,
             device: Device::Cpu,
             lanes: None,
             threads: None,

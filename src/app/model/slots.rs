@@ -103,11 +103,15 @@ impl Slots {
         self.looked.and_then(|number| self.get(number)).map(|slot| &slot.kept)
     }
 
-    /// The size of the chosen picture, or else of the first one, that had the size of the viewport when it was kept.
+    /// The room in which pictures get the size of the chosen picture, or else of the first one. Only pictures count that had
+    /// no size of their own.
     pub fn room(&self) -> Option<[u32; 2]> {
         let has_room = |slot: &&Slot| !slot.kept.document.has_own_size;
         let chosen = self.chosen.and_then(|number| self.get(number)).filter(has_room);
-        chosen.or_else(|| self.used().map(|(_, slot)| slot).find(has_room)).map(|slot| slot.kept.size())
+        let slot = chosen.or_else(|| self.used().map(|(_, slot)| slot).find(has_room))?;
+        let [width, height] = slot.kept.size();
+        // The height was rounded; with a row less, the width would be smaller.
+        Some([width, height + 1])
     }
 
     /// The slot that commands without a number are for: the one that was looked at, kept or clicked last.
@@ -214,6 +218,7 @@ mod tests {
     use super::*;
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
+    use crate::app::model::sizing::Sizing;
     use crate::film::{Film, PixelSum};
     use crate::stages::Stage;
 
@@ -269,6 +274,18 @@ mod tests {
         slots.bring_back();
         assert!(Arc::ptr_eq(&first, &slots.get(ONE).unwrap().kept));
         assert_eq!((slots.gone(), slots.first_free()), (None, Some(TWO)));
+    }
+
+    #[test]
+    fn pictures_get_the_size_of_those_in_the_slots() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        for size in [[1037, 583], [333, 187], [640, 360], [1, 1]] {
+            let mut slots = Slots::default();
+            assert_eq!(slots.room(), None);
+            slots.put(ONE, slot(film(size[0], size[1], 1)));
+            let found = document.fitting_size(Sizing::Viewport, slots.room().unwrap());
+            assert_eq!(found, Some(size));
+        }
     }
 
     #[test]

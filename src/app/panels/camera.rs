@@ -1,10 +1,8 @@
 //! Controls for the camera's position and direction.
 
 use super::reset::Reset;
-use crate::app::command::Command;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
-use crate::app::model::remembered::Bookmark;
 use crate::app::widgets::{About, slider, vector};
 use crate::scene::{Camera, LENGTH_LIMIT, VFOV_LIMITS_DEGREES};
 use eframe::egui::Ui;
@@ -29,13 +27,7 @@ fn reset(document: &mut Document) {
     *camera = Camera { look_from, look_at, vup, vfov_degrees, ..*camera };
 }
 
-pub(super) fn ui(
-    ui: &mut Ui,
-    camera: &mut Camera,
-    bookmarks: &mut Vec<Bookmark>,
-    facts: &Facts,
-    commands: &mut Vec<Command>,
-) {
+pub(super) fn ui(ui: &mut Ui, camera: &mut Camera, facts: &Facts) {
     let disabled_reason = facts.no_rays();
     let speed = (camera.look_from.distance(camera.look_at) * 0.005).max(1e-4);
     let about = |name, help| About::new(name, help).disabled_if(disabled_reason);
@@ -66,44 +58,4 @@ pub(super) fn ui(
     slider(ui, vfov, &mut camera.vfov_degrees, (limits.clone(), limits), "°", |slider| {
         slider.max_decimals(1)
     });
-    bookmarks_ui(ui, camera, bookmarks, commands);
-}
-
-fn bookmarks_ui(
-    ui: &mut Ui,
-    camera: &mut Camera,
-    bookmarks: &mut Vec<Bookmark>,
-    commands: &mut Vec<Command>,
-) {
-    let mut chosen = None;
-    let mut removed = None;
-    ui.horizontal_wrapped(|ui| {
-        if ui.button("Bookmark").on_hover_text("Save camera and lens to return to later (Ctrl+B)").clicked() {
-            commands.push(Command::AddBookmark);
-        }
-        ui.add_enabled_ui(!bookmarks.is_empty(), |ui| {
-            ui.menu_button("Go to", |ui| {
-                for (index, bookmark) in bookmarks.iter().enumerate() {
-                    ui.horizontal(|ui| {
-                        if ui.button(&bookmark.name).clicked() {
-                            chosen = Some(bookmark.camera());
-                            ui.close();
-                        }
-                        let forget = ui.small_button("×").on_hover_text("Forget this bookmark");
-                        if forget.accessible_name(format!("Forget {}", bookmark.name)).clicked() {
-                            removed = Some(index);
-                        }
-                    });
-                }
-            });
-        })
-        .response
-        .on_disabled_hover_text("There is no bookmark yet");
-        if let Some(index) = removed {
-            bookmarks.remove(index);
-        }
-    });
-    if let Some(chosen) = chosen {
-        *camera = chosen;
-    }
 }

@@ -1,5 +1,6 @@
 //! The left panel, with one file for each group of controls.
 
+mod bookmarks;
 mod camera;
 mod lens;
 mod output;
@@ -34,7 +35,8 @@ pub fn ui(
         spheres::ui(ui, selected, facts, edits, commands);
     });
     group(ui, ("Camera", true), Some(&camera::RESET), document, |ui, document| {
-        camera::ui(ui, &mut document.camera, &mut remembered.bookmarks, facts, commands);
+        camera::ui(ui, &mut document.camera, facts);
+        bookmarks::ui(ui, &document.camera, &mut remembered.bookmarks, facts, commands);
     });
     group(ui, ("Lens", true), Some(&lens::RESET), document, |ui, document| {
         lens::ui(ui, &mut document.camera, facts);

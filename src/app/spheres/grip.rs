@@ -1,7 +1,7 @@
 //! What a drag does to a sphere, and where a new sphere goes.
 
 use crate::app::model::edit::Body;
-use crate::scene::{Camera, Material, Scene, Sphere};
+use crate::scene::{Camera, Material, Pick, Scene, Sphere};
 use glam::DVec3;
 
 /// A sphere never becomes larger than this share of the distance from the eye to its centre, so that the eye stays
@@ -84,13 +84,14 @@ impl Held {
     }
 }
 
-/// A new sphere at a point of the picture: it lies on what is there, or is as far away as the point looked at.
-pub fn new_body(scene: &Scene, camera: &Camera, aspect: f64, place: [f64; 2]) -> Body {
+/// A new sphere at a point of the picture: it lies on what is there, which is `hit`, or is as far away as the point looked
+/// at.
+pub fn new_body(hit: Option<Pick>, camera: &Camera, aspect: f64, place: [f64; 2]) -> Body {
     let direction = camera.direction_through(place, aspect);
     let height = 2.0 * (camera.vfov_degrees.to_radians() / 2.0).tan();
     let radius_at = |distance: f64| two_digits(NEW_SHARE * height * distance);
     let material = Material::Lambertian { albedo: DVec3::new(0.7, 0.3, 0.3) };
-    match scene.pick(camera.look_from, direction) {
+    match hit {
         Some(pick) => {
             let radius = radius_at(pick.distance);
             Body { center: pick.point + radius * pick.normal, radius, material }
@@ -211,10 +212,14 @@ mod tests {
     fn a_new_sphere_lies_on_what_is_there() {
         let mut scene = Scene::default();
         scene.add_sphere(DVec3::new(0.0, -100.5, -1.0), 100.0, 0);
-        let lying = new_body(&scene, &Camera::BOOK, 1.5, [0.5, 0.8]);
+        let at = |place| {
+            let hit = scene.pick(Camera::BOOK.look_from, Camera::BOOK.direction_through(place, 1.5));
+            new_body(hit, &Camera::BOOK, 1.5, place)
+        };
+        let lying = at([0.5, 0.8]);
         let gap = lying.center.distance(scene.spheres[0].center) - 100.0 - lying.radius;
         assert!(gap.abs() < 1e-9 && lying.radius > 0.01, "{lying:?}");
-        let floating = new_body(&scene, &Camera::BOOK, 1.5, [0.5, 0.1]);
+        let floating = at([0.5, 0.1]);
         assert!((floating.center.length() - 1.0).abs() < 1e-12);
         assert_eq!((two_digits(0.012345), two_digits(6789.0)), (0.012, 6800.0));
     }

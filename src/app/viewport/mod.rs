@@ -1,6 +1,8 @@
 //! The viewport: the picture, and mouse input on it.
 
 mod crop;
+mod gizmo;
+mod moving;
 mod paint;
 mod placement;
 mod selection;
@@ -20,20 +22,17 @@ use super::model::view::Mode;
 use super::navigation;
 use super::spheres::Selected;
 use super::spheres::grip::new_body;
+use super::surfaces::Surfaces;
 use crate::scene::Camera;
 use crop::Cropping;
 use eframe::egui::{
     self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
 };
+use glam::DVec3;
+use moving::{Moving, Sight};
 use paint::{Mark, paint, paint_drop};
-use selection::{Selection, pick, place_at};
+use selection::{Selection, place_at};
 use std::time::Instant;
-
-/// Radians of rotation per point of dragging.
-const TURN_PER_POINT: f64 = 0.006;
-
-/// Share of the distance moved per point of scrolling.
-const DOLLY_PER_POINT: f64 = 0.002;
 
 /// How close the pointer must be to the wipe's divider to grab it, in points.
 const GRIP: f32 = 8.0;
@@ -44,6 +43,7 @@ pub struct Viewport {
     /// Position and scale of the picture.
     pub placement: Placement,
     mark: Option<Mark>,
+    moving: Moving,
     is_dragging_divider: bool,
     /// Where the context menu was opened, if on the picture.
     menu_at: Option<Pos2>,
@@ -64,8 +64,10 @@ pub struct Viewport {
 pub struct Touch {
     /// The user moved the camera.
     pub is_move: bool,
-    /// The user dragged the camera around the point looked at.
+    /// The user dragged the camera around a point.
     pub is_orbit: bool,
+    /// The point of the scene that the move keeps where it is in the picture.
+    pub pivot: Option<DVec3>,
     /// The pixel under the pointer.
     pub hovered: Option<[u32; 2]>,
     /// The pixel whose paths the user asked for.
@@ -88,6 +90,8 @@ pub struct Handle<'a> {
     pub selected: Option<&'a Selected>,
     /// The part of the picture that is being marked; see [`super::model::view::ViewState::crop`].
     pub crop: &'a mut Option<Option<Crop>>,
+    /// What finds the sphere at a point of the picture.
+    pub surfaces: &'a Surfaces,
 }
 
 impl Viewport {
@@ -110,9 +114,10 @@ impl Viewport {
         facts: &Facts,
         commands: &mut Vec<Command>,
     ) -> Touch {
-        let Handle { camera, divider, selected, crop } = handle;
+        let Handle { camera, divider, selected, surfaces, crop } = handle;
         let is_kept = facts.model.view.slots.looked().is_some();
         let selected = selected.filter(|_| !is_kept);
+        let sight = Sight { document: facts.document(), surfaces, has_rays: facts.no_rays().is_none() };
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
@@ -140,8 +145,10 @@ impl Viewport {
             (is_held, touch.edit) = self.selection.handle(ui, &response, rect, selected, facts.document());
         }
         if !is_held {
-            self.handle_drag(ui, &response, camera, &mut touch);
-            self.handle_click(ui, &response, facts.document(), camera, &mut touch);
+            self.moving.handle(ui, &response, &mut self.placement, (camera, sight), &mut touch);
+            self.handle_click(ui, &response, sight, camera, &mut touch);
+        } else {
+            self.moving = Moving::default();
         }
         let document = match is_kept {
             true => facts.shown().clone(),
@@ -157,13 +164,17 @@ impl Viewport {
         if let Some(crop) = crop {
             crop::paint(ui, &ui.painter().with_clip_rect(room), rect, pixels, *crop);
         }
+        self.moving.paint(ui, clip.intersect(room), rect, &document);
         self.mark = self.mark.take().filter(|mark| mark.paint(ui, room, rect));
         self.pointer = response.hover_pos().filter(|at| rect.contains(*at)).map(|at| place_at(rect, at));
         touch.hovered = response.hover_pos().and_then(|at| self.placement.pixel_at(at, pixels));
         if response.secondary_clicked() {
             self.menu_at = response.interact_pointer_pos().filter(|at| rect.contains(*at));
         }
-        response.context_menu(|ui| self.context_menu(ui, camera, facts, commands, &mut touch));
+        response.context_menu(|ui| self.context_menu(ui, camera, sight, (facts, commands), &mut touch));
+        if facts.model.has_panels() && facts.model.remembered.has_gizmo && sight.has_rays && !is_still {
+            gizmo::ui(ui, room, (camera, sight), commands, &mut touch);
+        }
         paint_drop(ui, room);
         touch
     }
@@ -202,48 +213,18 @@ impl Viewport {
         is_on_it
     }
 
-    fn handle_drag(&mut self, ui: &Ui, response: &Response, camera: &mut Camera, touch: &mut Touch) {
-        let (modifiers, scroll, zoom) =
-            ui.input(|input| (input.modifiers, input.smooth_scroll_delta().y, input.zoom_delta()));
-        let delta = response.drag_delta();
-        let [right, down] = [delta.x, delta.y].map(|points| f64::from(points) * TURN_PER_POINT);
-        let mut moved = *camera;
-        let is_panning = response.dragged_by(PointerButton::Middle)
-            || (response.dragged_by(PointerButton::Primary) && modifiers.shift);
-        if is_panning {
-            self.placement.pan_by(delta);
-            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
-        } else if response.dragged_by(PointerButton::Primary) {
-            moved = navigation::orbit(&moved, right, down);
-        } else if response.dragged_by(PointerButton::Secondary) {
-            moved = navigation::look(&moved, right, -down);
-        }
-        if let Some(pointer) = response.hover_pos() {
-            if zoom != 1.0 {
-                self.placement.zoom_at(pointer, zoom);
-            } else if scroll != 0.0 {
-                moved = navigation::dolly(&moved, (-f64::from(scroll) * DOLLY_PER_POINT).exp());
-            }
-        }
-        if moved != *camera {
-            *camera = moved;
-            touch.is_move = true;
-            touch.is_orbit = response.dragged_by(PointerButton::Primary);
-        }
-    }
-
     fn handle_click(
         &mut self,
         ui: &Ui,
         response: &Response,
-        document: &Document,
+        sight: Sight<'_>,
         camera: &mut Camera,
         touch: &mut Touch,
     ) {
         let rect = self.placement.rect();
         let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at)) else { return };
         if response.double_clicked() {
-            self.use_at(Spot::Centre, at, document, camera, touch);
+            self.use_at(Spot::Centre, at, sight, camera, touch);
         } else if response.clicked() {
             let is_held = |is_it: fn(&egui::Modifiers) -> bool| {
                 ui.input(|input| is_it(&input.modifiers)) || is_release(ui, is_it)
@@ -255,25 +236,27 @@ impl Viewport {
             } else {
                 Spot::Select
             };
-            self.use_at(spot, at, document, camera, touch);
+            self.use_at(spot, at, sight, camera, touch);
         }
     }
 
-    fn use_at(&mut self, spot: Spot, at: Pos2, document: &Document, camera: &mut Camera, touch: &mut Touch) {
+    fn use_at(&mut self, spot: Spot, at: Pos2, sight: Sight<'_>, camera: &mut Camera, touch: &mut Touch) {
+        let Sight { document, surfaces, .. } = sight;
         let place = place_at(self.placement.rect(), at);
         match spot {
             Spot::Select => {
-                let sphere = pick(document, camera, place).map(|pick| pick.sphere);
+                let sphere = surfaces.pick(document, camera, place).map(|pick| pick.sphere);
                 touch.select = Some(sphere);
                 if sphere.is_none() {
                     self.mark = Some(Mark { place, text: "sky".to_owned(), since: Instant::now() });
                 }
             }
             Spot::Add => {
-                touch.edit = Some(Edit::Add(new_body(document.scene(), camera, document.aspect(), place)));
+                let hit = surfaces.pick(document, camera, place);
+                touch.edit = Some(Edit::Add(new_body(hit, camera, document.aspect(), place)));
             }
-            Spot::Focus => self.focus(document, camera, place),
-            Spot::Centre => self.recentre(document, camera, place),
+            Spot::Focus => self.focus(sight, camera, place),
+            Spot::Centre => self.recentre(sight, camera, place),
             Spot::Paths => {
                 let settings = document.settings;
                 touch.listed = self.placement.pixel_at(at, [settings.width, settings.height]);
@@ -281,8 +264,8 @@ impl Viewport {
         }
     }
 
-    fn focus(&mut self, document: &Document, camera: &mut Camera, place: [f64; 2]) {
-        let text = match pick(document, camera, place) {
+    fn focus(&mut self, sight: Sight<'_>, camera: &mut Camera, place: [f64; 2]) {
+        let text = match sight.surfaces.pick(sight.document, camera, place) {
             Some(pick) => {
                 *camera = navigation::focus(camera, pick.point);
                 let distance = camera.depth_of(pick.point);
@@ -295,8 +278,8 @@ impl Viewport {
         self.mark = Some(Mark { place, text, since: Instant::now() });
     }
 
-    fn recentre(&mut self, document: &Document, camera: &mut Camera, place: [f64; 2]) {
-        if let Some(pick) = pick(document, camera, place) {
+    fn recentre(&mut self, sight: Sight<'_>, camera: &mut Camera, place: [f64; 2]) {
+        if let Some(pick) = sight.surfaces.pick(sight.document, camera, place) {
             *camera = navigation::recentre(camera, pick.point);
             let text = "centre".to_owned();
             self.mark = Some(Mark { place: [0.5, 0.5], text, since: Instant::now() });
@@ -307,8 +290,8 @@ impl Viewport {
         &mut self,
         ui: &mut Ui,
         camera: &mut Camera,
-        facts: &Facts,
-        commands: &mut Vec<Command>,
+        sight: Sight<'_>,
+        (facts, commands): (&Facts, &mut Vec<Command>),
         touch: &mut Touch,
     ) {
         ui.set_width(menu::MENU_WIDTH);
@@ -325,7 +308,7 @@ impl Viewport {
                 let reason = facts.no_rays().filter(|_| !matches!(spot, Spot::Paths));
                 let response = ui.add_enabled(reason.is_none(), button);
                 if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() {
-                    self.use_at(spot, at, facts.document(), camera, touch);
+                    self.use_at(spot, at, sight, camera, touch);
                     ui.close();
                 }
             }

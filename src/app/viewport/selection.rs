@@ -8,7 +8,7 @@ use crate::app::spheres::silhouette::{Outline, OutlinePoint};
 use crate::app::spheres::{LARGE, Selected};
 use crate::app::theme;
 use crate::app::widgets::compact;
-use crate::scene::{Camera, Pick, Scene};
+use crate::scene::{Camera, Scene};
 use eframe::egui::{
     Align2, Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Shape, Stroke, TextStyle, Ui,
     Vec2, pos2, vec2,
@@ -186,7 +186,9 @@ impl Selection {
 fn is_on(selected: &Selected, document: &Document, place: [f64; 2]) -> bool {
     let camera = &document.camera;
     if document.scene().spheres.len() <= LARGE {
-        return pick(document, camera, place).is_some_and(|pick| pick.sphere == selected.sphere);
+        let pick =
+            document.scene().pick(camera.look_from, camera.direction_through(place, document.aspect()));
+        return pick.is_some_and(|pick| pick.sphere == selected.sphere);
     }
     let mut alone = Scene::default();
     alone.add_sphere(selected.body.center, selected.body.radius, 0);
@@ -202,19 +204,13 @@ fn cursor(grip: Grip, is_held: bool) -> CursorIcon {
     }
 }
 
-/// Where the ray through a point of the picture hits the scene.
-pub(super) fn pick(document: &Document, camera: &Camera, place: [f64; 2]) -> Option<Pick> {
-    let direction = camera.direction_through(place, document.aspect());
-    document.scene().pick(camera.look_from, direction)
-}
-
 /// The position in the picture of a point of the screen, 0 to 1 from the upper left.
 pub(super) fn place_at(rect: Rect, at: Pos2) -> [f64; 2] {
     let along = (at - rect.min) / rect.size();
     [f64::from(along.x), f64::from(along.y)]
 }
 
-fn point_at(rect: Rect, place: [f64; 2]) -> Pos2 {
+pub(super) fn point_at(rect: Rect, place: [f64; 2]) -> Pos2 {
     rect.min + Vec2::new(place[0] as f32, place[1] as f32) * rect.size()
 }
 

@@ -1,6 +1,6 @@
 //! A picture whose camera stays: one that was kept, or one of which a part is being marked.
 
-use super::DOLLY_PER_POINT;
+use super::moving::DOLLY_PER_POINT;
 use super::placement::Placement;
 use crate::app::command::Command;
 use crate::app::facts::Facts;

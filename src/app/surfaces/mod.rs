@@ -1,14 +1,18 @@
 //! The surfaces around the camera: a camera that moves stops at them and slides along, and a camera inside a sphere is
 //! told so.
 
+mod near;
+
 use super::answers::Answers;
 use super::model::checked::CheckedScene;
 use super::model::document::Document;
+use super::navigation;
 use crate::prepared::hierarchy::Hierarchy;
-use crate::scene::{Camera, Scene, Sphere};
+use crate::scene::{Camera, Pick};
 use crate::stages::Shading;
 use eframe::egui::Context;
 use glam::DVec3;
+use near::{Near, Tree};
 use std::sync::Arc;
 
 /// With more spheres than this, a hierarchy finds the near ones.
@@ -17,15 +21,6 @@ const SCAN_LIMIT: usize = 2_000;
 /// How far from a surface the camera stops, as shares of the distance to `look_at`. Between these limits it is the
 /// radius of the lens, so that no ray starts inside the sphere.
 const GAP_SHARES: [f64; 2] = [1e-3, 0.05];
-
-/// The most surfaces that one move slides along.
-const SLIDES: usize = 8;
-
-/// A hierarchy over the spheres of a scene, with coordinates relative to `origin`.
-struct Tree {
-    hierarchy: Hierarchy<f32>,
-    origin: DVec3,
-}
 
 /// The surfaces of the document's scene.
 #[derive(Default)]
@@ -80,9 +75,15 @@ impl Surfaces {
         Some(format!("the camera is inside sphere {sphere} ({material})"))
     }
 
+    /// Where the ray through the point `place` of the picture hits the scene.
+    pub fn pick(&self, document: &Document, camera: &Camera, place: [f64; 2]) -> Option<Pick> {
+        let direction = camera.direction_through(place, document.aspect());
+        self.near(document).pick(camera.look_from, direction)
+    }
+
     /// The camera that a move from `before` to `after` leads to: it stays outside of the spheres that `before` is
-    /// outside of.
-    pub fn stop(&self, document: &Document, before: &Camera, after: &Camera) -> Camera {
+    /// outside of. `pivot` is the point that the move keeps where it is in the picture, if there is one.
+    pub fn stop(&self, document: &Document, before: &Camera, after: &Camera, pivot: Option<DVec3>) -> Camera {
         if before.look_from == after.look_from {
             return *after;
         }
@@ -90,16 +91,21 @@ impl Surfaces {
         let [low, high] = GAP_SHARES.map(|share| share * distance);
         let gap = after.lens_radius().clamp(low, high);
         let near = self.near(document);
-        let mut look_from = near.slide(before.look_from, after.look_from, gap);
-        if look_from != after.look_from && is_orbit(before, after) {
-            // Sliding led off the circle.
-            let away = (look_from - after.look_at).normalize_or_zero();
-            look_from = near.slide(look_from, after.look_at + distance * away, gap);
+        let circled = pivot.filter(|pivot| is_orbit(before, after, *pivot));
+        let target = pivot.filter(|_| circled.is_none());
+        let look_from = near.slide(before.look_from, after.look_from, gap, target);
+        if look_from == after.look_from {
+            return *after;
         }
-        // A flying camera looks in the same direction as before; one that orbits looks at the same point.
-        let is_flying = before.look_at != after.look_at;
-        let off = if is_flying { look_from - after.look_from } else { DVec3::ZERO };
-        let stopped = Camera { look_from, look_at: after.look_at + off, ..*after };
+        if let Some(pivot) = circled {
+            // Sliding led off the circle.
+            let away = (look_from - pivot).normalize_or_zero();
+            let onto = pivot + after.look_from.distance(pivot) * away;
+            return navigation::orbited_to(after, pivot, near.slide(look_from, onto, gap, None));
+        }
+        // It looks in the same direction as before, and at a point as far away.
+        let look_at = before.look_at + (look_from - before.look_from);
+        let stopped = Camera { look_from, look_at, ..*before };
         if stopped.validate().is_ok() { stopped } else { *before }
     }
 
@@ -113,101 +119,10 @@ impl Surfaces {
     }
 }
 
-/// Whether a move keeps the distance to the point that the camera looks at.
-fn is_orbit(before: &Camera, after: &Camera) -> bool {
-    let [old, new] = [before, after].map(|camera| camera.look_from.distance(camera.look_at));
-    before.look_at == after.look_at && (old - new).abs() <= 1e-6 * old
-}
-
-/// The spheres of a scene by place.
-struct Near<'a> {
-    scene: &'a Scene,
-    tree: Option<&'a Tree>,
-}
-
-impl Near<'_> {
-    /// Calls `each` for every sphere that may touch a cube.
-    fn each(&self, middle: DVec3, reach: f64, mut each: impl FnMut(usize, &Sphere)) {
-        let spheres = &self.scene.spheres;
-        match self.tree {
-            Some(Tree { hierarchy, origin }) => {
-                let middle = middle - *origin;
-                hierarchy.near(middle - reach, middle + reach, |index| each(index, &spheres[index]));
-            }
-            None => {
-                for (index, sphere) in spheres.iter().enumerate() {
-                    let far = (sphere.center - middle).abs().max_element();
-                    if far <= sphere.radius + reach {
-                        each(index, sphere);
-                    }
-                }
-            }
-        }
-    }
-
-    /// The smallest sphere that `point` is inside of.
-    fn innermost(&self, point: DVec3) -> Option<usize> {
-        let mut found: Option<(usize, f64)> = None;
-        self.each(point, 0.0, |index, sphere| {
-            let is_smaller = found.is_none_or(|(_, radius)| sphere.radius < radius);
-            if is_smaller && is_inside(sphere, point) {
-                found = Some((index, sphere.radius));
-            }
-        });
-        found.map(|(index, _)| index)
-    }
-
-    /// Where a straight move ends that stops `gap` in front of each sphere and slides along it. Where `from` is nearer
-    /// to a sphere than that, it may come no nearer. Spheres that `from` is inside of are no obstacle.
-    fn slide(&self, from: DVec3, to: DVec3, gap: f64) -> DVec3 {
-        let mut obstacles = Vec::new();
-        self.each(from, from.distance(to) + gap, |_, sphere| {
-            if !is_inside(sphere, from) {
-                let clearance = from.distance(sphere.center) - sphere.radius;
-                obstacles.push((sphere.center, sphere.radius + clearance.clamp(0.0, gap)));
-            }
-        });
-        let (mut at, mut left) = (from, to - from);
-        for _ in 0..SLIDES {
-            let hit = obstacles
-                .iter()
-                .filter_map(|(center, radius)| {
-                    Some((share_to(at - *center, *radius, left)?, *center, *radius))
-                })
-                .min_by(|a, b| a.0.total_cmp(&b.0));
-            let Some((share, center, radius)) = hit else { return at + left };
-            at += share * left;
-            let Some(normal) = (at - center).try_normalize() else { return at };
-            at += normal * (radius - at.distance(center)).max(0.0);
-            left *= 1.0 - share;
-            left -= normal * left.dot(normal);
-        }
-        at
-    }
-}
-
-/// Whether a point is inside a sphere by more than the rounding of its distance.
-fn is_inside(sphere: &Sphere, point: DVec3) -> bool {
-    let size = sphere.center.abs().max_element() + sphere.radius + point.abs().max_element();
-    point.distance(sphere.center) - sphere.radius < -4.0 * f64::EPSILON * size
-}
-
-/// The share of the move `by` up to a sphere; `from` is relative to its centre. `None` if the move does not lead there.
-fn share_to(from: DVec3, radius: f64, by: DVec3) -> Option<f64> {
-    /// Moves at a smaller sine to the surface than this go along it.
-    const ALONG: f64 = 1e-12;
-    let (distance, length) = (from.length(), by.length());
-    let towards = -from.dot(by);
-    if towards <= ALONG * distance * length {
-        return None;
-    }
-    let outside = (distance - radius) * (distance + radius);
-    if outside <= 0.0 {
-        return Some(0.0);
-    }
-    let squared = towards * towards - length * length * outside;
-    let share = outside / (towards + squared.max(0.0).sqrt());
-    (squared >= 0.0 && share <= 1.0).then_some(share)
+/// Whether a move keeps the distance to the pivot.
+fn is_orbit(before: &Camera, after: &Camera, pivot: DVec3) -> bool {
+    let [old, new] = [before, after].map(|camera| camera.look_from.distance(pivot));
+    (old - new).abs() <= 1e-6 * old
 }
 
 #[cfg(test)]
@@ -216,7 +131,7 @@ mod tests {
     use crate::app::model::origin::{Origin, Source};
     use crate::app::navigation;
     use crate::recipe::Recipe;
-    use crate::scene::Material;
+    use crate::scene::Sphere;
     use std::time::{Duration, Instant};
 
     fn opened(name: &str) -> (Document, Surfaces) {
@@ -239,11 +154,12 @@ mod tests {
     }
 
     /// Moves the camera many times and checks it each time.
-    fn moved(name: &str, step: impl Fn(&Camera) -> Camera) -> (Document, Camera) {
+    fn moved(name: &str, step: impl Fn(&Camera) -> (Camera, Option<DVec3>)) -> (Document, Camera) {
         let (document, surfaces) = opened(name);
         let (first, mut camera) = (document.camera, document.camera);
         for _ in 0..400 {
-            camera = surfaces.stop(&document, &camera, &step(&camera));
+            let (after, pivot) = step(&camera);
+            camera = surfaces.stop(&document, &camera, &after, pivot);
             let clearance = clearance(&document, camera.look_from);
             assert!(clearance > 0.0, "{name}: {clearance} at {}", camera.look_from);
         }
@@ -254,7 +170,10 @@ mod tests {
     #[test]
     fn an_orbit_downwards_stays_above_the_ground() {
         for name in ["book", "field:10000"] {
-            let (document, camera) = moved(name, |camera| navigation::orbit(camera, 0.003, -0.02));
+            let (document, camera) = moved(name, |camera| {
+                let pivot = camera.look_at;
+                (navigation::orbit(camera, pivot, 0.003, -0.02), Some(pivot))
+            });
             let (before, after) =
                 [document.camera, camera].map(|camera| camera.look_from.distance(camera.look_at)).into();
             assert!(after > 0.5 * before && after < 2.0 * before, "{name}: from {before} to {after}");
@@ -267,45 +186,36 @@ mod tests {
         Arc::make_mut(&mut recipe.scene).spheres.truncate(1);
         let document = Document::new(Origin::new(recipe, Source::Builtin));
         let (surfaces, before) = (Surfaces::default(), document.camera);
-        for down in [0.02, 0.6] {
+        for (down, aside) in [(0.02, [0.5, 0.5]), (0.6, [0.5, 0.5]), (0.02, [0.7, 0.8])] {
             let mut camera = before;
+            let pivot = match aside {
+                [0.5, 0.5] => before.look_at,
+                _ => surfaces.pick(&document, &before, aside).unwrap().point,
+            };
             for _ in 0..100 {
-                camera = surfaces.stop(&document, &camera, &navigation::orbit(&camera, 0.003, -down));
+                let after = navigation::orbit(&camera, pivot, 0.003, -down);
+                camera = surfaces.stop(&document, &camera, &after, Some(pivot));
             }
-            let [old, new] = [before, camera].map(|camera| camera.look_from.distance(camera.look_at));
+            let [old, new] = [before, camera].map(|camera| camera.look_from.distance(pivot));
             assert!((new / old - 1.0).abs() < 0.01, "{down}: from {old} to {new}");
             assert!(clearance(&document, camera.look_from) < 0.01 * old, "{down}: {}", camera.look_from);
+            let place = camera.place_of(pivot, document.aspect()).unwrap();
+            let off = [0, 1].map(|axis| (place[axis] - aside[axis]).abs());
+            assert!(off[0] < 0.02 && off[1] < 0.02, "{down}: the pivot went from {aside:?} to {place:?}");
         }
     }
 
     #[test]
     fn a_dolly_stops_in_front_and_a_flight_keeps_its_direction() {
-        let (document, camera) = moved("three-spheres", |camera| navigation::dolly(camera, 0.9));
+        let (document, camera) = moved("three-spheres", |camera| {
+            (navigation::dolly(camera, camera.look_at, 0.9), Some(camera.look_at))
+        });
         assert!(clearance(&document, camera.look_from) < 0.01, "close to the ball: {}", camera.look_from);
         let ahead = |camera: &Camera| (camera.look_at - camera.look_from).normalize();
         for by in [DVec3::Z, DVec3::NEG_Y, DVec3::X, DVec3::new(0.3, -1.0, 1.0)] {
-            let (document, camera) = moved("book", |camera| navigation::fly(camera, 0.2 * by));
+            let (document, camera) = moved("book", |camera| (navigation::fly(camera, 0.2 * by), None));
             assert!(ahead(&camera).distance(ahead(&document.camera)) < 1e-9, "{by}");
         }
-    }
-
-    #[test]
-    fn a_fast_move_does_not_jump_over_a_sphere() {
-        let mut scene = Scene::default();
-        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
-        scene.add_sphere(DVec3::new(0.0, 0.0, -5.0), 0.1, grey);
-        let near = Near { scene: &scene, tree: None };
-        let stopped = near.slide(DVec3::ZERO, DVec3::new(0.0, 0.0, -100.0), 0.01);
-        assert!((stopped.z + 4.89).abs() < 1e-12, "{stopped}");
-        // Inside, there is no obstacle, and outside of the gap neither.
-        let inside = DVec3::new(0.0, 0.0, -5.0);
-        assert_eq!(near.slide(inside, DVec3::X, 0.01), DVec3::X);
-        assert_eq!(near.slide(DVec3::ZERO, DVec3::Z, 0.01), DVec3::Z);
-        // Nearer than the gap, the camera can move away and along.
-        let close = DVec3::new(0.0, 0.0, -4.899);
-        assert_eq!(near.slide(close, DVec3::ZERO, 0.01), DVec3::ZERO);
-        let along = near.slide(close, close + DVec3::X, 0.01);
-        assert!(along.distance(close + DVec3::X) < 1e-9, "{along}");
     }
 
     #[test]
@@ -336,10 +246,58 @@ mod tests {
         for (index, sphere) in document.scene().spheres.iter().enumerate().skip(1).step_by(97) {
             assert_eq!(tree.innermost(sphere.center), scan.innermost(sphere.center));
             let [from, to] = [2.0, -2.0].map(|up| sphere.center + DVec3::new(0.1, up, 0.2));
-            assert_eq!(tree.slide(from, to, 0.01), scan.slide(from, to, 0.01), "sphere {index}");
+            assert_eq!(tree.slide(from, to, 0.01, None), scan.slide(from, to, 0.01, None), "sphere {index}");
             found += 1;
         }
         assert!(found > 50);
+    }
+
+    #[test]
+    fn the_wheel_never_leads_through_what_is_under_the_pointer() {
+        for (name, place) in
+            [("three-spheres", [0.62, 0.5]), ("book", [0.3, 0.7]), ("field:10000", [0.5, 0.9])]
+        {
+            let (document, surfaces) = opened(name);
+            let (first, aspect) = (document.camera, document.aspect());
+            let direction = first.direction_through(place, aspect);
+            let target = surfaces.pick(&document, &first, place).unwrap();
+            let mut camera = first;
+            for _ in 0..200 {
+                let point = surfaces.pick(&document, &camera, place).unwrap().point;
+                let after = navigation::dolly(&camera, point, 0.8);
+                camera = surfaces.stop(&document, &camera, &after, Some(point));
+                assert!(clearance(&document, camera.look_from) > 0.0, "{name}");
+            }
+            let left = camera.look_from.distance(target.point);
+            assert!(left < 0.06 * target.distance, "{name}: {left} of {}", target.distance);
+            assert!(camera.direction_through(place, aspect).distance(direction) < 1e-5, "{name}");
+            // A blocked wheel does not go on to bring what is looked at nearer.
+            let ahead = camera.look_from.distance(camera.look_at);
+            assert!(ahead > 0.1 * left, "{name}: looks {ahead} ahead, {left} before the surface");
+        }
+    }
+
+    #[test]
+    fn the_hierarchy_picks_what_a_scan_picks() {
+        let (document, surfaces) = opened("field:10000");
+        let (camera, scene) = (document.camera, document.scene());
+        let mut hits = 0;
+        for y in 0..40 {
+            for x in 0..60 {
+                let place = [(f64::from(x) + 0.5) / 60.0, (f64::from(y) + 0.5) / 40.0];
+                let direction = camera.direction_through(place, document.aspect());
+                let scanned = scene.pick(camera.look_from, direction);
+                assert_eq!(surfaces.pick(&document, &camera, place), scanned, "{place:?}");
+                hits += usize::from(scanned.is_some_and(|pick| pick.sphere > 0));
+                // From within a sphere, and along the axes of the boxes.
+                let eye = scene.spheres[1 + 4 * (60 * y as usize + x as usize)].center;
+                for direction in [direction, DVec3::X, DVec3::NEG_Y] {
+                    let picked = surfaces.near(&document).pick(eye, direction);
+                    assert_eq!(picked, scene.pick(eye, direction), "{eye} {direction}");
+                }
+            }
+        }
+        assert!(hits > 300, "{hits}");
     }
 
     #[test]
@@ -348,13 +306,14 @@ mod tests {
         let mut camera = document.camera;
         let mut slowest = Duration::ZERO;
         for step in 0..300 {
+            let pivot = camera.look_at;
             let wanted = match step % 3 {
-                0 => navigation::orbit(&camera, 0.01, -0.02),
-                1 => navigation::dolly(&camera, 0.97),
+                0 => navigation::orbit(&camera, pivot, 0.01, -0.02),
+                1 => navigation::dolly(&camera, pivot, 0.97),
                 _ => navigation::fly(&camera, DVec3::new(0.0, -0.5, 2.0)),
             };
             let begin = Instant::now();
-            camera = surfaces.stop(&document, &camera, &wanted);
+            camera = surfaces.stop(&document, &camera, &wanted, Some(pivot));
             slowest = slowest.max(begin.elapsed());
         }
         assert!(slowest < Duration::from_millis(8), "{slowest:?}");

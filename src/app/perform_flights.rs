@@ -1,0 +1,127 @@
+//! Carries out the commands that fly the camera, and flies it.
+
+use super::command::Command;
+use super::flight::{self, Flight};
+use super::model::origin::Origin;
+use super::window::Window;
+use crate::animation::Keyframe;
+use crate::recipe::Recipe;
+use crate::scene::Camera;
+use eframe::egui::{self, Event};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+impl Window {
+    /// Carries out a command that moves the camera along a path. Other commands do nothing.
+    pub(super) fn perform_flight(&mut self, context: &egui::Context, command: Command) {
+        let document = self.document();
+        match command {
+            Command::ViewFrom(side) => {
+                let up = document.origin.recipe.camera.vup;
+                self.fly_to(context, side.camera(&document.camera, up));
+            }
+            Command::Bookmark(place) => {
+                if let Some(bookmark) = self.model.remembered.bookmarks.get(place) {
+                    self.fly_to(context, bookmark.camera());
+                }
+            }
+            Command::FlyBookmarks => {
+                let keyframes = flight::keyframes(&self.model.remembered.bookmarks);
+                let now = context.input(|input| input.time);
+                self.tell_fault(&keyframes);
+                self.flight = Some(Flight::along(&keyframes, &self.document().camera, now));
+                context.request_repaint();
+            }
+            _ => {}
+        }
+    }
+
+    /// Flies to a camera, or jumps there if the user prefers that or holds Shift.
+    fn fly_to(&mut self, context: &egui::Context, camera: Camera) {
+        let (now, is_jump) = context.input(|input| (input.time, input.modifiers.shift));
+        let before = self.document().camera;
+        if is_jump || !self.model.remembered.has_flights {
+            self.model.document.camera = camera;
+        } else if before != camera {
+            self.flight = Some(Flight::between(&before, &camera, now));
+            context.request_repaint();
+        }
+    }
+
+    /// Goes on with the flight. It ends early if the user presses a button or a key, scrolls, or moves the camera.
+    pub(super) fn go_on_flying(&mut self, context: &egui::Context) {
+        let Some(mut flight) = self.flight.take() else { return };
+        let is_interrupted = context.input(|input| input.raw.events.iter().any(is_input));
+        if is_interrupted || self.document().camera != *flight.camera() {
+            return;
+        }
+        let is_over = flight.go_on(context.input(|input| input.time));
+        self.model.document.camera = *flight.camera();
+        self.changes.note_move();
+        context.request_repaint();
+        if !is_over {
+            self.flight = Some(flight);
+        }
+    }
+
+    /// Writes the scene with the bookmarks as keyframes.
+    pub(super) fn save_flight(&mut self, context: &egui::Context, path: PathBuf) {
+        let keyframes = flight::keyframes(&self.model.remembered.bookmarks);
+        let Some(last) = keyframes.last().map(|keyframe| keyframe.frame) else { return };
+        if !self.tell_fault(&keyframes) {
+            let frames = last + 1;
+            self.toasts.good(format!("The path has {frames} frames; render them with --frames 0..{frames}"));
+        }
+        let mut document = self.document().clone();
+        let Origin { recipe, source, scene } = &*document.origin;
+        let recipe = Recipe { keyframes, ..recipe.clone() };
+        document.origin = Arc::new(Origin { recipe, source: source.clone(), scene: Arc::clone(scene) });
+        self.files.save_scene(context, path, &document);
+    }
+
+    /// Says which frame of a path has a camera that is not valid. Returns whether there is one.
+    fn tell_fault(&mut self, keyframes: &[Keyframe]) -> bool {
+        let Some((frame, reason)) = flight::first_fault(keyframes) else { return false };
+        self.toasts
+            .bad(format!("Frame {frame} of the path cannot be rendered: {reason}; add a bookmark before it"));
+        true
+    }
+}
+
+/// Whether an event is something that the user did on purpose. The pointer may move.
+fn is_input(event: &Event) -> bool {
+    matches!(
+        event,
+        Event::PointerButton { pressed: true, .. }
+            | Event::Key { pressed: true, repeat: false, .. }
+            | Event::MouseWheel { .. }
+            | Event::Zoom(_)
+            | Event::Touch { phase: egui::TouchPhase::Start, .. }
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::{Key, Modifiers, PointerButton, Pos2};
+
+    #[test]
+    fn the_pointer_may_move_while_the_camera_flies() {
+        let (key, physical_key, modifiers) = (Key::A, None, Modifiers::NONE);
+        let pressed = |pressed, repeat| Event::Key { key, physical_key, pressed, repeat, modifiers };
+        let button = |pressed| Event::PointerButton {
+            pos: Pos2::ZERO,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers,
+        };
+        for event in [pressed(true, false), button(true), Event::Zoom(1.5)] {
+            assert!(is_input(&event), "{event:?}");
+        }
+        for event in
+            [pressed(true, true), pressed(false, false), button(false), Event::PointerMoved(Pos2::ZERO)]
+        {
+            assert!(!is_input(&event), "{event:?}");
+        }
+    }
+}
