@@ -369,7 +369,6 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     assert_eq!(wait_for_end(&mut third).code(), Some(143));
     let film = checkpoint::load(&session).unwrap().film;
     assert!(film.sample_count() > before, "{} after {before}", film.sample_count());
-    assert_eq!(files(&state, "exr"), [session], "nothing else is left");
 
     // It has the bits of an uninterrupted render.
     let count = film.sample_count().to_string();
