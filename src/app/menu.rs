@@ -134,6 +134,7 @@ fn section(command: Command) -> u8 {
         Command::KeepIn(_) => 3,
         Command::DeleteSlot | Command::BringBackSlot => 4,
         Command::Device(_) | Command::Extreme(_) => 1,
+        Command::Size(_) => 2,
         _ => 0,
     }
 }

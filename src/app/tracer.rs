@@ -23,9 +23,6 @@ const CLEARER_SAMPLES: u64 = 8;
 /// The longest time for which a preview stays on the screen when there is something newer.
 const PREVIEW_LIMIT: Duration = Duration::from_millis(500);
 
-/// The longest wait for a first look at a picture that takes long.
-const LOOK_LIMIT: Duration = Duration::from_millis(300);
-
 /// Samples per pixel that a render started during a pause traces before it stops.
 const PAUSED_SAMPLES: u64 = 8;
 
@@ -285,10 +282,9 @@ impl Tracer {
         Ok(())
     }
 
-    /// Whether this render is a first look that has not been seen and will be soon.
+    /// Whether this render is a first look that has not been seen yet. The picture itself would take longer.
     fn is_looking(&self, run: &Started) -> bool {
-        let is_early = run.at.elapsed() < LOOK_LIMIT && self.status.phase.is_working();
-        run.is_look && !run.is_pictured && is_early
+        run.is_look && !run.is_pictured && self.status.phase.is_working()
     }
 
     /// What to show before the first samples of another picture. The same picture at another size is on the screen
