@@ -9,6 +9,9 @@ use std::path::Path;
 use weekender::app::{Command, Theme, Window};
 use weekender::stages::Stage;
 
+/// Points around the window that the harness leaves empty.
+const EDGE: f32 = 8.0;
+
 /// Opens a window, lets `act` use it, waits until its render has ended, and writes its picture.
 fn take(
     name: &str,
@@ -18,11 +21,11 @@ fn take(
     act: impl FnOnce(&mut Harness<'static, Window>),
 ) {
     let cache = tempfile::tempdir().unwrap();
-    let mut shown = window(&format!("{arguments} --noise-target 0.002"));
+    let mut shown = window(&format!("{arguments} --noise-target 0.004"));
     shown.show_thumbnails(Some(cache.path().to_owned()));
     shown.send(Command::Theme(theme));
     let mut harness = Harness::builder()
-        .with_size(size)
+        .with_size(size.map(|side| side + 2.0 * EDGE))
         .with_step_dt(1.0 / 60.0)
         .wgpu()
         .build_ui_state(|ui, window: &mut Window| window.ui_in(ui), shown);
@@ -31,7 +34,9 @@ fn take(
     until(&mut harness, "the end", |window| window.status().phase.is_over() && window.is_up_to_date());
     harness.run_steps(30);
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/images").join(format!("{name}.png"));
-    image::DynamicImage::from(harness.render().unwrap()).into_rgb8().save(path).unwrap();
+    let [edge, width, height] = [EDGE, size[0], size[1]].map(|points| points as u32);
+    let picture = image::DynamicImage::from(harness.render().unwrap()).crop_imm(edge, edge, width, height);
+    picture.into_rgb8().save(path).unwrap();
 }
 
 fn press(harness: &mut Harness<'_, Window>, key: Key) {

@@ -156,7 +156,8 @@ fn the_progress_is_shown_along_the_bottom() {
         .query_all_by_label(words)
         .find(|node| node.accesskit_node().role() == egui::Role::ProgressIndicator);
     let bar = bar.unwrap().rect();
-    assert!(bar.width() > 1279.0 && bar.bottom() > 719.0 && bar.height() < 8.0, "{bar}");
+    // Without a window system there is a margin of 8 points.
+    assert!(bar.width() > 1263.0 && bar.bottom() > 711.0 && bar.height() < 8.0, "{bar}");
 }
 
 #[test]

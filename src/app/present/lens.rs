@@ -1,17 +1,18 @@
 //! The pixel under the pointer, large: it and its neighbours as squares, and its numbers.
 
-use super::{beside, unit};
+use super::unit::unit;
 use crate::app::theme;
 use crate::app::widgets::compact;
 use eframe::egui::{
-    Align2, Color32, CornerRadius, FontFamily, FontId, Pos2, Rect, Stroke, StrokeKind, Ui, vec2,
+    Align2, Color32, Context, CornerRadius, FontFamily, FontId, Pos2, Rect, Stroke, StrokeKind, Ui, Vec2,
+    pos2, vec2,
 };
 
 /// Pixels on a side.
 const SIDE: u32 = 9;
 
-/// The side of a pixel in hundredths of the window's height.
-const PIXEL: f32 = 2.7;
+/// The side of a pixel in hundredths of the window's height, at least and at most.
+const PIXEL: [f32; 2] = [2.1, 2.7];
 
 /// Size of the numbers in hundredths of the window's height.
 const TEXT: f32 = 2.4;
@@ -85,7 +86,11 @@ impl Lens<'_> {
     pub fn paint(&self, ui: &Ui) {
         let Lens { room, picture, pointer, seen } = self;
         let (unit, lines) = (unit(ui.ctx()), seen.lines());
-        let (side, line, pad) = (PIXEL * unit, 1.35 * TEXT * unit, unit);
+        let (line, pad) = (1.35 * TEXT * unit, unit);
+        let slack = room.right() - picture.right() - 4.0 * pad;
+        let [least, most] = PIXEL.map(|side| side * unit);
+        // Smaller beside the picture rather than on it.
+        let side = if slack < SIDE as f32 * least { most } else { (slack / SIDE as f32).min(most) };
         let squares = side * SIDE as f32;
         let size = vec2(squares + 2.0 * pad, squares + line * lines.len() as f32 + 2.5 * pad);
         let plate = beside(ui.ctx(), *room, *picture, *pointer, size);
@@ -110,6 +115,24 @@ impl Lens<'_> {
             painter.text(at, Align2::LEFT_TOP, text, font.clone(), colour);
         }
     }
+}
+
+/// A rectangle of this size at the right of the picture; if there is no room, at that edge of the picture which is
+/// farther from the pointer, where neither titles nor scales are.
+fn beside(context: &Context, room: Rect, picture: Rect, pointer: Pos2, size: Vec2) -> Rect {
+    let gap = unit(context);
+    let slack = room.right() - picture.right();
+    if slack >= size.x + 1.9 * gap {
+        let middle = pos2(0.5 * (picture.right() + room.right()), room.center().y);
+        return Rect::from_center_size(middle, size);
+    }
+    let seen = picture.intersect(room);
+    let (side, anchor) = if pointer.x < seen.center().x {
+        (seen.right_center() - vec2(gap, 0.0), Align2::RIGHT_CENTER)
+    } else {
+        (seen.left_center() + vec2(gap, 0.0), Align2::LEFT_CENTER)
+    };
+    anchor.anchor_size(side, size)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 mod lens;
 mod progress;
+mod unit;
 
 pub use lens::{Lens, Seen};
 
@@ -12,10 +13,11 @@ use super::facts::Facts;
 use super::theme;
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align, Align2, Color32, Context, CursorIcon, FontFamily, FontId, Frame, Layout, Margin, Panel,
-    Rect, RichText, Style, TextStyle, Ui, pos2, vec2,
+    self, Align, Color32, Context, CursorIcon, FontFamily, FontId, Frame, Layout, Margin, Panel, RichText,
+    Style, TextStyle, Ui, vec2,
 };
 use progress::Progress;
+use unit::unit;
 
 /// Seconds for which the keys are shown, and in which they fade.
 const HELP_SECONDS: [f64; 2] = [8.0, 2.0];
@@ -97,12 +99,6 @@ impl Presenter {
         let colour = ui.visuals().weak_text_color().gamma_multiply(left as f32);
         ui.label(RichText::new(text).size(2.0 * unit).color(colour));
     }
-}
-
-/// A hundredth of the window's height; less if the window is narrower than a 4:3 screen.
-fn unit(context: &Context) -> f32 {
-    let size = context.content_rect().size();
-    (size.y / 100.0).min(size.x / 133.0).max(1.0)
 }
 
 fn whole(points: f32) -> i8 {
@@ -192,22 +188,4 @@ fn columns(ui: &mut Ui, unit: f32, texts: [(&str, &str); 2]) {
             );
         }
     });
-}
-
-/// A rectangle of this size at the right of the picture; if there is no room, at that edge of the picture which is
-/// farther from the pointer, where neither titles nor scales are.
-fn beside(context: &Context, room: Rect, picture: Rect, pointer: egui::Pos2, size: egui::Vec2) -> Rect {
-    let gap = unit(context);
-    let slack = room.right() - picture.right();
-    if slack >= size.x + 2.0 * gap {
-        let middle = pos2(0.5 * (picture.right() + room.right()), room.center().y);
-        return Rect::from_center_size(middle, size);
-    }
-    let seen = picture.intersect(room);
-    let (side, anchor) = if pointer.x < seen.center().x {
-        (seen.right_center() - vec2(gap, 0.0), Align2::RIGHT_CENTER)
-    } else {
-        (seen.left_center() + vec2(gap, 0.0), Align2::LEFT_CENTER)
-    };
-    anchor.anchor_size(side, size)
 }

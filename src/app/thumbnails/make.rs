@@ -1,6 +1,5 @@
 //! Renders small pictures, or reads them from the cache.
 
-use super::SIZE;
 use crate::app::answers::Answer;
 use crate::film::Description;
 use crate::gallery::{Fingerprints, is_about_pixels};
@@ -10,11 +9,15 @@ use crate::render::Renderer;
 use crate::render_cpu::{CpuOptions, CpuRenderer, give_way};
 use crate::stages::Stage;
 use anyhow::Result;
+use eframe::egui::{Vec2, vec2};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Weak;
 use std::sync::atomic::AtomicBool;
+
+/// The size of a small picture in points.
+pub const SIZE: Vec2 = vec2(80.0, 45.0);
 
 /// Samples per pixel, if the stage has as many.
 const SAMPLES: u64 = 32;

@@ -2,18 +2,17 @@
 
 mod make;
 
+pub use make::SIZE;
+
 use super::answers::Answers;
 use super::texture::Texture;
 use crate::gallery::is_about_pixels;
 use crate::stages::Stage;
-use eframe::egui::{Color32, Context, Rect, TextureOptions, Ui, Vec2, pos2, vec2};
+use eframe::egui::{Color32, Context, Rect, TextureOptions, Ui, pos2};
 use make::{Request, Thumbnail};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// The size of a small picture in points.
-pub const SIZE: Vec2 = vec2(80.0, 45.0);
 
 /// The largest number of pixels per point that small pictures are rendered for.
 const LARGEST_SCALE: u32 = 4;
