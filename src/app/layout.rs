@@ -211,8 +211,12 @@ impl Window {
         let (texture, divisor) = match layer.and_then(|layer| self.layers.shown_mut(layer)) {
             Some(layer) => (&layer.texture, layer.divisor),
             None => {
+                let mine = match view.slots.shown() {
+                    Some(kept) => self.keeper.picture.shown_mut(kept).map(|shown| &*shown),
+                    None => self.main.shown(),
+                };
                 let other = self.second.shown().filter(|_| is_other);
-                let Some(shown) = other.or(self.main.shown()) else { return };
+                let Some(shown) = other.or(mine) else { return };
                 (&shown.texture, shown.divisor)
             }
         };
