@@ -149,6 +149,21 @@ fn bookmarks_are_flown_in_order_as_frames_render_them() {
     assert_eq!(camera(&harness), start);
 }
 
+/// The list fits into the panel, which would otherwise grow from frame to frame.
+#[test]
+fn bookmarks_leave_the_panel_its_width() {
+    let mut harness = open("--stage view-distant --size 64x36");
+    harness.run_steps(5);
+    let left = |harness: &Harness<'_, Window>| harness.get_by_label("Picture").rect().left();
+    let before = left(&harness);
+    for _ in 0..8 {
+        send(&mut harness, Command::AddBookmark);
+    }
+    harness.state_mut().remembered_mut().bookmarks[0].name = "a very long name, ".repeat(4);
+    harness.run_steps(30);
+    assert_eq!(left(&harness), before);
+}
+
 #[test]
 fn a_path_needs_two_bookmarks() {
     let mut harness = open("--stage view-distant --size 64x36");

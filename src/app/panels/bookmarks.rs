@@ -10,6 +10,9 @@ use eframe::egui::{self, Button, PopupCloseBehavior, RichText, Ui, vec2};
 /// The most height that the list takes, in points. Longer lists scroll.
 const HEIGHT: f32 = 132.0;
 
+/// The width of a bookmark's menu button, in points.
+const MENU: f32 = 28.0;
+
 /// What the user does to the list.
 enum Change {
     Swap(usize, usize),
@@ -47,29 +50,33 @@ pub(super) fn ui(
     }
     let count = bookmarks.len();
     let mut change = None;
-    egui::ScrollArea::vertical().id_salt("bookmarks").max_height(HEIGHT).show(ui, |ui| {
-        ui.spacing_mut().item_spacing = vec2(4.0, 3.0);
-        for (place, bookmark) in bookmarks.iter_mut().enumerate() {
-            ui.horizontal(|ui| {
-                let side = ui.spacing().interact_size.y;
-                let is_here = bookmark.camera() == *camera;
-                let name = RichText::new(&bookmark.name);
-                let button = Button::new(if is_here { name.strong() } else { name }).truncate();
-                let size = vec2(ui.available_width() - side - 4.0, side);
-                let command = Command::Bookmark(place);
-                let response = ui.add_sized(size, button).on_hover_text(command.help());
-                if response.accessible_name(facts.name(command)).clicked() {
-                    commands.push(command);
-                }
-                let menu = MenuButton::from_button(Button::new("…").min_size(vec2(side, side)))
-                    .config(MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside));
-                let (response, _) =
-                    menu.ui(ui, |ui| entry(ui, (place, count), bookmark, camera, &mut change));
-                let help = "Rename, move or forget this bookmark";
-                response.on_hover_text(help).accessible_name(format!("Change {}", bookmark.name));
-            });
-        }
-    });
+    egui::ScrollArea::vertical().id_salt("bookmarks").max_height(HEIGHT).auto_shrink([false, true]).show(
+        ui,
+        |ui| {
+            ui.spacing_mut().item_spacing = vec2(4.0, 3.0);
+            ui.spacing_mut().button_padding.x = 6.0;
+            for (place, bookmark) in bookmarks.iter_mut().enumerate() {
+                ui.horizontal(|ui| {
+                    let side = ui.spacing().interact_size.y;
+                    let is_here = bookmark.camera() == *camera;
+                    let name = RichText::new(&bookmark.name);
+                    let button = Button::new(if is_here { name.strong() } else { name }).truncate();
+                    let size = vec2(ui.available_width() - MENU - 4.0, side);
+                    let command = Command::Bookmark(place);
+                    let response = ui.add_sized(size, button).on_hover_text(command.help());
+                    if response.accessible_name(facts.name(command)).clicked() {
+                        commands.push(command);
+                    }
+                    let menu = MenuButton::from_button(Button::new("…").min_size(vec2(MENU, side)))
+                        .config(MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside));
+                    let (response, _) =
+                        menu.ui(ui, |ui| entry(ui, (place, count), bookmark, camera, &mut change));
+                    let help = "Rename, move or forget this bookmark";
+                    response.on_hover_text(help).accessible_name(format!("Change {}", bookmark.name));
+                });
+            }
+        },
+    );
     match change {
         Some(Change::Swap(a, b)) => bookmarks.swap(a, b),
         Some(Change::Forget(place)) => _ = bookmarks.remove(place),
