@@ -226,7 +226,7 @@ fn pictures_that_should_differ_are_said_to() {
     }
     render(at, "seed.exr", &[&size[..], &["--seed", "9"]].concat());
     let (_, text, _) = compare(&["a.exr", "seed.exr"], at);
-    assert!(!text.contains("should be different"), "{text}");
+    assert!(!text.contains("should be different") && text.contains("sobol, seed 9"), "{text}");
 }
 
 /// Uniform noise of `samples` samples per pixel around `middle`.

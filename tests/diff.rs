@@ -142,6 +142,9 @@ fn a_difference_is_found_marked_and_told() {
         let by = radiance[3 + channel] - radiance[channel];
         assert!((by - difference[channel]).abs() < 1e-4, "{found}");
     }
+    let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let share = 100.0 * largest(&difference[..3]) / largest(&radiance[..6]);
+    assert!(found.contains("% of the larger") && (difference[3] - share).abs() < 0.2, "{share}: {found}");
     // The line "again" leads to the same path.
     let again = found.lines().find_map(|line| line.strip_prefix("again")).unwrap();
     let (code, repeated, _) = diff(&[&sides[..], &again.split_whitespace().collect::<Vec<_>>()].concat());

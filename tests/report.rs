@@ -220,7 +220,8 @@ fn a_scene_that_became_another_is_measured_again() {
         let camera = "[camera]\nlook_from = [0, 0, 3]\nlook_at = [0, 0, 0]\nvfov_degrees = 40\n";
         let material = "{ kind = \"lambertian\", albedo = [0.5, 0.5, 0.5] }";
         let sphere = format!("[[spheres]]\ncenter = [0, 0, 0]\nradius = {radius}\nmaterial = {material}\n");
-        fs::write(at.join("ball.toml"), format!("{camera}{sphere}")).unwrap();
+        let render = "[render]\nsampler = \"independent\"\n";
+        fs::write(at.join("ball.toml"), format!("{camera}{render}{sphere}")).unwrap();
     };
     let usual = ["--backends", "cpu", "--samplers", "sobol", "--reference-backend", "cpu"];
     let arguments = [&SMALL[..2], &["--scenes", "ball.toml"], &SMALL[4..], &usual[..]].concat();
@@ -231,6 +232,10 @@ fn a_scene_that_became_another_is_measured_again() {
     };
     scene("1");
     let first = run();
+    // Whatever the scene says, the reference has the sampler whose error falls faster.
+    let reference = weekender::film::checkpoint::load(&at.join("found/reference-ball.exr")).unwrap();
+    let recipe = weekender::recipe::file::parse(reference.description.recipe(), "reference").unwrap();
+    assert_eq!(recipe.settings.sampler.name(), "sobol");
     assert_eq!(run(), first);
     scene("0.9");
     let second = run();
