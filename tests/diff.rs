@@ -3,17 +3,21 @@
 
 mod gpu_common;
 
+use glam::DVec3;
 use gpu_common::{gpu, job_of, jobs};
 use std::process::{Command, Output, Stdio};
 use std::sync::atomic::AtomicBool;
-use weekender::diff::compare;
+use weekender::diff::{Told, compare};
 use weekender::film::Film;
 use weekender::recipe::Recipe;
-use weekender::render::{RenderJob, Renderer, SamplerKind, Stats};
-use weekender::render_cpu::{CpuOptions, CpuRenderer, Isa, record_path};
+use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
+use weekender::render_cpu::{
+    CpuOptions, CpuRenderer, Isa, PathRecord, RecordedHit, RecordedRay, record_path,
+};
 use weekender::render_gpu::GpuOptions;
 use weekender::scene::builtin::BuiltinScene;
-use weekender::stages::SurfaceRule;
+use weekender::scene::{Camera, Material, Scene};
+use weekender::stages::{Rules, SurfaceRule};
 
 fn small(scene: &str, width: u32, height: u32) -> RenderJob {
     let mut recipe = Recipe::find(scene).unwrap();
@@ -138,6 +142,9 @@ fn a_difference_is_found_marked_and_told() {
         let by = radiance[3 + channel] - radiance[channel];
         assert!((by - difference[channel]).abs() < 1e-4, "{found}");
     }
+    let largest = |values: &[f64]| values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let share = 100.0 * largest(&difference[..3]) / largest(&radiance[..6]);
+    assert!(found.contains("% of the larger") && (difference[3] - share).abs() < 0.2, "{share}: {found}");
     // The line "again" leads to the same path.
     let again = found.lines().find_map(|line| line.strip_prefix("again")).unwrap();
     let (code, repeated, _) = diff(&[&sides[..], &again.split_whitespace().collect::<Vec<_>>()].concat());
@@ -208,4 +215,38 @@ fn what_cannot_be_compared_is_refused() {
             assert!(message.contains(part), "{arguments:?} should say {part:?}: {message}");
         }
     }
+}
+
+/// Two rays pass a ball of radius 1 whose centre is 4 away: one at 0.999 of its radius, one at 1.002.
+#[test]
+fn a_near_miss_is_told_of_the_side_that_misses() {
+    let mut scene = Scene::default();
+    let glass = scene.add_material("pane", Material::Dielectric { refraction_index: 1.5 });
+    scene.add_sphere(DVec3::new(0.0, 0.0, -4.0), 1.0, glass);
+    let job = RenderJob::new(scene, Camera::BOOK, RenderSettings::default(), Rules::FINISHED).unwrap();
+    let path = |height: f64, distance: Option<f64>| PathRecord {
+        rays: vec![RecordedRay {
+            origin: [0.0, height, 0.0],
+            direction: [0.0, 0.0, -1.0],
+            throughput: [1.0; 3],
+            hit: distance.map(|distance| RecordedHit { sphere: 0, distance, position: None }),
+        }],
+        radiance: [0.5; 3],
+    };
+    let (hits, misses) = (path(0.999, Some(3.955)), path(1.002, None));
+    for (paths, words) in [
+        (
+            [&hits, &misses],
+            "cpu meets sphere 0 (pane), reference the sky; reference misses that sphere by 2e-3",
+        ),
+        ([&misses, &hits], "cpu meets the sky, reference sphere 0 (pane); cpu misses that sphere by 2e-3"),
+    ] {
+        let comparison = compare(&job, paths, 1e-3);
+        let told = Told { job: &job, names: ["cpu", "reference"], paths, tolerance: 1e-3 };
+        let said = told.verdict(&comparison);
+        assert!(said.contains(words), "{said} should say {words}");
+    }
+    let far = path(1.1, None);
+    let told = Told { job: &job, names: ["cpu", "reference"], paths: [&hits, &far], tolerance: 1e-3 };
+    assert!(!told.verdict(&compare(&job, told.paths, 1e-3)).contains("misses"));
 }

@@ -13,7 +13,7 @@ use weekender::render_gpu::{
 };
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book, field};
 use weekender::scene::{Camera, Material, Scene, Sky, Sphere};
-use weekender::stages::{Rules, Transfer};
+use weekender::stages::{Rules, Stage, Transfer};
 
 fn go_on() -> AtomicBool {
     AtomicBool::new(false)
@@ -91,6 +91,19 @@ fn odd_sizes() {
             parted += usize::from(a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-4));
         }
         assert!(parted <= 2, "{size:?}: {parted}");
+    }
+}
+
+/// The gradient ends in the last column and row, of which a picture of one column or row has none.
+#[test]
+fn a_gradient_of_one_column_or_row_is_a_number() {
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let mut recipe = Stage::find("ppm-gradient").unwrap().recipe();
+    for size in [[1, 5], [5, 1], [1, 1]] {
+        [recipe.settings.width, recipe.settings.height] = size;
+        let job = recipe.job().unwrap();
+        let (on_gpu, on_cpu) = (rendered(&mut gpu, &job, 1), rendered(&mut cpu(), &job, 1));
+        assert!(on_gpu == on_cpu && on_gpu.rejected() == 0, "{size:?}: {on_gpu:?} and {on_cpu:?}");
     }
 }
 

@@ -39,6 +39,22 @@ fn the_log_is_off_unless_it_is_asked_for() {
 }
 
 #[test]
+fn a_film_is_kept_as_often_as_was_asked_for() {
+    let directory = tempfile::tempdir().unwrap();
+    let written = |every: &str| {
+        let picture =
+            ["--batch", "--size", "32x18", "--device", "cpu", "--threads", "1", "--time-limit", "1.5"];
+        let flags = ["--checkpoint", "film.exr", "--every", every, "--log", "run.log"];
+        let output = program(directory.path(), &[&picture[..], &flags].concat()).output().unwrap();
+        assert!(output.status.success(), "{:?}", said(&output));
+        let log = fs::read_to_string(directory.path().join("run.log")).unwrap();
+        log.lines().filter(|line| line.contains("checkpoint: ")).count()
+    };
+    assert_eq!(written("1h"), 0, "only the film at the end");
+    assert!((1..=5).contains(&written("0.3s")));
+}
+
+#[test]
 fn a_log_file_has_passes_and_checkpoints_and_replaces_no_picture() {
     let directory = tempfile::tempdir().unwrap();
     let at = |name: &str| directory.path().join(name);

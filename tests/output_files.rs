@@ -6,6 +6,7 @@ use image::{ImageFormat, ImageReader};
 use std::fs;
 use std::io;
 use std::path::Path;
+use weekender::describe::seconds;
 use weekender::files::{check_writable, replace_file};
 use weekender::film::{Film, checkpoint, fixed_point};
 use weekender::output::{Description, OutputError, OutputFormat, key, read_description, write_image};
@@ -122,6 +123,13 @@ fn a_picture_says_what_was_said_of_it() {
             assert!(read_description(&renamed).unwrap() == *description);
         }
     }
+}
+
+/// 59.6 s are a minute, and neither "60 s" nor "0 min".
+#[test]
+fn times_are_rounded_before_they_are_divided_into_units() {
+    let found = [59.4, 59.6, 119.6, 3599.7, 7199.6].map(seconds);
+    assert_eq!(found, ["59.4 s", "1 min 00 s", "2 min 00 s", "1 h 00 min", "2 h 00 min"]);
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! `weekender report`: what it writes, how it continues after an interruption, and what it refuses.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
+use serde_json::json;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use tempfile::TempDir;
+use weekender::report::CurveSummary;
 
 fn command(arguments: &[&str], directory: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
@@ -202,6 +204,12 @@ fn a_report_goes_on_with_what_is_there() {
     let (code, _, errors) = report(&[&sobol[..], &given[..]].concat(), at);
     assert_eq!(code, 0, "{errors}");
     assert_eq!(data(at)["runs"][0]["points"][5]["mse"], first["runs"][0]["points"][5]["mse"]);
+    // A film of other paths is no reference.
+    let film = ["--batch", "--scene", "three-spheres", "--size", "48x27", "--samples", "4", "--depth", "3"];
+    let mut other = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    assert!(other.args(film).args(["--out", "other.exr"]).current_dir(at).output().unwrap().status.success());
+    let (code, _, errors) = report(&[&sobol[..], &["--reference", "other.exr"]].concat(), at);
+    assert!(code != 0 && errors.contains("other.exr is not a picture of three-spheres at 48x27"), "{errors}");
 }
 
 #[test]
@@ -212,7 +220,8 @@ fn a_scene_that_became_another_is_measured_again() {
         let camera = "[camera]\nlook_from = [0, 0, 3]\nlook_at = [0, 0, 0]\nvfov_degrees = 40\n";
         let material = "{ kind = \"lambertian\", albedo = [0.5, 0.5, 0.5] }";
         let sphere = format!("[[spheres]]\ncenter = [0, 0, 0]\nradius = {radius}\nmaterial = {material}\n");
-        fs::write(at.join("ball.toml"), format!("{camera}{sphere}")).unwrap();
+        let render = "[render]\nsampler = \"independent\"\n";
+        fs::write(at.join("ball.toml"), format!("{camera}{render}{sphere}")).unwrap();
     };
     let usual = ["--backends", "cpu", "--samplers", "sobol", "--reference-backend", "cpu"];
     let arguments = [&SMALL[..2], &["--scenes", "ball.toml"], &SMALL[4..], &usual[..]].concat();
@@ -223,6 +232,10 @@ fn a_scene_that_became_another_is_measured_again() {
     };
     scene("1");
     let first = run();
+    // Whatever the scene says, the reference has the sampler whose error falls faster.
+    let reference = weekender::film::checkpoint::load(&at.join("found/reference-ball.exr")).unwrap();
+    let recipe = weekender::recipe::file::parse(reference.description.recipe(), "reference").unwrap();
+    assert_eq!(recipe.settings.sampler.name(), "sobol");
     assert_eq!(run(), first);
     scene("0.9");
     let second = run();
@@ -308,6 +321,44 @@ mod interrupted {
             }
         }
     }
+}
+
+/// The curve of pictures with these squared errors at 1, 2, 4 ... samples, of which each takes a second.
+fn curve(pictures: &[&[f64]]) -> CurveSummary {
+    let point = |(power, mse): (usize, &f64)| {
+        let samples = 1 << power;
+        json!({"samples": samples, "trace_seconds": samples, "wall_seconds": samples, "device_seconds": null,
+               "mse": mse, "rel_mse": 0.1, "flip": 0.1, "mse_estimate": null, "rejected": 0})
+    };
+    let run = |(seed, errors): (usize, &&[f64])| {
+        let points: Vec<_> = errors.iter().enumerate().map(point).collect();
+        json!({"scene": "s", "backend": "cpu", "sampler": "sobol", "seed": seed, "about": "", "prepare_seconds": 0,
+               "points": points})
+    };
+    let runs: Vec<_> = pictures.iter().enumerate().map(run).collect();
+    let settings = json!({"software": "", "size": [4, 4], "seeds": 4, "time_limit": 1, "max_samples": 64,
+                          "estimate_error": true, "reference_samples": 64, "reference": "cpu"});
+    let data = json!({"schema": 1, "settings": settings, "references": [], "runs": runs, "rounding": []});
+    let data = weekender::report::parse(data.to_string().as_bytes()).unwrap();
+    weekender::report::curves(&data, &[0.25]).remove(0)
+}
+
+#[test]
+fn a_curve_ends_where_most_of_its_pictures_end() {
+    let fall = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+    let found = curve(&[&fall, &fall, &fall[..5], &fall[..3]]);
+    let samples: Vec<u64> = found.points.iter().map(|point| point.samples).collect();
+    assert_eq!(samples, [1, 2, 4, 8, 16], "half of the pictures are not most of them");
+    // The error is 0.25 at 16 samples, which take 16 s.
+    let crossing = found.times[0].unwrap();
+    assert!((crossing.time - 16.0).abs() < 1e-9 && !crossing.is_extrapolated, "{crossing:?}");
+}
+
+#[test]
+fn an_error_is_reached_when_it_is_not_exceeded_again() {
+    let found = curve(&[&[1.0, 0.04, 0.09, 0.01]]);
+    let crossing = found.times[0].unwrap();
+    assert!(4.0 < crossing.time && crossing.time < 8.0 && !crossing.is_extrapolated, "{crossing:?}");
 }
 
 #[test]

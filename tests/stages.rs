@@ -1,6 +1,7 @@
 //! The registry of stages: complete, in order, valid, and each with everything that a lesson needs.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 use weekender::recipe::Recipe;
 use weekender::scene::Material;
 use weekender::stages::{DielectricLaws, Means, Rules, Shading, Stage, SurfaceRule, Transfer};
@@ -154,6 +155,60 @@ fn unknown_ids_are_answered_with_a_guess() {
         assert!(message("glass").contains(id), "{}", message("glass"));
     }
     assert_eq!(message("quux-corge"), "there is no stage \"quux-corge\"; --list shows all");
+}
+
+/// Equal jobs have equal samples, so a film may go on only if nothing of them differs.
+#[test]
+fn a_job_with_another_part_is_another_job() {
+    let base = recipe("lambertian-gamma");
+    let changed = |change: &dyn Fn(&mut Recipe)| {
+        let mut recipe = base.clone();
+        change(&mut recipe);
+        recipe.job().expect("valid")
+    };
+    let same = changed(&|_| {});
+    assert!(same == changed(&|recipe| recipe.samples_per_pixel += 1));
+    let changes: [&dyn Fn(&mut Recipe); 9] = [
+        &|recipe| recipe.settings.seed += 1,
+        &|recipe| recipe.settings.max_depth += 1,
+        &|recipe| recipe.settings.width += 1,
+        &|recipe| recipe.settings.estimate_error = false,
+        &|recipe| recipe.camera.vfov_degrees += 1.0,
+        &|recipe| recipe.rules.surface = SurfaceRule::Book,
+        &|recipe| recipe.rules.transfer = Transfer::Linear,
+        &|recipe| Arc::make_mut(&mut recipe.scene).spheres[0].radius *= 2.0,
+        &|recipe| Arc::make_mut(&mut recipe.scene).sky.top *= 0.5,
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        assert!(same != changed(change), "change {number}");
+    }
+}
+
+/// The plain C program renders only these rules; how a picture is displayed is no rule of the tracer.
+#[test]
+fn rules_are_finished_whatever_the_display_does() {
+    let are_finished = |id: &str| recipe(id).rules.are_finished();
+    for id in ["lambertian-linear", "lambertian-gamma", "glass-schlick", "book"] {
+        assert!(are_finished(id), "{id}");
+    }
+    for id in ["aliased", "diffuse", "shadow-acne", "gamut", "glass-refract", "glass-tir"] {
+        assert!(!are_finished(id), "{id}");
+    }
+}
+
+#[test]
+fn the_nearest_guess_comes_first() {
+    let message = Stage::find("diffuse-limit").expect_err("unknown").to_string();
+    assert!(message.contains("did you mean diffuse-limited or diffuse?"), "{message}");
+}
+
+/// The stage compares linear values above with gamma-corrected ones below.
+#[test]
+fn half_of_the_rows_are_linear_where_the_upper_half_is() {
+    let rows =
+        |height: usize| (0..height).filter(move |row| !Transfer::LinearAboveGamma2.is_gamma(*row, height));
+    assert_eq!(rows(4).collect::<Vec<_>>(), [0, 1]);
+    assert_eq!(rows(450).count(), 225);
 }
 
 /// A comparison teaches most if only one thing differs.

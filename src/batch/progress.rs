@@ -107,6 +107,10 @@ mod tests {
         status.contributions =
             vec![crate::progressive::Contribution { backend: info, samples_per_pixel: 100 }];
         assert_eq!(seconds_left(&plan, &status), Some(100.0));
+        // Samples of earlier runs took none of this run's time.
+        status.contributions[0].samples_per_pixel = 50;
+        assert_eq!(seconds_left(&plan, &status), Some(200.0));
+        status.contributions[0].samples_per_pixel = 100;
         plan.stop.seconds = Some(60.0);
         assert_eq!(seconds_left(&plan, &status), Some(50.0));
         plan.stop.noise = Some(0.01);

@@ -65,3 +65,26 @@ fn words(work: &Work<'_>, elapsed: Duration) -> String {
     let left = if *share < PREDICTED_FROM { String::new() } else { format!(", {} left", seconds(left)) };
     format!("{number} of {count}, {}: {state}{left}", stage.id)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::progressive::Status;
+    use crate::stages::Stage;
+
+    #[test]
+    fn the_time_left_is_that_of_the_rest() {
+        let status = Status {
+            phase: Phase::Tracing,
+            samples_per_pixel: 16,
+            planned_samples_per_pixel: 64,
+            ..Status::default()
+        };
+        let said = |share| {
+            let work = Work { stage: &Stage::ALL[0], number: 2, count: 9, status: &status, share };
+            words(&work, Duration::from_secs(60))
+        };
+        assert_eq!(said(0.25), "2 of 9, ppm-tiny: 16 of 64 spp, 3 min 00 s left");
+        assert_eq!(said(0.01), "2 of 9, ppm-tiny: 16 of 64 spp", "too early to tell");
+    }
+}

@@ -86,6 +86,22 @@ fn whole_frames_are_kept_and_others_are_rendered_again() {
     assert_eq!(run(&["--samples", "5", "--seed", "1"]), [0, 8]);
 }
 
+/// Its recipe asks for 64 samples, but a noise target ended it before.
+#[test]
+fn a_picture_with_fewer_samples_is_no_whole_frame() {
+    let directory = temp();
+    fs::create_dir(directory.path().join("d")).unwrap();
+    let picture = ["--batch", "--size", "24x14", "--threads", "2", "--samples", "64", "--noise-target", "10"];
+    let output =
+        weekender(directory.path(), &[&picture[..], &["--out", "d/frame-0000.png"]].concat()).output();
+    assert!(output.unwrap().status.success());
+    let frame = directory.path().join("d/frame-0000.png");
+    assert_eq!(read_description(&frame).unwrap().get(key::SAMPLES), Some("16"));
+    let flags = ["--turntable=8", "--frames", "0..1", "--samples", "64", "--out", "d"];
+    assert_eq!(render(directory.path(), &flags)["rendered"], 1);
+    assert_eq!(read_description(&frame).unwrap().get(key::SAMPLES), Some("64"));
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_leaves_whole_frames_and_goes_on() {
@@ -126,6 +142,18 @@ fn an_interrupted_run_leaves_whole_frames_and_goes_on() {
         assert_eq!((&json["kept"], &json["rendered"]), (&done.into(), &1.into()));
         assert!(directory.path().join("turn.png").exists());
     }
+}
+
+#[test]
+fn a_run_that_breaks_off_says_where_and_keeps_its_frames() {
+    let directory = temp();
+    fs::create_dir_all(directory.path().join("d/frame-0002.png")).unwrap();
+    let flags = ["--batch", "--size", "24x14", "--samples", "4", "--turntable=4", "--out", "d"];
+    let output = weekender(directory.path(), &flags).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{told}");
+    assert!(told.contains("frame 2 failed; 2 frames before it stay"), "{told}");
+    assert_eq!(names(&directory.path().join("d")), ["frame-0000.png", "frame-0001.png", "frame-0002.png"]);
 }
 
 /// Frames and delays of an animated PNG.

@@ -176,6 +176,20 @@ fn a_straight_even_path_stays_straight_and_even() {
     }
 }
 
+/// The slope at a keyframe is that of the parabola through it and its neighbours, however uneven the steps are.
+#[test]
+fn a_parabola_stays_one_between_inner_keyframes() {
+    let at = |frame: u32| {
+        let t = f64::from(frame);
+        Keyframe { frame, camera: Camera { look_from: DVec3::new(t, 0.1 * t * t, 9.0), ..camera() } }
+    };
+    let path = keyframed([0, 2, 10, 13, 20].map(at).to_vec());
+    for frame in 2..=13 {
+        let (found, expected) = (path.camera(frame).look_from, at(frame).camera.look_from);
+        assert!(found.distance(expected) < 1e-12, "{frame}: {found}, expected {expected}");
+    }
+}
+
 #[test]
 fn a_camera_stands_still_between_equal_keyframes() {
     let at = |frame, x: f64| Keyframe {

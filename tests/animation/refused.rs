@@ -57,6 +57,8 @@ fn an_animation_is_not_a_film() {
     for (flag, value) in [
         ("--resume", "film.exr"),
         ("--checkpoint", "film.exr"),
+        ("--every", "5s"),
+        ("--ppm", "ascii"),
         ("--time-limit", "3"),
         ("--noise-target", "0.1"),
         ("--sample-range", "0..4"),

@@ -183,3 +183,14 @@ fn what_ends_a_render_is_what_was_asked_for() {
         assert_eq!(samples(&flags), None, "{flags:?}");
     }
 }
+
+#[test]
+fn a_range_may_end_with_the_last_sample_that_there_is() {
+    let range = |text: &str| {
+        let words = ["weekender", "--batch", "--scene", "three-spheres", "--sample-range", text];
+        let Ok(Request::Batch(options)) = parse(words.iter().map(Into::into)) else { return None };
+        Some(options.renders[0].plan.range())
+    };
+    assert_eq!(range("4294967295..4294967296"), Some(4_294_967_295..4_294_967_296));
+    assert_eq!(range("4294967295..4294967297"), None);
+}

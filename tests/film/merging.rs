@@ -120,6 +120,36 @@ fn guests_of_a_sum_leave_it_to_the_bit_even_if_their_files_are_gone() {
 }
 
 #[test]
+fn a_guest_takes_its_rejected_samples_with_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut sum = FilmSum::new(1, 1, 2, description(), Path::new("plan")).unwrap();
+    for (name, range, rejected) in [("host.exr", 0..4, 1), ("guest.exr", 4..8, 2)] {
+        let mut film = Film::new(1, 1, 2);
+        film.record(range, rejected).unwrap();
+        let path = directory.path().join(name);
+        checkpoint::save(&path, &film, &description()).unwrap();
+        sum.add(&path, same_recipe_text, |_| name == "guest.exr").unwrap();
+    }
+    assert_eq!(sum.film().rejected(), 3);
+    sum.take_back().unwrap();
+    assert_eq!(sum.film().rejected(), 1);
+}
+
+/// A sum that leaves one of them out would be too short.
+#[test]
+fn the_time_of_a_merged_film_is_unknown_if_that_of_one_film_is() {
+    let directory = tempfile::tempdir().unwrap();
+    let paths = ["known.exr", "unknown.exr"].map(|name| directory.path().join(name));
+    checkpoint::save(&paths[0], &noisy_film(2, 2, 2, &[0..2]), &description()).unwrap();
+    checkpoint::save(&paths[1], &noisy_film(2, 2, 2, &[2..4]), &Description::new(RECIPE)).unwrap();
+    let mut sum = FilmSum::new(2, 2, 2, Description::new(RECIPE), Path::new("plan")).unwrap();
+    sum.add(&paths[0], same_recipe_text, |_| false).unwrap();
+    assert_eq!(sum.description().get(key::SECONDS), Some("1.5"));
+    sum.add(&paths[1], same_recipe_text, |_| false).unwrap();
+    assert_eq!(sum.description().get(key::SECONDS), None);
+}
+
+#[test]
 fn recipes_may_ask_for_different_numbers_of_samples() {
     let more = RECIPE.replace("samples_per_pixel = 10", "samples_per_pixel = 500");
     assert_eq!(same_recipe_text(RECIPE, &more), Ok(()));

@@ -3,15 +3,17 @@
 use crate::common::*;
 use crate::film::trace_tables;
 use glam::DVec3;
+use std::sync::Arc;
 use weekender::kernel::{BOX_MARGIN, Node, Real};
 use weekender::prepared::PreparedScene;
 use weekender::prepared::hierarchy::Hierarchy;
-use weekender::render::RenderSettings;
+use weekender::render::{RenderJob, RenderSettings};
 use weekender::render_cpu::bvh::{EMPTY_STACK, meets_box, slabs_of, traverse};
 use weekender::render_cpu::lanes::{Key, Lanes, Mask, Reference, Scalar, Unsigned, V3, Wide, WideU};
 use weekender::render_cpu::sphere::{NONE, Nearest, Rays, Spheres, near_root, nearest_root, surface_point};
-use weekender::scene::Sphere;
 use weekender::scene::builtin::{BOOK_CAMERA, book};
+use weekender::scene::{Camera, Sphere};
+use weekender::stages::{Rules, SurfaceRule};
 
 /// Spheres with sizes over many powers of ten, some touching, some at the same place.
 fn spheres(random: &mut Random, count: usize, spread: f64, radii: [f64; 2]) -> Vec<Sphere> {
@@ -292,5 +294,34 @@ fn boxes_are_widened_alike_on_every_side() {
             let met = meets_box(l, &slabs, &node, l.constant(f64::INFINITY)).bits();
             assert_eq!(met & 1, expected, "from {origin}, {margins} margins beside the box");
         }
+    }
+}
+
+/// A renderer keeps what it has prepared for the next job of the same scene, unless the rules are others.
+#[test]
+fn a_renderer_of_other_rules_before_renders_the_same() {
+    let balls: Vec<_> = (0..125)
+        .map(|i| {
+            (
+                DVec3::new(f64::from(i % 5), f64::from(i / 5 % 5), -f64::from(i / 25) - 4.0),
+                0.4,
+                lambertian(0.5),
+            )
+        })
+        .collect();
+    let settings = RenderSettings { max_depth: 8, ..size(24, 14) };
+    let scene = Arc::new(scene(&balls));
+    let with = |surface| {
+        let rules = Rules { surface, ..Rules::FINISHED };
+        RenderJob::new(Arc::clone(&scene), Camera::BOOK, settings, rules).unwrap()
+    };
+    let jobs = [SurfaceRule::Exact, SurfaceRule::Book, SurfaceRule::Acne].map(with);
+    let mut renderer = widest();
+    for job in jobs.iter().chain(jobs.iter().rev()) {
+        assert!(
+            render(&mut renderer, job, 0..4) == render(&mut widest(), job, 0..4),
+            "{:?}",
+            job.rules().surface
+        );
     }
 }

@@ -31,6 +31,12 @@ fn layers_too_thin_for_single_precision_are_told() {
         thin.len() == 1 && thin[0].contains("--device reference") && thin[0].contains("1.0e-7"),
         "{thin:?}"
     );
+    // There are two such balls; with one, nothing is counted.
+    assert!(thin[0].contains("(2 such layers in all)"), "{thin:?}");
+    let (mut scene, camera) = shells_at(DVec3::ZERO, 1e-7);
+    scene.spheres.truncate(2);
+    let one = PreparedScene::<f32>::new(&job(&scene, camera, size(2, 2))).warnings().to_vec();
+    assert!(one.len() == 1 && !one[0].contains("in all"), "{one:?}");
 }
 
 /// How thin a layer may be: prints it, and checks thicknesses without a warning.

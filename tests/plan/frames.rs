@@ -81,6 +81,10 @@ fn keyframes_are_in_the_plan_and_wrong_frames_are_named() {
     for part in ["0", "1"] {
         succeeds(at, &["render-part", "p", "--part", part, "--device", "cpu", "--threads", "2"]);
     }
+    // The directory keeps the plan of these keyframes.
+    fs::write(at.join("s.toml"), keyframes.replace("[3.0, 1.0, 3.0]", "[3.0, 1.0, 3.5]")).unwrap();
+    let again = [&["plan", "--out", "p"], &SMALL[..], &flags, &["--parts", "2"]].concat();
+    assert!(ends(at, 2, &again).1.contains("holds the plan of another picture"));
     fs::write(at.join("s.toml"), keyframes).unwrap();
     one_run(at, &flags);
     let (planned, run_frames) = (at.join("p"), at.join("run"));

@@ -29,6 +29,9 @@ fn what_is_there_is_merged_and_what_is_missing_is_named() {
     render_part(at, "p", 1);
     render_part(at, "p", 2);
     succeeds(at, &["merge", "p", "--out", "m.exr"]);
+    // The plan's own result is no stray film.
+    succeeds(at, &["merge", "p", "--out", "p/picture.exr"]);
+    assert_eq!(succeeds(at, &["merge", "p", "--check"]), "4 of 4 parts are whole\n");
     assert!(film(&at.join("m.exr")) == whole(at, "0..32", &[]));
 }
 

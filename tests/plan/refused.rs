@@ -57,7 +57,9 @@ fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
     refused("\"plan_version\": 1", "\"plan_version\": 7", &["version 7", "version 1"]);
     refused("\"block\"", "\"blocks\": 1,\n\"block\"", &["plan.json", "blocks"]);
     refused("\"block\"", "\"blocks\"", &["plan.json", "block"]);
-    refused("part-1.exr", "../part-1.exr", &["../part-1.exr"]);
+    for name in ["part-1.exr", "picture.exr"] {
+        refused(name, &format!("../{name}"), &[&format!("../{name}")]);
+    }
     refused("        4\n", "        5\n", &["5", "comes next"]);
     refused("{", "", &["plan.json"]);
     fs::write(&scene, good_scene.replace("vfov_degrees = 90", "vfov_degrees = 91") + "\n").unwrap();

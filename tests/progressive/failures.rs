@@ -136,6 +136,66 @@ fn a_member_that_panics_leaves_its_samples_to_the_others() {
     assert!(said.contains("a slip of the tracer") && said.contains("cpu continues"), "{said}");
 }
 
+#[test]
+fn members_are_described_and_credited_together() {
+    let fake = |name, fails_at| -> Box<dyn Renderer> {
+        Box::new(Fake { name, pause: PAUSE, fails_at, panics_at: None })
+    };
+    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", None)]);
+    let BackendInfo { name, threads, .. } = together.info();
+    assert_eq!((name, threads), ("cpu,gpu", 2));
+    let mut film = job(2).new_film();
+    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
+    let credits = together.credits(64);
+    assert_eq!(credits.iter().map(|(_, samples)| samples).sum::<u64>(), 64);
+    assert_eq!(credits.iter().map(|(info, _)| info.name).collect::<Vec<_>>(), ["cpu", "gpu"]);
+    // Who fails before its first sample has no share in the picture.
+    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(0))]);
+    let mut film = job(2).new_film();
+    together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
+    let credits: Vec<_> =
+        together.credits(64).into_iter().map(|(info, samples)| (info.name, samples)).collect();
+    assert_eq!(credits, [("cpu", 64)]);
+}
+
+/// Says the same after every pass.
+struct Insistent(Fake);
+
+impl Renderer for Insistent {
+    fn info(&self) -> BackendInfo {
+        self.0.info()
+    }
+
+    fn take_messages(&mut self) -> Vec<String> {
+        vec!["a layer is too thin".to_owned()]
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.0.accumulate(job, range, film, cancel)
+    }
+}
+
+#[test]
+fn what_is_said_after_every_pass_is_told_once() {
+    let progressive = Progressive::with_factory(Box::new(|choice| {
+        let fake = Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None };
+        Ok(Box::new(Insistent(fake)))
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(64)));
+    assert_eq!(progressive.wait_until_over().messages, ["a layer is too thin"]);
+}
+
 /// A panic of the real tracer in the middle of a tile.
 #[test]
 fn a_panic_in_a_tile_leaves_the_film_as_it_was() {

@@ -163,6 +163,21 @@ fn a_film_goes_on_where_it_has_gaps() {
     assert_eq!(progressive.finish(), Some(expected(100)));
 }
 
+/// A point for each power of two that the film's samples have passed, even where they never are one.
+#[test]
+fn the_history_of_a_film_with_other_samples_misses_no_power_of_two() {
+    let mut film = job(2).new_film();
+    let mut fake = Fake { name: "before", pause: Duration::ZERO, fails_at: None, panics_at: None };
+    fake.accumulate(&job(2), 1000..1003, &mut film, &AtomicBool::new(false)).unwrap();
+    let mut progressive = Progressive::with_factory(factory()).unwrap();
+    progressive
+        .start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, Plan::samples(128)) });
+    let status = progressive.wait_until_over();
+    let history: Vec<u64> = status.history.iter().map(|point| point.samples_per_pixel).collect();
+    // The passes end at 2, 4, 8 ... of the plan, to which the film has 3 more.
+    assert_eq!(history, [5, 11, 19, 35, 67, 131]);
+}
+
 #[test]
 fn pictures_come_when_asked_for_and_films_can_be_looked_at() {
     let progressive = started(CPU, Plan::samples(64));

@@ -225,6 +225,17 @@ fn buffers_are_those_of_the_program() {
 }
 
 #[test]
+fn a_stage_begins_with_its_own_settings() {
+    let data = data_of(Stage::ALL);
+    for Stage { id, setup, .. } in Stage::ALL {
+        let told = &data["stages"][*id];
+        assert_eq!([&told["width"], &told["height"]], [setup.width, setup.height], "{id}");
+        assert_eq!(told["samples"], setup.samples_per_pixel, "{id}");
+        assert_eq!(told["depth"], setup.max_depth, "{id}");
+    }
+}
+
+#[test]
 fn blocks_hold_each_sample_once() {
     let wishes = [(1_u32, 128_u32), (2, 128), (3, 1), (200, 128), (500, 7), (4096, 128), (1000, 1000)];
     let input = json!({ "data": data_of(&[]), "blocks": wishes });
