@@ -1,8 +1,8 @@
 //! The scene's axes in a corner of the viewport. They turn with the camera. A click on an end looks from that side, and a
 //! drag orbits.
 
-use super::Touch;
 use super::moving::{Sight, angles};
+use super::touch::Touch;
 use crate::app::command::Command;
 use crate::app::model::viewpoint::Viewpoint;
 use crate::app::navigation;

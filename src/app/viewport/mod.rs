@@ -7,10 +7,12 @@ mod paint;
 mod placement;
 mod selection;
 mod still;
+mod touch;
 
 pub use paint::Pictures;
 pub use placement::Placement;
 use placement::whole_pixels;
+pub use touch::Touch;
 
 use super::command::Command;
 use super::facts::Facts;
@@ -28,7 +30,6 @@ use crop::Cropping;
 use eframe::egui::{
     self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
 };
-use glam::DVec3;
 use moving::{Moving, Sight};
 use paint::{Mark, paint, paint_drop};
 use selection::{Selection, place_at};
@@ -57,27 +58,6 @@ pub struct Viewport {
     cropping: Cropping,
     /// The place of the pointer in the picture, 0 to 1 from the upper left.
     pointer: Option<[f64; 2]>,
-}
-
-/// The input of a frame.
-#[derive(Default)]
-pub struct Touch {
-    /// The user moved the camera.
-    pub is_move: bool,
-    /// The user dragged the camera around a point.
-    pub is_orbit: bool,
-    /// The point of the scene that the move keeps where it is in the picture.
-    pub pivot: Option<DVec3>,
-    /// The pixel under the pointer.
-    pub hovered: Option<[u32; 2]>,
-    /// The pixel whose paths the user asked for.
-    pub listed: Option<[u32; 2]>,
-    /// The sphere that the user selected; the inner `None` stands for no sphere.
-    pub select: Option<Option<usize>>,
-    /// A change to the spheres.
-    pub edit: Option<Edit>,
-    /// The area of the viewport.
-    pub room: Option<Rect>,
 }
 
 /// The state that the viewport may change.

@@ -1,8 +1,8 @@
 //! Moves the camera by drags and the wheel.
 
-use super::Touch;
 use super::placement::Placement;
 use super::selection::{place_at, point_at};
+use super::touch::Touch;
 use crate::app::model::document::Document;
 use crate::app::navigation;
 use crate::app::surfaces::Surfaces;
