@@ -147,7 +147,8 @@ pub fn number(
     let is_given_up = is_given_up(&within, id);
     let is_complete = !within.memory(|memory| memory.has_focus(id));
     if typing.is_some_and(|typing| typing.applied.is_some()) {
-        ui.data_mut(|data| data.insert_temp(typed(), ui.ctx().cumulative_frame_nr()));
+        let frame = ui.ctx().cumulative_frame_nr();
+        ui.data_mut(|data| data.insert_temp(typed(), frame));
     }
     let (beyond, last) = (Cell::new(None), Cell::new(None));
     let parse = |text: &str| {
