@@ -125,11 +125,7 @@ fn wait_for_end(child: &mut Child) -> std::process::ExitStatus {
 }
 
 fn wait_for_file(path: &Path) {
-    let begin = Instant::now();
-    while !path.exists() {
-        assert!(begin.elapsed() < PATIENCE, "{} was not written", path.display());
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    wait_for(&path.display().to_string(), || path.exists());
 }
 
 fn pixels(path: &Path) -> (u32, u32, Vec<u8>) {
@@ -337,7 +333,6 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     let often = ["--device", "cpu", "--autosave-every", "0.5s"];
     let mut first = display.weekender(home.path()).args(stage).args(often).spawn().unwrap();
     wait_for("an autosave", || !files(&state, "exr").is_empty() && !files(&state, "json").is_empty());
-    // SIGKILL.
     first.kill().unwrap();
     first.wait().unwrap();
     let [film] = files(&state, "exr").try_into().unwrap();
@@ -353,8 +348,7 @@ fn a_killed_window_loses_little_and_a_terminated_one_nothing() {
     display.key("space");
     wait_for("the film to be opened", || !film.exists());
     std::thread::sleep(Duration::from_secs(2));
-    let ended = Command::new("kill").arg(second.id().to_string()).status().unwrap();
-    assert!(ended.success());
+    assert!(Command::new("kill").arg(second.id().to_string()).status().unwrap().success());
     assert_eq!(wait_for_end(&mut second).code(), Some(143));
 
     // The third one goes on without being asked.

@@ -5,12 +5,13 @@
 //! the name `session`, and the next window makes them its own. Files under other names, whose lock nobody holds, were
 //! left by a window that did not end in order.
 
+use super::turn::turn;
 use crate::app::model::session::Session;
 use crate::files::{check_writable, read, write_text};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, SystemTime};
 
 /// The name of the files that a window leaves when it is closed in order.
 const SESSION: &str = "session";
@@ -20,9 +21,6 @@ const PREFIX: &str = "window-";
 
 /// On file systems without locks, files that have not changed for this long are nobody's.
 const OLD: Duration = Duration::from_secs(24 * 3600);
-
-/// How long a window waits for another one that renames files, which takes a moment.
-const PATIENCE: Duration = Duration::from_secs(2);
 
 /// The most names that are tried.
 const NAME_LIMIT: u32 = 1000;
@@ -278,24 +276,6 @@ fn is_ours(file: &File, paths: &Paths, is_new: bool) -> bool {
             is_new || age.is_some_and(|age| age > OLD)
         }
     }
-}
-
-/// Waits until no other window takes or leaves a session, until the result is dropped.
-fn turn(directory: &Path) -> Option<File> {
-    let file = OpenOptions::new()
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(directory.join("session.lock"))
-        .ok()?;
-    let begin = Instant::now();
-    while let Err(TryLockError::WouldBlock) = file.try_lock() {
-        if begin.elapsed() > PATIENCE {
-            return None;
-        }
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    Some(file)
 }
 
 #[cfg(test)]

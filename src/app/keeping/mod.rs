@@ -4,6 +4,7 @@ mod autosave;
 mod card;
 mod kept_files;
 mod left;
+mod turn;
 
 pub use autosave::{Autosave, Saved, write_film};
 pub use card::{Card, Choice};
