@@ -211,6 +211,7 @@ fn pictures_of_different_sizes_are_not_compared() {
 #[test]
 fn pictures_keep_their_size_while_slots_are_in_use() {
     let mut harness = open_sized("--stage glass-schlick --samples 1", [700.0, 500.0]);
+    harness.state_mut().remembered_mut().sizing = weekender::app::Sizing::Viewport;
     let wait = |harness: &mut Harness<'_, Window>| {
         for _ in 0..40 {
             std::thread::sleep(Duration::from_millis(10));
