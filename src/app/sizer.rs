@@ -103,12 +103,13 @@ impl Sizer {
         }
     }
 
-    /// Draws the offer, if there is one, in the lower right corner of `over`.
+    /// Draws the offer, if there is one, at the right of `over`.
     pub fn ui(&self, ui: &Ui, over: Rect, commands: &mut Vec<Command>) {
         let Some([width, height]) = self.offer else { return };
         egui::Area::new(egui::Id::unique("size offer"))
             .pivot(Align2::RIGHT_BOTTOM)
-            .fixed_pos(over.right_bottom() - vec2(12.0, 12.0))
+            // Above the axes.
+            .fixed_pos(over.right_bottom() - vec2(12.0, 124.0))
             .constrain_to(over)
             .show(ui.ctx(), |ui| {
                 let help = "The viewport has another size now. The picture is only scaled, because its samples would be \
