@@ -137,6 +137,8 @@ impl Window {
     /// Shows a part of what another window left.
     fn take_arrival(&mut self, arrival: Arrival, mut left: Left, part: Part) {
         let Arrival { opened, restored } = arrival;
+        // A film may have been written since the last look.
+        self.keeping.autosave.finish();
         let has_own_film = self.keeping.has_film_of(self.document());
         let film = match (opened, restored) {
             (Some(Ok(Opened { content: Content::Film(film), recipe, stage, .. })), restored) => {
@@ -166,7 +168,6 @@ impl Window {
         };
         self.toasts.good(format!("Opened {}", self.document().title()));
         if let (Some(film), Some(files)) = (film, &self.keeping.files) {
-            self.keeping.autosave.finish();
             // The film of the picture that was shown until now is offered by the next window.
             let aside = if has_own_film { files.set_film_aside().map(drop) } else { Ok(()) };
             if let Err(error) = aside.and_then(|()| files.take_film(&left.files)) {
