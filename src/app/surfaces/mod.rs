@@ -301,10 +301,10 @@ mod tests {
     }
 
     #[test]
-    fn a_move_among_a_million_spheres_costs_no_frame() {
+    fn a_move_among_a_million_spheres_looks_at_few_of_them() {
         let (document, surfaces) = opened("field:1000000");
         let mut camera = document.camera;
-        let mut slowest = Duration::ZERO;
+        let mut most = 0;
         for step in 0..300 {
             let pivot = camera.look_at;
             let wanted = match step % 3 {
@@ -312,10 +312,11 @@ mod tests {
                 1 => navigation::dolly(&camera, pivot, 0.97),
                 _ => navigation::fly(&camera, DVec3::new(0.0, -0.5, 2.0)),
             };
-            let begin = Instant::now();
+            let (mut count, length) = (0, wanted.look_from.distance(camera.look_from));
+            surfaces.near(&document).each(camera.look_from, length, |_, _| count += 1);
+            most = most.max(count);
             camera = surfaces.stop(&document, &camera, &wanted, Some(pivot));
-            slowest = slowest.max(begin.elapsed());
         }
-        assert!(slowest < Duration::from_millis(8), "{slowest:?}");
+        assert!((1..2000).contains(&most), "{most}");
     }
 }

@@ -24,7 +24,7 @@ pub(super) struct Near<'a> {
 
 impl Near<'_> {
     /// Calls `each` for every sphere that may touch a cube.
-    fn each(&self, middle: DVec3, reach: f64, mut each: impl FnMut(usize, &Sphere)) {
+    pub fn each(&self, middle: DVec3, reach: f64, mut each: impl FnMut(usize, &Sphere)) {
         let spheres = &self.scene.spheres;
         match self.tree {
             Some(Tree { hierarchy, origin }) => {

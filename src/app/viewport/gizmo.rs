@@ -1,7 +1,7 @@
 //! The scene's axes in a corner of the viewport. They turn with the camera. A click on an end looks from that side, and a
 //! drag orbits.
 
-use super::moving::{Sight, angles};
+use super::moving::{Target, angles};
 use super::touch::Touch;
 use crate::app::command::Command;
 use crate::app::model::viewpoint::Viewpoint;
@@ -44,7 +44,7 @@ struct End {
 pub(super) fn ui(
     ui: &Ui,
     room: Rect,
-    (camera, sight): (&mut Camera, Sight<'_>),
+    (camera, sight): (&mut Camera, Target<'_>),
     commands: &mut Vec<Command>,
     touch: &mut Touch,
 ) {
@@ -92,7 +92,7 @@ pub(super) fn ui(
     paint(ui, middle, ends, hot);
 }
 
-fn orbit(held: &Response, (camera, sight): (&mut Camera, Sight<'_>), touch: &mut Touch) {
+fn orbit(held: &Response, (camera, sight): (&mut Camera, Target<'_>), touch: &mut Touch) {
     let (pivot, [right, down]) = (camera.look_at, angles(held.drag_delta()));
     let moved = navigation::orbit(&navigation::upright(camera, pivot, sight.up()), pivot, right, down);
     if moved != *camera {

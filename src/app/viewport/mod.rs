@@ -30,7 +30,7 @@ use crop::Cropping;
 use eframe::egui::{
     self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
 };
-use moving::{Moving, Sight};
+use moving::{Moving, Target};
 use paint::{Mark, paint, paint_drop};
 use selection::{Selection, place_at};
 use std::time::Instant;
@@ -97,7 +97,7 @@ impl Viewport {
         let Handle { camera, divider, selected, surfaces, crop } = handle;
         let is_kept = facts.model.view.slots.looked().is_some();
         let selected = selected.filter(|_| !is_kept);
-        let sight = Sight { document: facts.document(), surfaces, has_rays: facts.no_rays().is_none() };
+        let sight = Target { document: facts.document(), surfaces, has_rays: facts.no_rays().is_none() };
         let room = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(room, Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
@@ -197,7 +197,7 @@ impl Viewport {
         &mut self,
         ui: &Ui,
         response: &Response,
-        sight: Sight<'_>,
+        sight: Target<'_>,
         camera: &mut Camera,
         touch: &mut Touch,
     ) {
@@ -220,8 +220,8 @@ impl Viewport {
         }
     }
 
-    fn use_at(&mut self, spot: Spot, at: Pos2, sight: Sight<'_>, camera: &mut Camera, touch: &mut Touch) {
-        let Sight { document, surfaces, .. } = sight;
+    fn use_at(&mut self, spot: Spot, at: Pos2, sight: Target<'_>, camera: &mut Camera, touch: &mut Touch) {
+        let Target { document, surfaces, .. } = sight;
         let place = place_at(self.placement.rect(), at);
         match spot {
             Spot::Select => {
@@ -244,7 +244,7 @@ impl Viewport {
         }
     }
 
-    fn focus(&mut self, sight: Sight<'_>, camera: &mut Camera, place: [f64; 2]) {
+    fn focus(&mut self, sight: Target<'_>, camera: &mut Camera, place: [f64; 2]) {
         let text = match sight.surfaces.pick(sight.document, camera, place) {
             Some(pick) => {
                 *camera = navigation::focus(camera, pick.point);
@@ -258,7 +258,7 @@ impl Viewport {
         self.mark = Some(Mark { place, text, since: Instant::now() });
     }
 
-    fn recentre(&mut self, sight: Sight<'_>, camera: &mut Camera, place: [f64; 2]) {
+    fn recentre(&mut self, sight: Target<'_>, camera: &mut Camera, place: [f64; 2]) {
         if let Some(pick) = sight.surfaces.pick(sight.document, camera, place) {
             *camera = navigation::recentre(camera, pick.point);
             let text = "centre".to_owned();
@@ -270,7 +270,7 @@ impl Viewport {
         &mut self,
         ui: &mut Ui,
         camera: &mut Camera,
-        sight: Sight<'_>,
+        sight: Target<'_>,
         (facts, commands): (&Facts, &mut Vec<Command>),
         touch: &mut Touch,
     ) {

@@ -23,14 +23,14 @@ pub(super) fn angles(drag: Vec2) -> [f64; 2] {
 
 /// What the camera sees.
 #[derive(Clone, Copy)]
-pub(super) struct Sight<'a> {
+pub(super) struct Target<'a> {
     pub document: &'a Document,
     pub surfaces: &'a Surfaces,
     /// Whether the stage traces rays, so that there is something to turn about.
     pub has_rays: bool,
 }
 
-impl Sight<'_> {
+impl Target<'_> {
     /// The point of the scene at a point of the screen, if there is one in the picture at `rect`.
     fn point(&self, camera: &Camera, rect: Rect, at: Pos2) -> Option<DVec3> {
         let is_seen = self.has_rays && rect.contains(at);
@@ -58,7 +58,7 @@ impl Moving {
         ui: &Ui,
         response: &Response,
         placement: &mut Placement,
-        (camera, sight): (&mut Camera, Sight<'_>),
+        (camera, sight): (&mut Camera, Target<'_>),
         touch: &mut Touch,
     ) {
         let (modifiers, scroll, zoom, pressed) = ui.input(|input| {
