@@ -13,7 +13,7 @@ display=:$((90 + RANDOM % 400))
 Xvfb "$display" -noreset -screen 0 1280x800x24 > /dev/null 2>&1 &
 server=$!
 trap 'kill $server 2> /dev/null; rm -rf "$work"' EXIT
-export DISPLAY=$display XDG_DATA_HOME=$work
+export DISPLAY=$display XDG_DATA_HOME=$work XDG_STATE_HOME=$work XDG_CACHE_HOME=$work
 sleep 1
 
 log=$work/frames.csv
