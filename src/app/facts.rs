@@ -1,6 +1,6 @@
 //! What panels show but do not change: a snapshot of the window at the start of the frame.
 
-use super::command::Command;
+use super::command::{Command, SlotCommand};
 use super::model::Model;
 use super::model::device::Device;
 use super::model::document::Document;
@@ -82,12 +82,14 @@ impl Facts {
             Command::WipeDifference => {
                 view.mode() == Some(Mode::Difference) && view.compared_slot().is_none()
             }
-            Command::SlotWipe => view.mode() == Some(Mode::Wipe) && view.compared_slot().is_some(),
-            Command::SlotDifference => {
+            Command::Slot(SlotCommand::Wipe) => {
+                view.mode() == Some(Mode::Wipe) && view.compared_slot().is_some()
+            }
+            Command::Slot(SlotCommand::Difference) => {
                 view.mode() == Some(Mode::Difference) && view.compared_slot().is_some()
             }
-            Command::Look(number) => view.slots.looked() == Some(number),
-            Command::LookLive => view.slots.is_used() && view.slots.looked().is_none(),
+            Command::Slot(SlotCommand::Look(number)) => view.slots.looked() == Some(number),
+            Command::Slot(SlotCommand::LookLive) => view.slots.is_used() && view.slots.looked().is_none(),
             Command::Crop => view.crop.is_some(),
             Command::Controls => remembered.has_controls,
             Command::Info => remembered.has_info,
@@ -112,7 +114,9 @@ impl Facts {
     /// Whether menus list the command: those for empty slots are left out.
     pub fn is_listed(&self, command: Command) -> bool {
         match command {
-            Command::Look(number) | Command::KeepIn(number) => self.model.view.slots.get(number).is_some(),
+            Command::Slot(SlotCommand::Look(number)) | Command::Slot(SlotCommand::KeepIn(number)) => {
+                self.model.view.slots.get(number).is_some()
+            }
             _ => true,
         }
     }
@@ -135,7 +139,7 @@ impl Facts {
 
     /// The name of a command, with the file that it opens or the bookmark that it goes to.
     pub fn name(&self, command: Command) -> String {
-        if let Command::Look(number) = command
+        if let Command::Slot(SlotCommand::Look(number)) = command
             && let Some(slot) = self.model.view.slots.get(number)
         {
             return format!("{}: {}", command.name(), shortened(&slot.name));
@@ -230,17 +234,7 @@ impl Facts {
             Command::CopyPlot | Command::SavePlot if self.status.history.is_empty() => {
                 no("No error has been estimated yet")
             }
-            Command::Keep
-            | Command::KeepIn(_)
-            | Command::Look(_)
-            | Command::LookLive
-            | Command::Swap
-            | Command::SlotWipe
-            | Command::SlotDifference
-            | Command::OnlyNoise
-            | Command::OpenSlot
-            | Command::DeleteSlot
-            | Command::BringBackSlot => self.useless_slot(command),
+            Command::Slot(command) => self.useless_slot(command),
             Command::CopyCrop | Command::SaveCrop if self.model.view.crop.flatten().is_none() => {
                 no("No part of the picture is marked; choose Crop and drag over the picture first")
             }
@@ -259,30 +253,30 @@ impl Facts {
     }
 
     /// Why a command for slots has nothing to do now, if so.
-    fn useless_slot(&self, command: Command) -> Option<String> {
+    fn useless_slot(&self, command: SlotCommand) -> Option<String> {
         let no = |reason: &str| Some(reason.to_owned());
         let slots = &self.model.view.slots;
         match command {
-            Command::Keep | Command::KeepIn(_) if let Some(number) = slots.looked() => Some(format!(
+            SlotCommand::Keep | SlotCommand::KeepIn(_) if let Some(number) = slots.looked() => Some(format!(
                 "Slot {number} is shown, which is kept already; press Escape to return to the live picture"
             )),
-            Command::Keep if slots.first_free().is_none() => {
+            SlotCommand::Keep if slots.first_free().is_none() => {
                 no("All nine slots are in use; delete one, or replace one with Shift, Alt and its digit")
             }
-            Command::Look(number) if slots.get(number).is_none() => {
+            SlotCommand::Look(number) if slots.get(number).is_none() => {
                 Some(format!("Slot {number} is empty; press M to keep the picture in the first free slot"))
             }
-            Command::LookLive if slots.looked().is_none() => no("The live picture is already shown"),
-            Command::BringBackSlot => {
+            SlotCommand::LookLive if slots.looked().is_none() => no("The live picture is already shown"),
+            SlotCommand::BringBack => {
                 slots.gone().is_none().then(|| "No slot has been deleted or replaced yet".to_owned())
             }
-            Command::Keep | Command::KeepIn(_) | Command::Look(_) | Command::LookLive => None,
+            SlotCommand::Keep | SlotCommand::KeepIn(_) | SlotCommand::Look(_) | SlotCommand::LookLive => None,
             _ => match slots.chosen() {
                 None => no("No picture is kept; press M to keep this one"),
-                Some(number) if matches!(command, Command::SlotWipe | Command::SlotDifference) => {
+                Some(number) if matches!(command, SlotCommand::Wipe | SlotCommand::Difference) => {
                     self.incomparable_slot(number)
                 }
-                Some(number) if command == Command::OnlyNoise => {
+                Some(number) if command == SlotCommand::OnlyNoise => {
                     let is_live = slots.looked().is_none_or(|looked| looked == number);
                     let is_early = is_live && self.status.samples_per_pixel == 0;
                     let early = || "Nothing has been traced yet; try again in a moment".to_owned();

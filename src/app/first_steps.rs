@@ -1,19 +1,14 @@
 //! A card in a corner of the picture: what the window is, and three things to try.
 
 use super::command::Command;
+use super::corner_card::corner_card;
 use super::facts::Facts;
 use super::model::first_steps::{FirstSteps, Step};
 use super::places::Place;
 use super::theme;
 use crate::stages::Stage;
-use eframe::egui::{self, Align2, Button, Color32, Margin, Rect, RichText, Sense, Stroke, Ui, vec2};
+use eframe::egui::{self, Button, Color32, Rect, RichText, Sense, Stroke, Ui, vec2};
 use std::time::{Duration, Instant};
-
-/// The largest width of the card, in points.
-const WIDTH: f32 = 292.0;
-
-/// The smallest distance between the card and the edge of the viewport, in points.
-const MARGIN: f32 = 12.0;
 
 /// For how long the card stays when everything has been done.
 const FAREWELL: Duration = Duration::from_secs(6);
@@ -40,27 +35,11 @@ impl Card {
             }
             ui.ctx().request_repaint_after(left);
         }
-        let [width, height] = [over.width(), over.height()].map(|room| (room - 2.0 * MARGIN).max(80.0));
-        egui::Area::new(egui::Id::unique("first steps"))
-            .accessible_name("First steps")
-            .pivot(Align2::RIGHT_TOP)
-            .fixed_pos(over.right_top() + vec2(-MARGIN, MARGIN))
-            .constrain_to(over)
-            .show(ui.ctx(), |ui| {
-                let frame = theme::float_frame(ui).inner_margin(Margin::symmetric(16, 12)).corner_radius(8);
-                frame.shadow(ui.visuals().window_shadow).show(ui, |ui| {
-                    ui.set_width(width.min(WIDTH) - 34.0);
-                    egui::ScrollArea::vertical().max_height(height - 26.0).show(ui, |ui| {
-                        Place::FirstSteps.begin(ui);
-                        content(ui, steps, facts, commands);
-                    });
-                });
-            });
+        corner_card(ui, over, Place::FirstSteps, "First steps", |ui| content(ui, steps, facts, commands));
     }
 }
 
 fn content(ui: &mut Ui, steps: &FirstSteps, facts: &Facts, commands: &mut Vec<Command>) {
-    ui.label(RichText::new("First steps").heading().strong());
     let about = "Every picture of Ray Tracing in One Weekend, rendered while you watch.";
     ui.add(egui::Label::new(about).wrap());
     ui.add_space(4.0);

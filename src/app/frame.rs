@@ -29,14 +29,14 @@ impl Window {
         self.fit_on_screen(&context);
         self.poll(&context);
         self.receive(&context);
-        self.receive_kept();
+        self.receive_recovered();
         self.go_on_flying(&context);
         self.take_input(&context);
         self.perform_all(&context);
         self.layout(ui);
         self.perform_all(&context);
         self.follow(&context);
-        self.keep(&context);
+        self.write_recovery(&context);
         theme::paint_focus(&context);
         self.had_focus = context.memory(|memory| memory.focused().is_some())
             || egui::Popup::is_any_open(&context)
@@ -53,7 +53,7 @@ impl Window {
         theme::choose(context, self.model.remembered.theme);
         context.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
         self.main.wake(context);
-        self.keeping.begin(context);
+        self.recovery.begin(context);
         if let Some((path, job)) = self.pending_resume.take() {
             self.files.resume(context, path, job, &self.model.document);
         }
@@ -113,11 +113,11 @@ impl Window {
             is_presenting: presentation.is_some(),
         };
         // Escape closes a finding first.
-        if self.keeper.verdict.is_open()
+        if self.slot_actions.verdict.is_open()
             && !self.had_focus
             && context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape))
         {
-            self.keeper.verdict.close();
+            self.slot_actions.verdict.close();
         }
         let is_at_slot = keyboard.is_at_slot;
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
@@ -136,7 +136,7 @@ impl Window {
         }
         let is_clear = |shown: &&Shown| shown.divisor == 1 && shown.samples >= CLEAR_SAMPLES;
         let mine = match view.slots.shown() {
-            Some(kept) => self.keeper.picture.shown(kept),
+            Some(kept) => self.slot_actions.picture.shown(kept),
             None => self.main.shown().filter(|shown| is_clear(shown) || self.main.status().phase.is_over()),
         };
         let theirs = self.second.shown().filter(|shown| is_clear(shown) || self.second.is_over());
@@ -163,7 +163,7 @@ impl Window {
     /// Makes the picture as large as the viewport, unless that would throw away too much.
     fn follow_size(&mut self, context: &egui::Context) {
         // A film that is about to go on has its size.
-        if self.pending_film.is_some() || self.keeping.resuming.is_some() {
+        if self.pending_film.is_some() || self.recovery.resuming.is_some() {
             return;
         }
         let (main, view) = (&self.main, &self.model.view);
@@ -219,11 +219,11 @@ impl Window {
         self.invalid = outcome.err();
         let has_second = self.second.follow(context, view, &want);
         let live = (document, &self.main);
-        let subject = Subject::new(view, live, self.seconds_before, &self.keeper.thread);
+        let subject = Subject::new(view, live, self.seconds_before, &self.slot_actions.thread);
         // The picture that a key would flip to is made before it is asked for.
         let next = || view.slots.other().and_then(|number| view.slots.get(number)).map(|slot| &slot.kept);
         if let Some(kept) = view.slots.shown().or_else(next) {
-            self.keeper.picture.follow(context, kept, &view.of_film(self.second.film()));
+            self.slot_actions.picture.follow(context, kept, &view.of_film(self.second.film()));
         }
         let is_live_moving = is_moving && !subject.is_kept();
         self.layers.follow(context, view.show().layer(), subject.document(), is_live_moving);
@@ -280,7 +280,7 @@ impl eframe::App for Window {
 
     /// Also called while the window is hidden.
     fn logic(&mut self, context: &egui::Context, _: &mut eframe::Frame) {
-        self.keep(context);
+        self.write_recovery(context);
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

@@ -1,6 +1,6 @@
 //! Keyboard input, dropped files, and flying.
 
-use super::command::Command;
+use super::command::{Command, SlotCommand};
 use super::model::show::Show;
 use super::navigation;
 use crate::scene::Camera;
@@ -106,7 +106,7 @@ pub fn take_keys(context: &egui::Context, keyboard: &Keyboard, commands: &mut Ve
         } else if keyboard.is_other_view {
             commands.push(Command::Show(Show::Picture));
         } else if keyboard.is_at_slot {
-            commands.push(Command::LookLive);
+            commands.push(Command::Slot(SlotCommand::LookLive));
         } else if keyboard.is_presenting {
             commands.push(Command::Present);
         } else if keyboard.is_full_screen {

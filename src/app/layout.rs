@@ -34,7 +34,7 @@ impl Window {
             code,
             commands,
             spheres,
-            keeper,
+            slot_actions,
             is_new,
             presenter,
             thumbnails,
@@ -66,7 +66,7 @@ impl Window {
             status_bar::ui(ui, &facts);
             if view.slots.is_used() {
                 Place::Slots.begin(ui);
-                keeper.strip.ui(ui, &mut view.slots, &facts, commands);
+                slot_actions.strip.ui(ui, &mut view.slots, &facts, commands);
             }
             if has.has_plot {
                 Place::Plot.begin(ui);
@@ -124,7 +124,7 @@ impl Window {
             }
             let kept = view.slots.shown();
             let shown = match kept {
-                Some(kept) => keeper.picture.shown_mut(kept),
+                Some(kept) => slot_actions.picture.shown_mut(kept),
                 None => main.shown_mut(),
             };
             let has_film = shown.is_some();
@@ -175,7 +175,7 @@ impl Window {
         if let Some(room) = touch.room {
             if facts.model.presentation.is_none() {
                 if facts.model.has_recovered {
-                    self.offer_kept(ui, room);
+                    self.offer_recovered(ui, room);
                 } else {
                     self.first_steps.ui(ui, room, &facts, &mut self.commands);
                 }
@@ -187,7 +187,7 @@ impl Window {
             self.toasts.good(text);
         }
         self.check.ui(ui.ctx());
-        self.keeper.verdict.ui(ui.ctx());
+        self.slot_actions.verdict.ui(ui.ctx());
         if let Some((purpose, path)) = self.dialogs.ui(ui, &facts, &mut self.commands) {
             let context = ui.ctx().clone();
             self.use_path(&context, purpose, path);
@@ -212,7 +212,7 @@ impl Window {
             Some(layer) => (&layer.texture, layer.divisor),
             None => {
                 let mine = match view.slots.shown() {
-                    Some(kept) => self.keeper.picture.shown_mut(kept).map(|shown| &*shown),
+                    Some(kept) => self.slot_actions.picture.shown_mut(kept).map(|shown| &*shown),
                     None => self.main.shown(),
                 };
                 let other = self.second.shown().filter(|_| is_other);

@@ -1,6 +1,6 @@
 //! The top bar: menus, stage, device, pause and save.
 
-use super::command::{Command, Group};
+use super::command::{Command, Group, SlotCommand};
 use super::facts::Facts;
 use super::model::device::Device;
 use super::model::further::Further;
@@ -129,10 +129,13 @@ fn section(command: Command) -> u8 {
         | Command::Present
         | Command::Blank => 3,
         Command::Theme(_) => 4,
-        Command::LookLive | Command::Look(_) => 1,
-        Command::SlotWipe | Command::SlotDifference | Command::OnlyNoise | Command::OpenSlot => 2,
-        Command::KeepIn(_) => 3,
-        Command::DeleteSlot | Command::BringBackSlot => 4,
+        Command::Slot(command) => match command {
+            SlotCommand::Keep | SlotCommand::Swap => 0,
+            SlotCommand::LookLive | SlotCommand::Look(_) => 1,
+            SlotCommand::Wipe | SlotCommand::Difference | SlotCommand::OnlyNoise | SlotCommand::Open => 2,
+            SlotCommand::KeepIn(_) => 3,
+            SlotCommand::Delete | SlotCommand::BringBack => 4,
+        },
         Command::Device(_) | Command::Extreme(_) => 1,
         Command::Size(_) => 2,
         _ => 0,

@@ -54,7 +54,7 @@ impl Window {
             Command::LoadReference => self.ask_path(Purpose::ReferenceFilm),
             Command::SavePlot => self.ask_path(Purpose::SavePlot),
             Command::SaveFlight => self.ask_path(Purpose::SaveFlight),
-            Command::CopyPicture => self.pending_copy = true,
+            Command::CopyPicture | Command::CopyCrop => self.pending_copy = true,
             Command::CopyCommand => self.copy_command(context),
             Command::CopyPlot => {
                 context.copy_text(plot::csv(&self.main.status().history));
@@ -105,20 +105,12 @@ impl Window {
                 view.toggle(Mode::Difference, with);
             }
             Command::BookArithmetic => self.model.view.toggle(Mode::Wipe, With::Book),
-            Command::Keep
-            | Command::KeepIn(_)
-            | Command::Look(_)
-            | Command::LookLive
-            | Command::Swap
-            | Command::SlotWipe
-            | Command::SlotDifference
-            | Command::OnlyNoise
-            | Command::OpenSlot
-            | Command::DeleteSlot
-            | Command::BringBackSlot
-            | Command::Crop
-            | Command::CopyCrop
-            | Command::SaveCrop => self.perform_on_slots(context, command),
+            Command::Slot(command) => self.perform_on_slots(context, command),
+            Command::Crop => {
+                let crop = &mut self.model.view.crop;
+                *crop = if crop.is_none() { Some(None) } else { None };
+            }
+            Command::SaveCrop => self.ask_path(Purpose::SaveCrop),
             Command::Brighter => self.model.view.tone.expose(Tone::STEP),
             Command::Darker => self.model.view.tone.expose(-Tone::STEP),
             Command::NoExposure => self.model.view.tone.exposure = 0.0,
@@ -161,7 +153,7 @@ impl Window {
                 self.seconds_before = Some(0.0);
                 self.model.is_paused = false;
                 self.main.restart();
-                self.keeping.autosave.holds(None);
+                self.recovery.autosave.holds(None);
             }
             Command::SwitchDevice => {
                 let device = &mut self.model.remembered.device;

@@ -1,7 +1,6 @@
-//! Carries out the commands for slots and crops.
+//! Carries out the commands for slots.
 
-use super::command::Command;
-use super::dialogs::Purpose;
+use super::command::SlotCommand;
 use super::kept::Subject;
 use super::model::slots::{BYTES_LIMIT, Slot, SlotNumber};
 use super::model::view::{Mode, With};
@@ -13,45 +12,42 @@ use crate::memory::words;
 use eframe::egui;
 
 impl Window {
-    /// Carries out a command for slots or crops, which is enabled.
-    pub(super) fn perform_on_slots(&mut self, context: &egui::Context, command: Command) {
+    /// Carries out a command for slots, which is enabled.
+    pub(super) fn perform_on_slots(&mut self, context: &egui::Context, command: SlotCommand) {
         let view = &mut self.model.view;
         let chosen = view.slots.chosen();
         match (command, chosen) {
-            (Command::Keep, _) => {
+            (SlotCommand::Keep, _) => {
                 let is_free = |number: &SlotNumber| {
-                    view.slots.get(*number).is_none() && !self.keeper.is_wanted(*number)
+                    view.slots.get(*number).is_none() && !self.slot_actions.is_wanted(*number)
                 };
                 if let Some(number) = SlotNumber::ALL.into_iter().find(is_free) {
-                    self.keeper.want(number);
+                    self.slot_actions.want(number);
                 }
             }
-            (Command::KeepIn(number), _) => self.keeper.want(number),
-            (Command::Look(number), _) => view.look(Some(number)),
-            (Command::LookLive, _) => view.look(None),
-            (Command::Swap, _) => view.swap(),
-            (Command::SlotWipe, Some(number)) => view.toggle(Mode::Wipe, With::Slot(number)),
-            (Command::SlotDifference, Some(number)) => view.toggle(Mode::Difference, With::Slot(number)),
-            (Command::OnlyNoise, Some(number)) => self.ask_only_noise(context, number),
-            (Command::OpenSlot, Some(number)) => {
+            (SlotCommand::KeepIn(number), _) => self.slot_actions.want(number),
+            (SlotCommand::Look(number), _) => view.look(Some(number)),
+            (SlotCommand::LookLive, _) => view.look(None),
+            (SlotCommand::Swap, _) => view.swap(),
+            (SlotCommand::Wipe, Some(number)) => view.toggle(Mode::Wipe, With::Slot(number)),
+            (SlotCommand::Difference, Some(number)) => view.toggle(Mode::Difference, With::Slot(number)),
+            (SlotCommand::OnlyNoise, Some(number)) => self.ask_only_noise(context, number),
+            (SlotCommand::Open, Some(number)) => {
                 if let Some(slot) = view.slots.get(number) {
-                    self.keeper.reopen(context, &slot.kept);
+                    self.slot_actions.reopen(context, &slot.kept);
                 }
             }
-            (Command::DeleteSlot, Some(number)) => {
+            (SlotCommand::Delete, Some(number)) => {
                 let title = view.slots.title(number);
                 view.slots.delete(number);
                 self.toasts.good(format!("Deleted {title}; Slots > Bring back the slot returns it"));
             }
-            (Command::BringBackSlot, _) => {
+            (SlotCommand::BringBack, _) => {
                 view.slots.bring_back();
                 if let Some(number) = view.slots.chosen() {
                     self.toasts.good(format!("Brought back {}", view.slots.title(number)));
                 }
             }
-            (Command::Crop, _) => view.crop = if view.crop.is_none() { Some(None) } else { None },
-            (Command::CopyCrop, _) => self.pending_copy = true,
-            (Command::SaveCrop, _) => self.ask_path(Purpose::SaveCrop),
             _ => {}
         }
         // A picture that was not resolved yet comes from another thread.
@@ -61,7 +57,12 @@ impl Window {
     /// The film on the screen.
     pub(super) fn subject(&self) -> Subject<'_> {
         let model = &self.model;
-        Subject::new(&model.view, (&model.document, &self.main), self.seconds_before, &self.keeper.thread)
+        Subject::new(
+            &model.view,
+            (&model.document, &self.main),
+            self.seconds_before,
+            &self.slot_actions.thread,
+        )
     }
 
     /// Has the live picture copied for the slots that wait for it, if it has samples.
@@ -69,7 +70,7 @@ impl Window {
         if !self.main.has_samples(&self.model.document) {
             return;
         }
-        for number in self.keeper.take_wanted() {
+        for number in self.slot_actions.take_wanted() {
             let settings = &self.model.document.settings;
             let bytes = Film::bytes(settings.width, settings.height, settings.half_count());
             if let Err(reason) = self.model.view.slots.make_room(number, bytes, BYTES_LIMIT) {
@@ -77,25 +78,25 @@ impl Window {
                 continue;
             }
             let live = (&self.model.document, &self.main);
-            self.keeper.copy(context, number, live, self.seconds_before);
+            self.slot_actions.copy(context, number, live, self.seconds_before);
         }
     }
 
     /// Takes the answers about slots.
     pub(super) fn receive_for_slots(&mut self) {
-        while let Some(outcome) = self.keeper.copied.take() {
+        while let Some(outcome) = self.slot_actions.copied.take() {
             match outcome {
                 Ok(copied) => self.put(copied),
                 Err(reason) => self.toasts.bad(format!("Not kept: {reason}")),
             }
         }
-        while let Some(outcome) = self.keeper.reopened.take() {
+        while let Some(outcome) = self.slot_actions.reopened.take() {
             match outcome {
                 Ok(reopened) => self.go_on_from(reopened),
                 Err(reason) => self.toasts.bad(format!("Not opened: {reason}")),
             }
         }
-        self.keeper.verdict.receive();
+        self.slot_actions.verdict.receive();
     }
 
     fn put(&mut self, Copied { number, kept }: Copied) {
@@ -140,9 +141,9 @@ impl Window {
         let mine = looked.map_or_else(|| "the live picture".to_owned(), |looked| view.slots.title(looked));
         let names = [view.slots.title(number), mine];
         let live = (&self.model.document, &self.main);
-        let subject = Subject::new(view, live, self.seconds_before, &self.keeper.thread);
+        let subject = Subject::new(view, live, self.seconds_before, &self.slot_actions.thread);
         let subject = if looked.is_some() { subject } else { subject.live() };
-        self.keeper.verdict.ask(context, &slot.kept, &subject, names);
+        self.slot_actions.verdict.ask(context, &slot.kept, &subject, names);
     }
 
     /// Ends the comparison with a slot if it has become impossible, and says why.

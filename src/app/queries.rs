@@ -37,7 +37,7 @@ impl Window {
 
     fn on_screen(&self) -> Option<&Shown> {
         match self.model.view.slots.shown() {
-            Some(kept) => self.keeper.picture.shown(kept),
+            Some(kept) => self.slot_actions.picture.shown(kept),
             None => self.main.shown(),
         }
     }
@@ -55,7 +55,7 @@ impl Window {
     /// Whether the last two pictures that were compared differ only by noise: the verdict in a few words, and the text of
     /// `weekender compare`. `None` while it is awaited.
     pub fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {
-        self.keeper.verdict.words()
+        self.slot_actions.verdict.words()
     }
 
     /// The part of the picture that is marked: its first column and row, and its size.

@@ -1,7 +1,7 @@
 //! Keeps the film when the window ends by a panic.
 
-use super::keeping::write_film;
 use super::model::session::Session;
+use super::recovery::write_film;
 use super::window::Window;
 use crate::console;
 use crate::describe::{counted, describe};
@@ -18,7 +18,7 @@ impl Drop for Window {
 impl Window {
     /// Writes the film where the next window looks for it, otherwise wherever there is room.
     fn rescue(&mut self) {
-        self.keeping.autosave.finish();
+        self.recovery.autosave.finish();
         let document = self.document().clone();
         if !self.main.has_samples(&document) {
             return;
@@ -26,7 +26,7 @@ impl Window {
         let status = self.main.status().clone();
         let Some(film) = self.main.take_film().filter(|film| film.sample_count() > 0) else { return };
         let words = format!("the picture's {} per pixel were saved", counted(film.sample_count(), "sample"));
-        let kept = self.keeping.files.as_ref().map(|files| {
+        let kept = self.recovery.files.as_ref().map(|files| {
             write_film(files.film(), &film, (&document, &status), self.seconds_before)?;
             // The film says what it is a picture of; the note adds the view.
             let session = Session::of(&document, &self.model.view, self.model.is_paused);

@@ -12,7 +12,6 @@ use super::flight::Flight;
 use super::frame_log::{FrameLog, FrameTimes};
 use super::identity::Identity;
 use super::inspector::Inspector;
-use super::keeping::Keeping;
 use super::layers::Layers;
 use super::model::Model;
 use super::model::crop::Crop;
@@ -26,10 +25,11 @@ use super::paths::Paths;
 use super::pixel_values::PixelValues;
 use super::places::Place;
 use super::present::Presenter;
+use super::recovery::Recovery;
 use super::second::Second;
 use super::sight::Sighted;
 use super::sizer::Sizer;
-use super::slots::Keeper;
+use super::slots::SlotActions;
 use super::speed::Speed;
 use super::spheres::Spheres;
 use super::surfaces::Surfaces;
@@ -60,7 +60,7 @@ pub struct Window {
     pub(super) changes: Changes,
     pub(super) main: Tracer,
     pub(super) second: Second,
-    pub(super) keeper: Keeper,
+    pub(super) slot_actions: SlotActions,
     pub(super) layers: Layers,
     pub(super) tone: ToneUi,
     pub(super) values: PixelValues,
@@ -83,7 +83,7 @@ pub struct Window {
     pub(super) thumbnails: Thumbnails,
     /// The sight that is shown.
     pub(super) sight: Option<Sighted>,
-    pub(super) keeping: Keeping,
+    pub(super) recovery: Recovery,
     /// The flight of the camera, if it moves by itself.
     pub(super) flight: Option<Flight>,
     /// Commands to be carried out.
@@ -169,7 +169,7 @@ impl Window {
             },
             main: Tracer::new().context("cannot start the render thread")?,
             second: Second::default(),
-            keeper: Keeper::default(),
+            slot_actions: SlotActions::default(),
             layers: Layers::default(),
             tone: ToneUi::default(),
             values: PixelValues::default(),
@@ -191,7 +191,7 @@ impl Window {
             presenter: Presenter::default(),
             thumbnails: Thumbnails::default(),
             sight: None,
-            keeping: Keeping::new(options.autosave_every),
+            recovery: Recovery::new(options.autosave_every),
             flight: None,
             commands: Vec::new(),
             pending_resume,
@@ -215,7 +215,7 @@ impl Window {
         };
         if let Some(directory) = &options.state_directory {
             let may_restore = !options.is_picture_given && !options.is_fresh;
-            window.begin_keeping(directory, may_restore, options.stop);
+            window.begin_recovery(directory, may_restore, options.stop);
         }
         Ok(window)
     }

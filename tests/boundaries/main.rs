@@ -3,12 +3,14 @@
 
 #![allow(clippy::expect_used, reason = "a test that cannot read the sources has failed")]
 
-mod lists;
+mod rooms;
 mod sources;
+mod window;
 
-use lists::{CRATES, ROOMS, TOP, WINDOW};
+use rooms::{CRATES, ROOMS};
 use sources::{SourceFile, file_of, sources};
 use std::collections::BTreeSet;
+use window::{TOP, WINDOW};
 
 /// Compares actual uses with the permissions. Reports uses that are not allowed, unused permissions, and uses of
 /// higher layers.

@@ -4,7 +4,7 @@ use crate::common::{SMALL, control, has_samples, open, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use weekender::app::{Command, Device, Window};
+use weekender::app::{Command, Device, SlotCommand, Window};
 
 #[test]
 fn every_command_is_carried_out_or_says_why_not() {
@@ -65,7 +65,7 @@ fn every_menu_lists_its_commands() {
         harness.run_steps(3);
         for command in Command::all().into_iter().filter(|command| command.group().name() == menu) {
             // Only slots in use are listed; see slots.rs.
-            if matches!(command, Command::Look(_) | Command::KeepIn(_)) {
+            if matches!(command, Command::Slot(SlotCommand::Look(_) | SlotCommand::KeepIn(_))) {
                 continue;
             }
             let name = command.name();
@@ -142,9 +142,7 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         // See recent.rs and first_steps.rs.
         Command::CopyPicture | Command::Recent(_) | Command::FirstSteps => true,
         // See slots.rs and crop.rs.
-        Command::Keep | Command::KeepIn(_) | Command::Look(_) | Command::LookLive | Command::Swap => true,
-        Command::SlotWipe | Command::SlotDifference | Command::OnlyNoise => true,
-        Command::OpenSlot | Command::DeleteSlot | Command::BringBackSlot => true,
+        Command::Slot(_) => true,
         Command::Crop | Command::CopyCrop | Command::SaveCrop => true,
         // See tone.rs.
         Command::Brighter | Command::Darker | Command::NoExposure => true,

@@ -7,7 +7,7 @@ use eframe::egui::{Key, Modifiers, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use std::time::Duration;
-use weekender::app::{Command, Show, SlotNumber, Window};
+use weekender::app::{Command, Show, SlotCommand, SlotNumber, Window};
 use weekender::compare::{Side, compare_sides, told};
 use weekender::film::{key, to_byte};
 use weekender::heat::HeatScale;
@@ -103,12 +103,12 @@ fn a_kept_picture_stays_as_it_was() {
 #[test]
 fn one_key_flips_and_a_change_returns_to_the_live_picture() {
     let mut harness = finished(4);
-    assert!(harness.state().disabled_reason(Command::Swap).is_some());
-    keep(&mut harness, Command::Keep, ONE);
+    assert!(harness.state().disabled_reason(Command::Slot(SlotCommand::Swap)).is_some());
+    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
     change(&mut harness);
     harness.key_press_modifiers(Modifiers::ALT | Modifiers::SHIFT, Key::Num3);
     until(&mut harness, "a third slot", |window| window.slot(THREE).is_some());
-    send(&mut harness, Command::Look(ONE));
+    send(&mut harness, Command::Slot(SlotCommand::Look(ONE)));
     let mut seen = Vec::new();
     for _ in 0..2 {
         harness.key_press(Key::J);
@@ -116,7 +116,7 @@ fn one_key_flips_and_a_change_returns_to_the_live_picture() {
         seen.push(harness.state().looked());
     }
     assert_eq!(seen, [None, Some(ONE)]);
-    send(&mut harness, Command::Look(THREE));
+    send(&mut harness, Command::Slot(SlotCommand::Look(THREE)));
     harness.key_press(Key::J);
     harness.run_steps(2);
     assert_eq!(harness.state().looked(), Some(ONE), "between two slots");
@@ -138,8 +138,8 @@ fn one_key_flips_and_a_change_returns_to_the_live_picture() {
 fn a_slot_is_wiped_and_subtracted_like_another_stage() {
     let mut harness = finished(8);
     let kept = mean(&mut harness);
-    keep(&mut harness, Command::Keep, ONE);
-    send(&mut harness, Command::SlotDifference);
+    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
+    send(&mut harness, Command::Slot(SlotCommand::Difference));
     until_painted(&mut harness, "identical to the bit");
     until(&mut harness, "no difference", |window| {
         window.shown_pixel(AT) == Some(HeatScale::DIFFERENCE.colour(0.0))
@@ -163,8 +163,8 @@ fn a_slot_is_wiped_and_subtracted_like_another_stage() {
     assert!(!harness.state().is_comparing());
 
     // Two slots with each other: the difference is that of the live picture with its sign changed.
-    keep(&mut harness, Command::Keep, TWO);
-    send(&mut harness, Command::Look(ONE));
+    keep(&mut harness, Command::Slot(SlotCommand::Keep), TWO);
+    send(&mut harness, Command::Slot(SlotCommand::Look(ONE)));
     control(&harness, "Difference from the slot 2").click();
     harness.run_steps(3);
     assert_eq!(harness.state().looked(), Some(ONE));
@@ -173,8 +173,8 @@ fn a_slot_is_wiped_and_subtracted_like_another_stage() {
     let difference = format!("{:+.4}", kept[2] - live[2]);
     assert!(harness.query_all_by_label(&difference).next().is_some(), "no {difference} in the inspector");
     // A slot that is shown is compared with the live picture.
-    send(&mut harness, Command::Look(TWO));
-    send(&mut harness, Command::SlotWipe);
+    send(&mut harness, Command::Slot(SlotCommand::Look(TWO)));
+    send(&mut harness, Command::Slot(SlotCommand::Wipe));
     assert!(harness.state().is_comparing());
     assert_eq!(harness.state().looked(), None);
 }
@@ -182,8 +182,8 @@ fn a_slot_is_wiped_and_subtracted_like_another_stage() {
 #[test]
 fn pictures_of_different_sizes_are_not_compared() {
     let mut harness = finished(4);
-    keep(&mut harness, Command::Keep, ONE);
-    send(&mut harness, Command::SlotWipe);
+    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
+    send(&mut harness, Command::Slot(SlotCommand::Wipe));
     until(&mut harness, "a wipe", |window| window.has_other_picture());
     harness.state_mut().document_mut().settings.width = 40;
     harness.run_steps(3);
@@ -191,7 +191,11 @@ fn pictures_of_different_sizes_are_not_compared() {
     let told = harness.state().messages();
     let reason = "slot 1 is 32x18 and the picture is 40x18; set the picture to that size";
     assert!(told.iter().any(|text| text.contains(reason)), "{told:?}");
-    for command in [Command::SlotWipe, Command::SlotDifference, Command::OnlyNoise] {
+    for command in [
+        Command::Slot(SlotCommand::Wipe),
+        Command::Slot(SlotCommand::Difference),
+        Command::Slot(SlotCommand::OnlyNoise),
+    ] {
         assert!(
             harness.state().disabled_reason(command).unwrap().starts_with("Slot 1 is 32x18"),
             "{command:?}"
@@ -203,7 +207,7 @@ fn pictures_of_different_sizes_are_not_compared() {
         (f64::from(size.x / size.y) * 18.0).round()
     };
     assert_eq!(aspect(&harness), 40.0);
-    send(&mut harness, Command::Look(ONE));
+    send(&mut harness, Command::Slot(SlotCommand::Look(ONE)));
     assert_eq!(aspect(&harness), 32.0);
 }
 
@@ -223,7 +227,7 @@ fn pictures_keep_their_size_while_slots_are_in_use() {
     until(&mut harness, "the end", is_done);
     wait(&mut harness);
     let (size, height) = (harness.state().document().size(), harness.state().picture_rect().height());
-    keep(&mut harness, Command::Keep, ONE);
+    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
     wait(&mut harness);
     assert_eq!(harness.state().document().size(), size);
     assert!(harness.state().picture_rect().height() <= height);
@@ -231,12 +235,12 @@ fn pictures_keep_their_size_while_slots_are_in_use() {
     wait(&mut harness);
     until(&mut harness, "the next stage", is_done);
     assert_eq!(harness.state().document().size(), size);
-    assert_eq!(harness.state().disabled_reason(Command::SlotWipe), None);
+    assert_eq!(harness.state().disabled_reason(Command::Slot(SlotCommand::Wipe)), None);
 }
 
 /// The words of the verdict, once it is there.
 fn verdict(harness: &mut Harness<'_, Window>) -> (String, String) {
-    send(harness, Command::OnlyNoise);
+    send(harness, Command::Slot(SlotCommand::OnlyNoise));
     until(harness, "a verdict", |window| window.only_noise().is_some());
     let (headline, text) = harness.state().only_noise().unwrap().unwrap();
     (headline.to_owned(), text.to_owned())
@@ -249,7 +253,7 @@ fn the_verdict_is_that_of_compare() {
     until(&mut harness, "the end", is_done);
     let first = directory.path().join("first.exr");
     save(&mut harness, Command::Save(OutputFormat::Exr), &first);
-    keep(&mut harness, Command::Keep, ONE);
+    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
     let (headline, text) = verdict(&mut harness);
     assert_eq!(headline, "Identical to the bit");
     assert!(text.trim_end().ends_with("verdict     equal to the bit"), "{text}");
@@ -278,10 +282,10 @@ fn the_verdict_is_that_of_compare() {
 fn a_render_goes_on_from_a_slot() {
     let mut harness = finished(8);
     let before = harness.state().document().clone();
-    keep(&mut harness, Command::Keep, ONE);
+    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
     change(&mut harness);
     let changed = harness.state().document().camera;
-    send(&mut harness, Command::OpenSlot);
+    send(&mut harness, Command::Slot(SlotCommand::Open));
     until(&mut harness, "the picture of the slot", |window| *window.document() == before);
     until(&mut harness, "its samples", is_done);
     // All samples are there, and none was traced again.
@@ -298,7 +302,7 @@ fn a_render_goes_on_from_a_slot() {
     harness.state_mut().document_mut().stop = weekender::progressive::Stop::at_samples(12);
     until(&mut harness, "more samples", has_samples(12));
     // The live film is ahead of the slot and is not thrown away.
-    send(&mut harness, Command::OpenSlot);
+    send(&mut harness, Command::Slot(SlotCommand::Open));
     let told = "The live picture is this one, and it has no fewer samples";
     until(&mut harness, told, |window| window.messages().iter().any(|text| text == told));
     assert_eq!(harness.state().status().samples_per_pixel, 12);
@@ -309,9 +313,9 @@ fn what_is_shown_is_saved_and_copied() {
     let directory = tempfile::tempdir().unwrap();
     let mut harness = finished(8);
     let kept = mean(&mut harness);
-    keep(&mut harness, Command::Keep, ONE);
+    keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
     change(&mut harness);
-    send(&mut harness, Command::Look(ONE));
+    send(&mut harness, Command::Slot(SlotCommand::Look(ONE)));
     let path = directory.path().join("slot.png");
     save(&mut harness, Command::Save(OutputFormat::Png), &path);
     let saved = image::open(&path).unwrap().to_rgb8();
@@ -336,7 +340,7 @@ fn the_strip_lists_names_and_deletes() {
         until(&mut harness, "the end", is_done);
         let height = harness.state().picture_rect().height();
         assert!(harness.query_by_label("Slot 1").is_none() && harness.query_by_label("Flip").is_none());
-        keep(&mut harness, Command::Keep, ONE);
+        keep(&mut harness, Command::Slot(SlotCommand::Keep), ONE);
         harness.run_steps(3);
         assert!(harness.state().picture_rect().height() <= height);
         let strip = harness.get_by_label("Slot 1").rect();
@@ -356,13 +360,13 @@ fn the_strip_lists_names_and_deletes() {
         harness.get_by_label("Slot 1").click();
         harness.run_steps(3);
         assert_eq!(harness.state().looked(), Some(ONE));
-        assert!(harness.state().disabled_reason(Command::Keep).is_some());
+        assert!(harness.state().disabled_reason(Command::Slot(SlotCommand::Keep)).is_some());
         harness.get_by_label("Slot 1").click();
         harness.run_steps(3);
         assert_eq!(harness.state().looked(), None);
-        send(&mut harness, Command::DeleteSlot);
+        send(&mut harness, Command::Slot(SlotCommand::Delete));
         assert!(harness.state().slot(ONE).is_none() && harness.query_by_label("Slot 1").is_none());
-        send(&mut harness, Command::BringBackSlot);
+        send(&mut harness, Command::Slot(SlotCommand::BringBack));
         assert_eq!(harness.state().slot(ONE).unwrap().0, "before");
         // The menu lists slots in use.
         control(&harness, "Slots").click();
@@ -376,17 +380,23 @@ fn the_strip_lists_names_and_deletes() {
 fn nine_slots_are_enough_to_fill() {
     let mut harness = finished(2);
     for _ in 0..9 {
-        send(&mut harness, Command::Keep);
+        send(&mut harness, Command::Slot(SlotCommand::Keep));
     }
     until(&mut harness, "nine slots", |window| SlotNumber::ALL.iter().all(|at| window.slot(*at).is_some()));
-    assert!(harness.state().disabled_reason(Command::Keep).unwrap().starts_with("All nine slots"));
+    assert!(
+        harness
+            .state()
+            .disabled_reason(Command::Slot(SlotCommand::Keep))
+            .unwrap()
+            .starts_with("All nine slots")
+    );
     change(&mut harness);
     harness.state_mut().document_mut().stop = weekender::progressive::Stop::at_samples(4);
     until(&mut harness, "more samples", has_samples(4));
-    send(&mut harness, Command::KeepIn(TWO));
+    send(&mut harness, Command::Slot(SlotCommand::KeepIn(TWO)));
     until(&mut harness, "another picture", |window| {
         window.slot(TWO).is_some_and(|(_, samples)| samples == 4)
     });
-    send(&mut harness, Command::BringBackSlot);
+    send(&mut harness, Command::Slot(SlotCommand::BringBack));
     assert_eq!(harness.state().slot(TWO).unwrap().1, 2, "the replaced picture");
 }

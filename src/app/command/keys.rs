@@ -2,36 +2,9 @@
 
 use super::super::model::show::Show;
 use super::Command;
+use super::shortcut::{DIGITS, ctrl, ctrl_shift, key};
 use crate::output::OutputFormat;
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
-
-const fn key(key: Key) -> Option<KeyboardShortcut> {
-    Some(KeyboardShortcut::new(Modifiers::NONE, key))
-}
-
-const fn ctrl(key: Key) -> Option<KeyboardShortcut> {
-    Some(KeyboardShortcut::new(Modifiers::COMMAND, key))
-}
-
-const fn ctrl_shift(key: Key) -> Option<KeyboardShortcut> {
-    Some(KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), key))
-}
-
-const fn shift(key: Key) -> Option<KeyboardShortcut> {
-    Some(KeyboardShortcut::new(Modifiers::SHIFT, key))
-}
-
-const fn alt(key: Key) -> Option<KeyboardShortcut> {
-    Some(KeyboardShortcut::new(Modifiers::ALT, key))
-}
-
-const fn shift_alt(key: Key) -> Option<KeyboardShortcut> {
-    Some(KeyboardShortcut::new(Modifiers::SHIFT.plus(Modifiers::ALT), key))
-}
-
-/// With Ctrl, these keys select the views in order; with Alt, the slots.
-const DIGITS: [Key; 9] =
-    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+use eframe::egui::{Context, Key, KeyboardShortcut};
 
 impl Command {
     /// The shortcut as it is printed on a keyboard.
@@ -73,14 +46,7 @@ impl Command {
             }
             Command::Wipe => key(Key::C),
             Command::WipeDifference => key(Key::X),
-            Command::Keep => key(Key::M),
-            Command::KeepIn(number) => shift_alt(DIGITS[number.index()]),
-            Command::Look(number) => alt(DIGITS[number.index()]),
-            Command::LookLive => alt(Key::Num0),
-            Command::Swap => key(Key::J),
-            Command::SlotWipe => shift(Key::C),
-            Command::SlotDifference => shift(Key::X),
-            Command::OnlyNoise => shift(Key::N),
+            Command::Slot(command) => command.shortcut(),
             Command::Brighter => key(Key::Plus),
             Command::Darker => key(Key::Minus),
             Command::NoExposure => key(Key::Num0),

@@ -2,74 +2,21 @@
 
 mod group;
 mod keys;
+mod shortcut;
+mod slots;
 mod words;
+
+pub use group::Group;
+pub use slots::SlotCommand;
 
 use super::model::device::Device;
 use super::model::remembered::Theme;
 use super::model::show::Show;
 use super::model::sizing::Sizing;
-use super::model::slots::SlotNumber;
 use super::model::viewpoint::Viewpoint;
 use crate::output::OutputFormat;
 use crate::stages::Stage;
 use crate::stress::{Case, shown_cases};
-
-/// The menu that lists a command.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Group {
-    /// Opening, saving and copying.
-    File,
-    /// Undo and reset.
-    Edit,
-    /// Views, bookmarks and flights.
-    Camera,
-    /// Selecting and editing the spheres of the scene.
-    Spheres,
-    /// What the window shows.
-    View,
-    /// Pictures that are kept.
-    Slots,
-    /// Pause, restart and devices.
-    Render,
-    /// The stages of the book.
-    Stage,
-    /// Scenes that are numerically difficult.
-    Extreme,
-    /// The book, the palette and the list of keys.
-    Help,
-}
-
-impl Group {
-    /// The menus, in order.
-    pub const ALL: [Group; 10] = [
-        Group::File,
-        Group::Edit,
-        Group::Camera,
-        Group::Spheres,
-        Group::View,
-        Group::Slots,
-        Group::Render,
-        Group::Stage,
-        Group::Extreme,
-        Group::Help,
-    ];
-
-    /// The title of the menu.
-    pub fn name(self) -> &'static str {
-        match self {
-            Group::File => "File",
-            Group::Edit => "Edit",
-            Group::Camera => "Camera",
-            Group::Spheres => "Spheres",
-            Group::View => "View",
-            Group::Slots => "Slots",
-            Group::Render => "Render",
-            Group::Stage => "Stage",
-            Group::Extreme => "Extreme scenes",
-            Group::Help => "Help",
-        }
-    }
-}
 
 /// A command that the user can give.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -184,28 +131,8 @@ pub enum Command {
     NextRay,
     /// Explain the previous ray of the highlighted path.
     PreviousRay,
-    /// Keep the picture in the first free slot.
-    Keep,
-    /// Keep the picture in this slot.
-    KeepIn(SlotNumber),
-    /// Show the picture of this slot.
-    Look(SlotNumber),
-    /// Show the live picture.
-    LookLive,
-    /// Show what was shown before: the live picture or a slot.
-    Swap,
-    /// Compare with the chosen slot on both sides of a divider.
-    SlotWipe,
-    /// Show a heat map of the difference from the chosen slot.
-    SlotDifference,
-    /// Say whether the picture and the chosen slot differ only by noise.
-    OnlyNoise,
-    /// Go on from the picture of the chosen slot.
-    OpenSlot,
-    /// Empty the chosen slot.
-    DeleteSlot,
-    /// Put back the picture that was deleted or replaced last.
-    BringBackSlot,
+    /// A command for slots.
+    Slot(SlotCommand),
     /// Use this colour theme.
     Theme(Theme),
     /// Pause or continue.
@@ -291,11 +218,7 @@ impl Command {
             Blank,
         ]);
         all.extend(self::Theme::ALL.map(Theme));
-        all.extend([Keep, Swap, LookLive]);
-        all.extend(SlotNumber::ALL.map(Look));
-        all.extend([SlotWipe, SlotDifference, OnlyNoise, OpenSlot]);
-        all.extend(SlotNumber::ALL.map(KeepIn));
-        all.extend([DeleteSlot, BringBackSlot]);
+        all.extend(SlotCommand::all().into_iter().map(Slot));
         all.extend([Pause, GoOn, Restart, SwitchDevice]);
         all.extend(self::Device::ALL.map(Device));
         all.extend(self::Sizing::ALL.map(Size));

@@ -65,17 +65,7 @@ impl Command {
             Command::FullScreen => "Full screen".into(),
             Command::NextRay => "Next ray of the path".into(),
             Command::PreviousRay => "Previous ray of the path".into(),
-            Command::Keep => "Keep this picture".into(),
-            Command::KeepIn(number) => format!("Keep in slot {number}"),
-            Command::Look(number) => format!("Look at slot {number}"),
-            Command::LookLive => "Look at the live picture".into(),
-            Command::Swap => "Flip between two pictures".into(),
-            Command::SlotWipe => "Wipe against the slot".into(),
-            Command::SlotDifference => "Difference from the slot".into(),
-            Command::OnlyNoise => "Is it only noise?".into(),
-            Command::OpenSlot => "Go on from the slot".into(),
-            Command::DeleteSlot => "Delete the slot".into(),
-            Command::BringBackSlot => "Bring back the slot".into(),
+            Command::Slot(command) => command.name(),
             Command::Theme(theme) => format!("{} theme", theme.name()),
             Command::Pause => "Pause or go on".into(),
             Command::GoOn => "Go on after the end".into(),
@@ -176,28 +166,7 @@ impl Command {
             Command::FullScreen => "Fill the whole screen with the window",
             Command::NextRay => "Go on along the highlighted path, with the reason for the next direction",
             Command::PreviousRay => "Go back along the highlighted path, towards the camera",
-            Command::Keep => {
-                "A copy with all its samples, in the first free slot, to look at and compare with"
-            }
-            Command::KeepIn(_) => {
-                "A copy of this picture with all its samples; one that is there is replaced"
-            }
-            Command::Look(_) => "Show the kept picture instead of the live one; Escape returns",
-            Command::LookLive => "Leave the slot that is shown; Escape does this too",
-            Command::Swap => "Show the live picture and the slot looked at last in turn, or two slots",
-            Command::SlotWipe => "Drag a divider between the shown picture and the one in the chosen slot",
-            Command::SlotDifference => {
-                "Where the shown picture and the chosen slot's differ, with the values"
-            }
-            Command::OnlyNoise => {
-                "Test whether the shown picture and the chosen slot's differ by more than noise, as \
-                 \"weekender compare\" does"
-            }
-            Command::OpenSlot => {
-                "Restore the chosen slot's scene, camera, settings and samples; Undo returns"
-            }
-            Command::DeleteSlot => "Empty the chosen one; its picture can be brought back until the next",
-            Command::BringBackSlot => "The picture that was deleted or replaced last, to its old place",
+            Command::Slot(command) => command.help(),
             Command::Theme(_) => "Colours of the window",
             Command::Pause => "Pause or resume tracing; no samples are lost",
             Command::GoOn => "To about half the error, or to twice the samples or seconds; no sample is lost",

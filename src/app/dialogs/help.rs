@@ -1,7 +1,7 @@
 //! The dialog that lists keys and mouse actions.
 
 use super::outcome::Outcome;
-use crate::app::command::{Command, Group};
+use crate::app::command::{Command, Group, SlotCommand};
 use eframe::egui::{self, RichText, Ui};
 
 const MOUSE: [(&str, &str); 17] = [
@@ -69,7 +69,7 @@ fn section(ui: &mut Ui, group: Option<Group>) {
                     let Some(keys) = command.keys(&context) else { continue };
                     match command {
                         // One line for all nine slots.
-                        Command::Look(number) | Command::KeepIn(number) => {
+                        Command::Slot(SlotCommand::Look(number) | SlotCommand::KeepIn(number)) => {
                             if number.index() == 0 {
                                 row(&format!("{keys} … 9"), &format!("{} … 9", command.name()));
                             }

@@ -34,7 +34,7 @@ pub struct Reopened {
 
 /// Requests about slots, and their answers.
 #[derive(Default)]
-pub struct Keeper {
+pub struct SlotActions {
     /// Reads kept films.
     pub thread: KeptThread,
     /// The picture of the slot that is shown.
@@ -53,7 +53,7 @@ pub struct Keeper {
     awaited: Vec<(SlotNumber, Weak<()>)>,
 }
 
-impl Keeper {
+impl SlotActions {
     /// Has the live picture kept as soon as it has samples.
     pub fn want(&mut self, number: SlotNumber) {
         if !self.is_wanted(number) {

@@ -1,6 +1,6 @@
 //! The strip of all slots, below the picture.
 
-use crate::app::command::Command;
+use crate::app::command::{Command, SlotCommand};
 use crate::app::facts::Facts;
 use crate::app::menu::item;
 use crate::app::model::slots::{Slot, SlotNumber, Slots};
@@ -65,7 +65,11 @@ impl Strip {
         let framed = egui::Frame::new().inner_margin(egui::Margin::same(4)).show(ui, |ui| {
             ui.horizontal_top(|ui| {
                 if self.thumbnail(ui, number, &slot) {
-                    commands.push(if is_shown { Command::LookLive } else { Command::Look(number) });
+                    commands.push(if is_shown {
+                        Command::Slot(SlotCommand::LookLive)
+                    } else {
+                        Command::Slot(SlotCommand::Look(number))
+                    });
                 }
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
@@ -126,7 +130,7 @@ impl Strip {
         ui.painter().rect_filled(place, CornerRadius::same(3), ui.visuals().panel_fill.gamma_multiply(0.85));
         let colour = ui.visuals().strong_text_color();
         ui.painter().text(place.center(), Align2::CENTER_CENTER, number.to_string(), font, colour);
-        let keys = Command::Look(number).keys(ui.ctx()).unwrap_or_default();
+        let keys = Command::Slot(SlotCommand::Look(number)).keys(ui.ctx()).unwrap_or_default();
         let help = format!("Look at this picture, or return to the live one ({keys}; J flips)");
         response.on_hover_text(help).clicked()
     }
@@ -136,9 +140,11 @@ impl Strip {
 fn live(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 4.0;
-        for (command, label) in
-            [(Command::LookLive, "Live"), (Command::Keep, "Keep"), (Command::Swap, "Flip")]
-        {
+        for (command, label) in [
+            (Command::Slot(SlotCommand::LookLive), "Live"),
+            (Command::Slot(SlotCommand::Keep), "Keep"),
+            (Command::Slot(SlotCommand::Swap), "Flip"),
+        ] {
             let reason = facts.disabled_reason(command);
             // The live picture is pressed while it is shown, not disabled.
             let is_on = facts.is_on(command);
@@ -163,9 +169,11 @@ fn buttons(
 ) -> bool {
     let mut is_given = false;
     let incomparable = facts.incomparable_slot(number);
-    for (label, command) in
-        [("Wipe", Command::SlotWipe), ("A − B", Command::SlotDifference), ("Noise?", Command::OnlyNoise)]
-    {
+    for (label, command) in [
+        ("Wipe", Command::Slot(SlotCommand::Wipe)),
+        ("A − B", Command::Slot(SlotCommand::Difference)),
+        ("Noise?", Command::Slot(SlotCommand::OnlyNoise)),
+    ] {
         let is_on = is_compared && facts.is_on(command);
         let button = Button::new(label).small().selected(is_on);
         let response = ui.add_enabled(incomparable.is_none(), button).on_hover_text(command.help());
@@ -179,7 +187,7 @@ fn buttons(
     let (response, inner) = more.ui(ui, |ui| {
         ui.set_width(250.0);
         let before = commands.len();
-        item(ui, facts, commands, Command::OpenSlot);
+        item(ui, facts, commands, Command::Slot(SlotCommand::Open));
         ui.separator();
         for save in [
             Command::Save(OutputFormat::Png),
@@ -191,12 +199,12 @@ fn buttons(
             item(ui, facts, commands, save);
             if commands.len() > at {
                 // Saving takes what is shown.
-                commands.insert(at, Command::Look(number));
+                commands.insert(at, Command::Slot(SlotCommand::Look(number)));
             }
         }
         ui.separator();
-        item(ui, facts, commands, Command::DeleteSlot);
-        item(ui, facts, commands, Command::BringBackSlot);
+        item(ui, facts, commands, Command::Slot(SlotCommand::Delete));
+        item(ui, facts, commands, Command::Slot(SlotCommand::BringBack));
         commands.len() > before
     });
     let help = "Go on from this picture, save it, or delete it";

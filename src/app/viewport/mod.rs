@@ -14,7 +14,7 @@ pub use placement::Placement;
 use placement::whole_pixels;
 pub use touch::Touch;
 
-use super::command::Command;
+use super::command::{Command, SlotCommand};
 use super::facts::Facts;
 use super::menu;
 use super::model::crop::Crop;
@@ -300,9 +300,13 @@ impl Viewport {
             }
             ui.separator();
         }
-        for command in
-            [Command::Home, Command::AddBookmark, Command::Keep, Command::Crop, Command::CopyCommand]
-        {
+        for command in [
+            Command::Home,
+            Command::AddBookmark,
+            Command::Slot(SlotCommand::Keep),
+            Command::Crop,
+            Command::CopyCommand,
+        ] {
             menu::item(ui, facts, commands, command);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::moving::DOLLY_PER_POINT;
 use super::placement::Placement;
-use crate::app::command::Command;
+use crate::app::command::{Command, SlotCommand};
 use crate::app::facts::Facts;
 use crate::app::menu;
 use eframe::egui::{CursorIcon, PointerButton, Response, Ui};
@@ -31,10 +31,10 @@ pub(super) fn menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) -> b
     let listed: &[Command] = match (view.crop, view.slots.looked()) {
         (Some(_), _) => &[Command::CopyCrop, Command::SaveCrop, Command::Crop],
         (None, Some(_)) => &[
-            Command::LookLive,
-            Command::Swap,
-            Command::OpenSlot,
-            Command::DeleteSlot,
+            Command::Slot(SlotCommand::LookLive),
+            Command::Slot(SlotCommand::Swap),
+            Command::Slot(SlotCommand::Open),
+            Command::Slot(SlotCommand::Delete),
             Command::CopyPicture,
             Command::Crop,
             Command::CopyCommand,

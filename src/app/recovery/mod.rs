@@ -2,13 +2,13 @@
 
 mod autosave;
 mod card;
-mod kept_files;
+mod files;
 mod left;
 mod turn;
 
 pub use autosave::{Autosave, Saved, write_film};
 pub use card::{Card, Choice};
-pub use kept_files::KeptFiles;
+pub use files::RecoveryFiles;
 pub use left::{Left, Part};
 
 use super::answers::Answers;
@@ -37,9 +37,9 @@ pub struct Arrival {
 }
 
 /// What a window keeps.
-pub struct Keeping {
+pub struct Recovery {
     /// The window's own files, if it can have any.
-    pub files: Option<KeptFiles>,
+    pub files: Option<RecoveryFiles>,
     /// Writes the film.
     pub autosave: Autosave,
     /// What other windows left.
@@ -66,10 +66,10 @@ pub struct Keeping {
     interrupt: Option<Arc<Interrupt>>,
 }
 
-impl Keeping {
+impl Recovery {
     /// Keeps nothing yet. Films that took longer than `every` are written, and again each `every`.
     pub fn new(every: Duration) -> Self {
-        Keeping {
+        Recovery {
             files: None,
             autosave: Autosave::new(every),
             left: Vec::new(),

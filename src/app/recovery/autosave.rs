@@ -102,7 +102,7 @@ impl Autosave {
         self.due = Instant::now() + self.every;
     }
 
-    /// Whether the film of `document` is worth keeping: tracing it has taken long enough.
+    /// Whether the film of `document` is worth recovery: tracing it has taken long enough.
     pub fn is_long(
         &self,
         document: &Document,

@@ -1,15 +1,10 @@
 //! A card in a corner of the picture: what was kept of windows that ended without being closed.
 
 use super::left::{Left, Part};
+use crate::app::corner_card::corner_card;
 use crate::app::places::Place;
 use crate::app::theme;
-use eframe::egui::{self, Align2, Button, Margin, Rect, RichText, Ui, vec2};
-
-/// The largest width of the card, in points.
-const WIDTH: f32 = 300.0;
-
-/// The smallest distance between the card and the edge of the viewport, in points.
-const MARGIN: f32 = 12.0;
+use eframe::egui::{self, Button, Rect, RichText, Ui};
 
 /// What the user wants to be done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,23 +27,10 @@ pub struct Card {
 impl Card {
     /// Draws the card in the upper right corner of `over`. `is_busy` while something is being opened.
     pub fn ui(&mut self, ui: &Ui, over: Rect, left: &[Left], is_busy: bool) -> Option<Choice> {
-        let [width, height] = [over.width(), over.height()].map(|room| (room - 2.0 * MARGIN).max(80.0));
         let mut choice = None;
-        egui::Area::new(egui::Id::unique("recovered pictures"))
-            .accessible_name("Recovered pictures")
-            .pivot(Align2::RIGHT_TOP)
-            .fixed_pos(over.right_top() + vec2(-MARGIN, MARGIN))
-            .constrain_to(over)
-            .show(ui.ctx(), |ui| {
-                let frame = theme::float_frame(ui).inner_margin(Margin::symmetric(16, 12)).corner_radius(8);
-                frame.shadow(ui.visuals().window_shadow).show(ui, |ui| {
-                    ui.set_width(width.min(WIDTH) - 34.0);
-                    egui::ScrollArea::vertical().max_height(height - 26.0).show(ui, |ui| {
-                        Place::Recovered.begin(ui);
-                        choice = self.content(ui, left, is_busy);
-                    });
-                });
-            });
+        corner_card(ui, over, Place::Recovered, "Recovered pictures", |ui| {
+            choice = self.content(ui, left, is_busy);
+        });
         match choice {
             Some(Choice::Discard(index, part)) if self.doubted != Some((index, part)) => {
                 self.doubted = Some((index, part));
@@ -65,7 +47,6 @@ impl Card {
     fn content(&self, ui: &mut Ui, left: &[Left], is_busy: bool) -> Option<Choice> {
         let mut choice = None;
         let weak = ui.visuals().weak_text_color();
-        ui.label(RichText::new("Recovered pictures").heading().strong());
         ui.add(egui::Label::new("They were not saved when a window ended.").wrap());
         for (index, left) in left.iter().enumerate() {
             for row in left.rows() {

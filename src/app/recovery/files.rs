@@ -61,13 +61,13 @@ impl Paths {
 
 /// Files that belong to this window for as long as this exists.
 #[derive(Debug)]
-pub struct KeptFiles {
+pub struct RecoveryFiles {
     directory: PathBuf,
     paths: Paths,
     _lock: File,
 }
 
-impl Drop for KeptFiles {
+impl Drop for RecoveryFiles {
     fn drop(&mut self) {
         if self.paths.is_empty() {
             // If it cannot be removed, it is an empty file that the next window removes.
@@ -76,12 +76,12 @@ impl Drop for KeptFiles {
     }
 }
 
-impl KeptFiles {
+impl RecoveryFiles {
     /// Files of a new name in `directory`, which is created if necessary.
     ///
     /// # Errors
     /// Why nothing can be kept there.
-    pub fn claim(directory: &Path) -> Result<KeptFiles, String> {
+    pub fn claim(directory: &Path) -> Result<RecoveryFiles, String> {
         let failed = |error: io::Error| format!("cannot write to {}: {error}", directory.display());
         fs::create_dir_all(directory).map_err(failed)?;
         for paths in Paths::new(directory) {
@@ -92,7 +92,7 @@ impl KeptFiles {
                 Ok(file) if is_ours(&file, &paths, true) => {
                     // This also removes the unfinished files of killed windows.
                     check_writable(&paths.film).map_err(|error| error.to_string())?;
-                    return Ok(KeptFiles { directory: directory.to_owned(), paths, _lock: file });
+                    return Ok(RecoveryFiles { directory: directory.to_owned(), paths, _lock: file });
                 }
                 Ok(_) => {}
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
@@ -103,7 +103,7 @@ impl KeptFiles {
     }
 
     /// The files in `directory` that windows left without ending in order, newest first.
-    pub fn left_in(directory: &Path) -> Vec<KeptFiles> {
+    pub fn left_in(directory: &Path) -> Vec<RecoveryFiles> {
         let entries = fs::read_dir(directory).into_iter().flatten().flatten();
         let mut names: Vec<String> = entries
             .filter_map(|entry| {
@@ -119,21 +119,21 @@ impl KeptFiles {
             .collect();
         names.sort();
         names.dedup();
-        let mut left: Vec<KeptFiles> =
-            names.iter().filter_map(|name| KeptFiles::take_over(directory, name)).collect();
+        let mut left: Vec<RecoveryFiles> =
+            names.iter().filter_map(|name| RecoveryFiles::take_over(directory, name)).collect();
         left.sort_by_key(|files| std::cmp::Reverse(files.changed()));
         left
     }
 
     /// The files of this name, unless a running window has it or it is empty.
-    fn take_over(directory: &Path, name: &str) -> Option<KeptFiles> {
+    fn take_over(directory: &Path, name: &str) -> Option<RecoveryFiles> {
         let paths = Paths::of(directory, name);
         let file = OpenOptions::new().write(true).create(true).truncate(false).open(&paths.lock).ok()?;
         if !is_ours(&file, &paths, false) {
             return None;
         }
         // Without film and note, dropping it removes the lock.
-        Some(KeptFiles { directory: directory.to_owned(), paths, _lock: file })
+        Some(RecoveryFiles { directory: directory.to_owned(), paths, _lock: file })
             .filter(|files| !files.paths.is_empty())
     }
 
@@ -195,7 +195,7 @@ impl KeptFiles {
     ///
     /// # Errors
     /// Errors of the file system.
-    pub fn take_film(&self, other: &KeptFiles) -> io::Result<()> {
+    pub fn take_film(&self, other: &RecoveryFiles) -> io::Result<()> {
         fs::rename(&other.paths.film, &self.paths.film)
     }
 
@@ -289,14 +289,14 @@ mod tests {
         names
     }
 
-    fn write(files: &KeptFiles, title: &str, film: Option<&str>) {
+    fn write(files: &RecoveryFiles, title: &str, film: Option<&str>) {
         files.write_note(&serde_json::from_value(serde_json::json!({ "title": title })).unwrap()).unwrap();
         if let Some(film) = film {
             fs::write(files.film(), film).unwrap();
         }
     }
 
-    fn title(files: &KeptFiles) -> String {
+    fn title(files: &RecoveryFiles) -> String {
         files.note().unwrap().unwrap().title
     }
 
@@ -304,18 +304,18 @@ mod tests {
     fn only_files_of_windows_that_are_gone_are_left() {
         let directory = tempfile::tempdir().unwrap();
         let at = directory.path();
-        let [first, second] = [(); 2].map(|()| KeptFiles::claim(at).unwrap());
+        let [first, second] = [(); 2].map(|()| RecoveryFiles::claim(at).unwrap());
         assert_ne!(first.film(), second.film());
         write(&first, "first", Some("film"));
         write(&second, "second", None);
-        assert!(KeptFiles::left_in(at).is_empty(), "both windows run");
+        assert!(RecoveryFiles::left_in(at).is_empty(), "both windows run");
         drop(first);
-        let [left] = KeptFiles::left_in(at).try_into().unwrap();
+        let [left] = RecoveryFiles::left_in(at).try_into().unwrap();
         assert_eq!((title(&left).as_str(), left.has_film()), ("first", true));
-        assert!(KeptFiles::left_in(at).is_empty(), "who offers it has it");
+        assert!(RecoveryFiles::left_in(at).is_empty(), "who offers it has it");
         drop(left);
-        assert_eq!(KeptFiles::left_in(at).len(), 1, "and gives it back");
-        let [left] = KeptFiles::left_in(at).try_into().unwrap();
+        assert_eq!(RecoveryFiles::left_in(at).len(), 1, "and gives it back");
+        let [left] = RecoveryFiles::left_in(at).try_into().unwrap();
         left.delete_film();
         left.delete_note();
         drop(left);
@@ -330,7 +330,7 @@ mod tests {
         fs::write(directory.path().join("window-1-1.exr"), "film").unwrap();
         fs::write(directory.path().join("window-2-1.json"), "no note").unwrap();
         fs::write(directory.path().join("other.exr"), "film").unwrap();
-        let left = KeptFiles::left_in(directory.path());
+        let left = RecoveryFiles::left_in(directory.path());
         assert_eq!(left.len(), 2);
         let told = left.iter().find_map(|files| files.note().err()).unwrap();
         assert!(told.contains("window-2-1.json"), "{told}");
@@ -340,19 +340,19 @@ mod tests {
     fn a_session_goes_from_window_to_window() {
         let directory = tempfile::tempdir().unwrap();
         let at = directory.path();
-        let first = KeptFiles::claim(at).unwrap();
+        let first = RecoveryFiles::claim(at).unwrap();
         assert!(!first.take_session().unwrap());
         write(&first, "first", Some("film"));
         first.leave_session().unwrap();
         drop(first);
-        assert!(KeptFiles::left_in(at).is_empty(), "it ended in order");
-        let [second, third] = [(); 2].map(|()| KeptFiles::claim(at).unwrap());
+        assert!(RecoveryFiles::left_in(at).is_empty(), "it ended in order");
+        let [second, third] = [(); 2].map(|()| RecoveryFiles::claim(at).unwrap());
         assert!(second.take_session().unwrap());
         assert_eq!((title(&second).as_str(), second.has_film()), ("first", true));
         assert!(!third.take_session().unwrap(), "one window takes it");
         // It is this window's now: if the window is killed, the film is left.
         drop(second);
-        assert_eq!(KeptFiles::left_in(at).len(), 1);
+        assert_eq!(RecoveryFiles::left_in(at).len(), 1);
     }
 
     #[test]
@@ -360,28 +360,28 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let at = directory.path();
         let leave = |title: &str, film| {
-            let files = KeptFiles::claim(at).unwrap();
+            let files = RecoveryFiles::claim(at).unwrap();
             write(&files, title, film);
             files.leave_session().unwrap();
         };
         leave("plain", None);
         leave("long", Some("film"));
-        assert!(KeptFiles::left_in(at).is_empty(), "the plain one cost nothing");
+        assert!(RecoveryFiles::left_in(at).is_empty(), "the plain one cost nothing");
         leave("newest", None);
-        let [left] = KeptFiles::left_in(at).try_into().unwrap();
+        let [left] = RecoveryFiles::left_in(at).try_into().unwrap();
         assert_eq!((title(&left).as_str(), left.has_film()), ("long", true));
-        let last = KeptFiles::claim(at).unwrap();
+        let last = RecoveryFiles::claim(at).unwrap();
         assert!(last.take_session().unwrap() && title(&last) == "newest" && !last.has_film());
     }
 
     #[test]
     fn a_film_is_set_aside() {
         let directory = tempfile::tempdir().unwrap();
-        let files = KeptFiles::claim(directory.path()).unwrap();
+        let files = RecoveryFiles::claim(directory.path()).unwrap();
         write(&files, "mine", Some("film"));
         let aside = files.set_film_aside().unwrap();
         assert!(aside.exists() && !files.has_film());
-        let [left] = KeptFiles::left_in(directory.path()).try_into().unwrap();
+        let [left] = RecoveryFiles::left_in(directory.path()).try_into().unwrap();
         assert_eq!(left.film(), aside);
         files.take_film(&left).unwrap();
         assert!(files.has_film() && !left.has_film());
@@ -391,7 +391,7 @@ mod tests {
     fn a_directory_that_cannot_be_is_named() {
         let directory = tempfile::tempdir().unwrap();
         fs::write(directory.path().join("file"), "").unwrap();
-        let told = KeptFiles::claim(&directory.path().join("file/deeper")).unwrap_err();
+        let told = RecoveryFiles::claim(&directory.path().join("file/deeper")).unwrap_err();
         assert!(told.contains("file/deeper"), "{told}");
     }
 }

@@ -1,11 +1,11 @@
 //! Keeps what the window shows for the next window, and shows it again.
 
 use super::changes::Changes;
-use super::keeping::{Arrival, Choice, Keeping, KeptFiles, Left, Part, Saved, write_film};
 use super::model::document::Document;
 use super::model::origin::Origin;
 use super::model::session::{Restored, Session};
 use super::model::view::ViewState;
+use super::recovery::{Arrival, Choice, Left, Part, Recovery, RecoveryFiles, Saved, write_film};
 use super::window::Window;
 use crate::describe::counted;
 use crate::interrupt::Interrupt;
@@ -17,8 +17,8 @@ use std::sync::Arc;
 
 impl Window {
     /// Keeps files in `directory` from now on. Shows again what the last window showed, if `may_restore`.
-    pub(super) fn begin_keeping(&mut self, directory: &Path, may_restore: bool, stop: Option<Stop>) {
-        let mut files = match KeptFiles::claim(directory) {
+    pub(super) fn begin_recovery(&mut self, directory: &Path, may_restore: bool, stop: Option<Stop>) {
+        let mut files = match RecoveryFiles::claim(directory) {
             Ok(files) => files,
             Err(reason) => {
                 self.toasts.bad(format!("Nothing is autosaved: {reason}"));
@@ -29,16 +29,16 @@ impl Window {
             self.toasts.bad(format!("What was shown last cannot be shown again: {reason}"));
             // What cannot be shown is left as it is, to be offered.
             drop(files);
-            let Ok(others) = KeptFiles::claim(directory) else { return };
+            let Ok(others) = RecoveryFiles::claim(directory) else { return };
             files = others;
         }
         if let Some(stop) = stop {
             self.model.document.stop = stop;
         }
-        self.keeping.files = Some(files);
+        self.recovery.files = Some(files);
     }
 
-    fn take_session(&mut self, files: &KeptFiles) -> Result<(), String> {
+    fn take_session(&mut self, files: &RecoveryFiles) -> Result<(), String> {
         if !files.take_session().map_err(|error| error.to_string())? {
             return Ok(());
         }
@@ -48,7 +48,7 @@ impl Window {
         self.show_restored(restored);
         self.changes = Changes::new(document.clone());
         if files.has_film() {
-            self.keeping.resuming = Some(document);
+            self.recovery.resuming = Some(document);
         }
         Ok(())
     }
@@ -84,17 +84,17 @@ impl Window {
 
     /// Ends the window in order when one of these signals arrives.
     pub(super) fn heed(&mut self, interrupt: Arc<Interrupt>) {
-        self.keeping.heed(interrupt);
+        self.recovery.heed(interrupt);
     }
 
     /// Takes what has been found and read.
-    pub(super) fn receive_kept(&mut self) {
-        self.model.has_recovered = self.keeping.follow();
-        while let Some(outcome) = self.keeping.resumed.take() {
+    pub(super) fn receive_recovered(&mut self) {
+        self.model.has_recovered = self.recovery.follow();
+        while let Some(outcome) = self.recovery.resumed.take() {
             self.take_resumed(outcome);
         }
-        while let Some(arrival) = self.keeping.arrivals.take() {
-            if let Some((left, part)) = self.keeping.opening.take() {
+        while let Some(arrival) = self.recovery.arrivals.take() {
+            if let Some((left, part)) = self.recovery.opening.take() {
                 self.take_arrival(arrival, left, part);
             }
         }
@@ -102,21 +102,21 @@ impl Window {
 
     /// Goes on with the film in the window's own file.
     fn take_resumed(&mut self, outcome: Result<SavedFilm, String>) {
-        let Some(begun) = self.keeping.resuming.take() else { return };
+        let Some(begun) = self.recovery.resuming.take() else { return };
         match outcome {
             Ok(film) if self.document().has_same_film(&begun) => {
                 let samples = film.film.sample_count();
                 self.toasts.good(format!("Continuing with {} per pixel", counted(samples, "sample")));
-                self.go_on_kept(film);
+                self.go_on_recovered(film);
             }
             // Undo brings it back.
             Ok(film) => {
                 let samples = film.film.sample_count();
-                self.keeping.autosave.holds(Some(Saved { document: begun, samples }));
+                self.recovery.autosave.holds(Some(Saved { document: begun, samples }));
             }
             Err(reason) => {
-                self.keeping.autosave.holds(None);
-                let aside = self.keeping.files.as_ref().map(KeptFiles::set_film_aside);
+                self.recovery.autosave.holds(None);
+                let aside = self.recovery.files.as_ref().map(RecoveryFiles::set_film_aside);
                 let place = match aside {
                     Some(Ok(path)) => format!("; it is kept as {}", path.display()),
                     _ => String::new(),
@@ -127,19 +127,19 @@ impl Window {
     }
 
     /// Continues a film that is in the window's own file.
-    fn go_on_kept(&mut self, film: SavedFilm) {
+    fn go_on_recovered(&mut self, film: SavedFilm) {
         let samples = film.film.sample_count();
         self.adopt(film);
-        self.keeping.autosave.holds(Some(Saved { document: self.model.document.clone(), samples }));
-        self.keeping.note_soon();
+        self.recovery.autosave.holds(Some(Saved { document: self.model.document.clone(), samples }));
+        self.recovery.note_soon();
     }
 
     /// Shows a part of what another window left.
     fn take_arrival(&mut self, arrival: Arrival, mut left: Left, part: Part) {
         let Arrival { opened, restored } = arrival;
         // A film may have been written since the last look.
-        self.keeping.autosave.finish();
-        let has_own_film = self.keeping.has_film_of(self.document());
+        self.recovery.autosave.finish();
+        let has_own_film = self.recovery.has_film_of(self.document());
         let film = match (opened, restored) {
             (Some(Ok(Opened { content: Content::Film(film), recipe, stage, .. })), restored) => {
                 match restored {
@@ -158,7 +158,7 @@ impl Window {
             (Some(Err(reason)), _) | (None, Some(Err(reason))) => {
                 self.toasts.bad(format!("Not opened: {reason}"));
                 left.mark(part, reason);
-                self.keeping.put_back(0, left);
+                self.recovery.put_back(0, left);
                 return;
             }
             (Some(Ok(_)), _) | (None, None) => {
@@ -167,7 +167,7 @@ impl Window {
             }
         };
         self.toasts.good(format!("Opened {}", self.document().title()));
-        if let (Some(film), Some(files)) = (film, &self.keeping.files) {
+        if let (Some(film), Some(files)) = (film, &self.recovery.files) {
             // The film of the picture that was shown until now is offered by the next window.
             let aside = if has_own_film { files.set_film_aside().map(drop) } else { Ok(()) };
             if let Err(error) = aside.and_then(|()| files.take_film(&left.files)) {
@@ -175,36 +175,36 @@ impl Window {
                 self.adopt(film);
                 return;
             }
-            self.go_on_kept(film);
+            self.go_on_recovered(film);
         }
         left.settle(part);
-        self.keeping.note_soon();
-        self.keeping.put_back(0, left);
+        self.recovery.note_soon();
+        self.recovery.put_back(0, left);
     }
 
     /// Draws the card with what was kept of other windows.
-    pub(super) fn offer_kept(&mut self, ui: &Ui, room: Rect) {
-        let Keeping { card, left, opening, resuming, .. } = &mut self.keeping;
+    pub(super) fn offer_recovered(&mut self, ui: &Ui, room: Rect) {
+        let Recovery { card, left, opening, resuming, .. } = &mut self.recovery;
         match card.ui(ui, room, left, opening.is_some() || resuming.is_some()) {
-            Some(Choice::Open(index, part)) => self.keeping.open(ui.ctx(), index, part),
-            Some(Choice::Discard(index, part)) => self.keeping.discard(index, part),
-            Some(Choice::Later) => self.keeping.left.clear(),
+            Some(Choice::Open(index, part)) => self.recovery.open(ui.ctx(), index, part),
+            Some(Choice::Discard(index, part)) => self.recovery.discard(index, part),
+            Some(Choice::Later) => self.recovery.left.clear(),
             None => {}
         }
-        self.model.has_recovered = !self.keeping.left.is_empty();
+        self.model.has_recovered = !self.recovery.left.is_empty();
     }
 
     /// Has the film and what the window shows written if it is time, also while the window is hidden.
-    pub(super) fn keep(&mut self, context: &Context) {
-        if self.keeping.interrupt().is_some_and(|interrupt| interrupt.is_set()) {
+    pub(super) fn write_recovery(&mut self, context: &Context) {
+        if self.recovery.interrupt().is_some_and(|interrupt| interrupt.is_set()) {
             context.send_viewport_cmd(ViewportCommand::Close);
         }
-        if !self.keeping.is_time(context) {
+        if !self.recovery.is_time(context) {
             return;
         }
         let status = self.main.newest_status();
-        self.keeping.is_working = status.phase.is_working();
-        let Keeping { files, autosave, resuming, .. } = &mut self.keeping;
+        self.recovery.is_working = status.phase.is_working();
+        let Recovery { files, autosave, resuming, .. } = &mut self.recovery;
         let document = &self.model.document;
         if let Some(files) = files.as_ref().filter(|_| resuming.is_none())
             && let Some(words) =
@@ -219,23 +219,23 @@ impl Window {
         let is_settled =
             !matches!(status.phase, Phase::Idle | Phase::Preparing) && self.main.is_full(document);
         if is_settled && resuming.is_none() && autosave.saved().is_some_and(is_behind) {
-            self.keeping.resume(context, document);
+            self.recovery.resume(context, document);
         }
         let shown = (document, &self.model.view);
-        if let Some(reason) = self.keeping.note(context, shown, self.model.is_paused) {
+        if let Some(reason) = self.recovery.note(context, shown, self.model.is_paused) {
             self.toasts.bad(format!("What this window shows is not kept: {reason}"));
         }
     }
 
     /// Leaves what the window shows to the next one, with the film if tracing it took long.
     pub fn end_in_order(&mut self) {
-        let Some(files) = self.keeping.files.take() else { return };
-        let interrupt = self.keeping.interrupt().cloned();
+        let Some(files) = self.recovery.files.take() else { return };
+        let interrupt = self.recovery.interrupt().cloned();
         let _writing = interrupt.as_ref().map(|interrupt| interrupt.while_writing("the picture"));
-        self.keeping.autosave.finish();
-        self.keeping.finish_notes();
+        self.recovery.autosave.finish();
+        self.recovery.finish_notes();
         let document = self.model.document.clone();
-        let has_film = match self.keeping.resuming.take() {
+        let has_film = match self.recovery.resuming.take() {
             // The film is still being read, so it is as it was.
             Some(begun) if begun.has_same_film(&document) => true,
             Some(_) => {
@@ -243,7 +243,7 @@ impl Window {
                 let _ = files.set_film_aside();
                 false
             }
-            None => self.keep_film(&files, &document),
+            None => self.leave_film(&files, &document),
         };
         let session = Session::of(&document, &self.model.view, self.model.is_paused);
         if document.job(1).is_ok()
@@ -257,14 +257,14 @@ impl Window {
     }
 
     /// Writes the film of `document` if tracing it took long, and deletes that of another picture.
-    fn keep_film(&mut self, files: &KeptFiles, document: &Document) -> bool {
+    fn leave_film(&mut self, files: &RecoveryFiles, document: &Document) -> bool {
         let status = self.main.newest_status();
-        let is_long = self.keeping.autosave.is_long(document, &self.main, &status, self.seconds_before);
+        let is_long = self.recovery.autosave.is_long(document, &self.main, &status, self.seconds_before);
         if !is_long {
             files.delete_film();
             return false;
         }
-        let saved = self.keeping.autosave.saved().filter(|saved| saved.document.has_same_film(document));
+        let saved = self.recovery.autosave.saved().filter(|saved| saved.document.has_same_film(document));
         let saved = saved.map(|saved| saved.samples);
         if saved.is_some_and(|saved| saved >= status.samples_per_pixel) {
             return true;

@@ -1,6 +1,6 @@
 //! What a window left that ended without being closed.
 
-use super::kept_files::KeptFiles;
+use super::files::RecoveryFiles;
 use crate::app::model::session::Session;
 use crate::describe::counted;
 use crate::film::{checkpoint, key};
@@ -52,7 +52,7 @@ impl FilmWords {
 /// Files that were left, and what they hold.
 pub struct Left {
     /// The files, which no other window takes meanwhile.
-    pub files: KeptFiles,
+    pub files: RecoveryFiles,
     session: Option<Result<Session, String>>,
     film: Option<Result<FilmWords, String>>,
     changed: Option<SystemTime>,
@@ -61,13 +61,13 @@ pub struct Left {
 impl Left {
     /// What is in `directory`, newest first. What nothing would be lost with is deleted.
     pub fn all_in(directory: &Path) -> Vec<Left> {
-        let mut all: Vec<Left> = KeptFiles::left_in(directory).into_iter().map(Left::of).collect();
+        let mut all: Vec<Left> = RecoveryFiles::left_in(directory).into_iter().map(Left::of).collect();
         all.iter().for_each(Left::tidy);
         all.retain(|left| left.rows().next().is_some());
         all
     }
 
-    fn of(files: KeptFiles) -> Left {
+    fn of(files: RecoveryFiles) -> Left {
         Left {
             session: files.note().transpose(),
             film: files.has_film().then(|| FilmWords::read(files.film())),
@@ -183,7 +183,7 @@ mod tests {
     fn what_nothing_is_lost_with_is_not_offered() {
         let directory = tempfile::tempdir().unwrap();
         let write = |is_changed: bool, has_film: bool| {
-            let files = KeptFiles::claim(directory.path()).unwrap();
+            let files = RecoveryFiles::claim(directory.path()).unwrap();
             let session = serde_json::json!({ "title": "x", "is_changed": is_changed, "has_film": has_film });
             let session: Session = serde_json::from_value(session).unwrap();
             files.write_note(&session).unwrap();
