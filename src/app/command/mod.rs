@@ -2,6 +2,7 @@
 
 mod group;
 mod keys;
+mod menus;
 mod shortcut;
 mod slots;
 mod words;
