@@ -1,8 +1,8 @@
 //! The path loop at every level and lane count, and the choice among the variants.
 //!
-//! Each variant costs compile time, so there are few. At a level's native lane count the loop is specialised for what
-//! scenes commonly need. Other lane counts and the reference have only the general variant. All variants render the
-//! same bits; tests check this.
+//! Each variant costs compile time, so there are few. At a level's native lane count and with one lane, the loop is
+//! specialised for what scenes commonly need. Other lane counts and the reference have only the general variant. All
+//! variants render the same bits; tests check this.
 
 use super::Isa;
 use super::broadcast::BroadcastScene;
@@ -24,10 +24,10 @@ const FINISHED: u32 = parts::GLASS | parts::LENS | parts::EXTREMES | parts::HIER
 /// Every part.
 const GENERAL: u32 = parts::ALL;
 
-/// Returns the parts of the smallest kernel that has those `needed` at a level's native lane count, or of the general
-/// kernel at any other lane count.
+/// Returns the parts of the smallest kernel that has those `needed`.
 pub fn offered(isa: Isa, lanes: usize, needed: u32) -> u32 {
     let variants: &[u32] = match (isa, lanes == isa.native_lanes()) {
+        _ if lanes == 1 => &[GLASS],
         (Isa::Sse42 | Isa::Neon, true) => &[GLASS],
         (Isa::Avx2 | Isa::Avx512, true) => &[OPAQUE, GLASS, FINISHED],
         _ => &[],
@@ -41,6 +41,9 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
     let level = Level::new();
     let offered = offered(isa, lanes, needed);
     match (isa, lanes) {
+        (Isa::Portable, 1) if offered == GLASS => {
+            Some(Box::new(|prepared, work| trace::<_, GLASS>(Scalar::<false>, prepared, work)))
+        }
         (Isa::Portable, 1) => {
             Some(Box::new(|prepared, work| trace::<_, GENERAL>(Scalar::<false>, prepared, work)))
         }
@@ -48,7 +51,8 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
         (Isa::Sse42, _) => {
             let simd = level.as_sse4_2()?;
             match lanes {
-                1 => Some(scalar::<_, false>(simd)),
+                1 if offered == GLASS => Some(scalar::<_, false, GLASS>(simd)),
+                1 => Some(scalar::<_, false, GENERAL>(simd)),
                 4 if offered == GLASS => Some(four::<_, GLASS>(simd)),
                 4 => Some(four::<_, GENERAL>(simd)),
                 8 => Some(eight::<_, GENERAL>(simd)),
@@ -59,7 +63,8 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
         (Isa::Avx2, _) | (Isa::Avx512, 1 | 4 | 8) => {
             let simd = level.as_avx2()?;
             match lanes {
-                1 => Some(scalar::<_, true>(simd)),
+                1 if offered == GLASS => Some(scalar::<_, true, GLASS>(simd)),
+                1 => Some(scalar::<_, true, GENERAL>(simd)),
                 4 => Some(four::<_, GENERAL>(simd)),
                 8 if offered == OPAQUE => Some(eight::<_, OPAQUE>(simd)),
                 8 if offered == GLASS => Some(eight::<_, GLASS>(simd)),
@@ -83,7 +88,8 @@ pub fn kernel(isa: Isa, lanes: usize, needed: u32) -> Option<Kernel<f32>> {
         (Isa::Neon, _) => {
             let simd = level.as_neon()?;
             match lanes {
-                1 => Some(scalar::<_, true>(simd)),
+                1 if offered == GLASS => Some(scalar::<_, true, GLASS>(simd)),
+                1 => Some(scalar::<_, true, GENERAL>(simd)),
                 4 if offered == GLASS => Some(four::<_, GLASS>(simd)),
                 4 => Some(four::<_, GENERAL>(simd)),
                 8 => Some(eight::<_, GENERAL>(simd)),
@@ -103,11 +109,11 @@ fn within(needed: u32, offered: u32) -> bool {
     needed & !offered == 0
 }
 
-fn scalar<S: Simd, const FUSED: bool>(simd: S) -> Kernel<f32> {
+fn scalar<S: Simd, const FUSED: bool, const PARTS: u32>(simd: S) -> Kernel<f32> {
     Box::new(move |prepared, work| {
         simd.vectorize(
             #[inline(always)]
-            || trace::<_, GENERAL>(Scalar::<FUSED>, prepared, work),
+            || trace::<_, PARTS>(Scalar::<FUSED>, prepared, work),
         )
     })
 }

@@ -167,6 +167,14 @@ impl Unsigned for Word {
     }
 }
 
+/// Rounds to the nearest integer, ties to even; any integer where the result is not within `u32`. The lowest bits of the
+/// sum are the integer: two instructions, where a cast, which saturates, takes six.
+#[inline(always)]
+fn nearest_integer(x: f64) -> u32 {
+    const UNIT_IN_THE_LAST_PLACE_IS_1: f64 = 6_755_399_441_055_744.0;
+    (x + UNIT_IN_THE_LAST_PLACE_IS_1).to_bits() as u32
+}
+
 macro_rules! scalar_lanes {
     ($real:ident, $float:ty, $number:ident, $bits:ident, $signed:ident) => {
         type Real = $real;
@@ -226,7 +234,7 @@ macro_rules! scalar_lanes {
         }
         #[inline(always)]
         fn fixed_point(self, f: Self::F) -> Word {
-            Word(f.0.round_ties_even() as i32 as u32)
+            Word(nearest_integer(f64::from(f.0)))
         }
         #[inline(always)]
         fn gather(self, records: &[RecordColumns<$real>], indices: &WideU, group: usize) -> [Self::F; 4] {

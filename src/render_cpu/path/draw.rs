@@ -1,10 +1,10 @@
 //! The random numbers of a path.
 
-use super::Packet;
+use super::{Packet, is_small};
 use crate::kernel::parts;
 use crate::prepared::PreparedScene;
 use crate::render_cpu::broadcast::BroadcastScene;
-use crate::render_cpu::lanes::{Lanes, unit_float};
+use crate::render_cpu::lanes::{Lanes, is_idle, unit_float};
 use crate::render_cpu::rng::numbers;
 
 /// The numbers for a packet's next rays.
@@ -32,7 +32,9 @@ pub(super) fn draw<L: Lanes, const PARTS: u32>(
     let [first, second] = numbers(l, settings, pixel, packet.counter, packet.stream, with_lens);
     let unit = |u: [L::U; 2]| [unit_float(l, u[0]), unit_float(l, u[1])];
     let pair = unit(first);
-    let (sine, cosine) = l.sin_cos_turns(pair[1]);
+    // A ray from a pinhole needs no direction on the sphere.
+    let needs_direction = !is_small::<L, PARTS>() || with_lens || !is_idle::<L>(!packet.ended);
+    let (sine, cosine) = if needs_direction { l.sin_cos_turns(pair[1]) } else { (pair[0], pair[0]) };
     let jitter = if with_lens { unit(second) } else { packet.draw.jitter };
     Draw { pair, sine, cosine, jitter }
 }
