@@ -36,7 +36,7 @@ use send::send_on;
 /// nothing.
 const PACKETS: usize = 4;
 
-/// Packets that take turns where a packet is a single ray and the kernel is small. On the same processor, one takes 1.25
+/// Packets that take turns where a packet is a single ray and the kernel is small. On the same processor, one takes 1.3
 /// times as long, and three 1.05 times.
 const SINGLE_RAYS: usize = 2;
 
