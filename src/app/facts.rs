@@ -7,7 +7,7 @@ use super::model::document::Document;
 use super::model::further::Further;
 use super::model::show::Show;
 use super::model::slots::SlotNumber;
-use super::model::view::{Mode, With};
+use super::model::view::Mode;
 use crate::progressive::{Phase, Status};
 use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
@@ -70,45 +70,6 @@ impl Facts {
     pub fn no_rays(&self) -> Option<&'static str> {
         (self.document().rules().shading == Shading::ImageGradient)
             .then_some("This stage traces no rays: its picture depends only on the position of each pixel")
-    }
-
-    /// Whether the command's setting is active now.
-    pub fn is_on(&self, command: Command) -> bool {
-        let Model { view, remembered, document, .. } = &self.model;
-        match command {
-            Command::Show(show) => view.show() == show && (show != Show::Picture || view.mode().is_none()),
-            Command::Wipe => view.mode() == Some(Mode::Wipe) && view.with() == With::Stage,
-            Command::BookArithmetic => view.mode().is_some() && view.with() == With::Book,
-            Command::WipeDifference => {
-                view.mode() == Some(Mode::Difference) && view.compared_slot().is_none()
-            }
-            Command::Slot(SlotCommand::Wipe) => {
-                view.mode() == Some(Mode::Wipe) && view.compared_slot().is_some()
-            }
-            Command::Slot(SlotCommand::Difference) => {
-                view.mode() == Some(Mode::Difference) && view.compared_slot().is_some()
-            }
-            Command::Slot(SlotCommand::Look(number)) => view.slots.looked() == Some(number),
-            Command::Slot(SlotCommand::LookLive) => view.slots.is_used() && view.slots.looked().is_none(),
-            Command::Crop => view.crop.is_some(),
-            Command::Controls => remembered.has_controls,
-            Command::Info => remembered.has_info,
-            Command::Plot => remembered.has_plot,
-            Command::Packet => remembered.has_packet,
-            Command::Code => remembered.has_code,
-            Command::Gizmo => remembered.has_gizmo,
-            Command::Flights => remembered.has_flights,
-            Command::FirstSteps => self.model.has_first_steps,
-            Command::FullScreen => self.model.is_full_screen,
-            Command::Present => self.model.presentation.is_some(),
-            Command::ShowMe => self.has_sight,
-            Command::Theme(theme) => remembered.theme == theme,
-            Command::Device(device) => remembered.device == device,
-            Command::Size(sizing) => !document.has_own_size && remembered.sizing == sizing,
-            Command::Stage(stage) => document.stage() == Some(stage),
-            Command::Extreme(case) => document.case() == Some(case),
-            _ => false,
-        }
     }
 
     /// Whether menus list the command: those for empty slots are left out.
@@ -234,6 +195,11 @@ impl Facts {
             Command::CopyPlot | Command::SavePlot if self.status.history.is_empty() => {
                 no("No error has been estimated yet")
             }
+            Command::ReferenceSize => match &self.model.view.reference {
+                None => no("Load a reference film first (File > Load reference film)"),
+                Some(film) => ([film.width, film.height] == document.size())
+                    .then(|| "The picture has the reference's size already".to_owned()),
+            },
             Command::Slot(command) => self.useless_slot(command),
             Command::CopyCrop | Command::SaveCrop if self.model.view.crop.flatten().is_none() => {
                 no("No part of the picture is marked; choose Crop and drag over the picture first")
@@ -273,32 +239,39 @@ impl Facts {
             SlotCommand::Keep | SlotCommand::KeepIn(_) | SlotCommand::Look(_) | SlotCommand::LookLive => None,
             _ => match slots.chosen() {
                 None => no("No picture is kept; press M to keep this one"),
-                Some(number) if matches!(command, SlotCommand::Wipe | SlotCommand::Difference) => {
-                    self.incomparable_slot(number)
+                Some(number) if command == SlotCommand::Difference => self.slot_of_other_size(number),
+                Some(number) if command == SlotCommand::TakeSize => {
+                    let size = slots.get(number).map(|slot| slot.kept.size());
+                    (size == Some(self.document().size()))
+                        .then(|| format!("The picture has the size of slot {number} already"))
                 }
                 Some(number) if command == SlotCommand::OnlyNoise => {
                     let is_live = slots.looked().is_none_or(|looked| looked == number);
                     let is_early = is_live && self.status.samples_per_pixel == 0;
                     let early = || "Nothing has been traced yet; try again in a moment".to_owned();
-                    self.incomparable_slot(number).or_else(|| is_early.then(early))
+                    self.slot_of_other_size(number).or_else(|| is_early.then(early))
                 }
                 Some(_) => None,
             },
         }
     }
 
-    /// Why the picture on the screen cannot be compared with a slot's, if so. A slot that is shown itself is compared with
+    /// Why the picture on the screen cannot be subtracted from a slot's, if so. A slot that is shown itself is compared with
     /// the live picture.
-    pub fn incomparable_slot(&self, number: SlotNumber) -> Option<String> {
+    pub fn slot_of_other_size(&self, number: SlotNumber) -> Option<String> {
         let slots = &self.model.view.slots;
-        let is_own = slots.looked() == Some(number);
-        let mine = if is_own { self.document() } else { self.shown() }.size();
+        let other = slots.looked().filter(|looked| *looked != number);
+        let mine = if other.is_some() { self.shown() } else { self.document() }.size();
         let theirs = slots.get(number)?.kept.size();
         (mine != theirs).then(|| {
             let ([a, b], [x, y]) = (theirs, mine);
+            let name = other.map_or_else(|| "the picture".to_owned(), |other| format!("slot {other}"));
+            let to_do = match other {
+                Some(_) => "a wipe scales one to the other",
+                None => "choose Slots > Set the picture to the slot's size, or a wipe, which scales it",
+            };
             format!(
-                "Slot {number} is {a}x{b} and the picture is {x}x{y}; set the picture to that size, or only look at \
-                 the slot (Alt+{number})"
+                "Slot {number} is {a}x{b} and {name} is {x}x{y}, so a difference would show the scaling; {to_do}"
             )
         })
     }
@@ -312,8 +285,11 @@ impl Facts {
             Show::Difference => match &self.model.view.reference {
                 None => no("Load a reference film first (File > Load reference film)"),
                 Some(film) if (film.width, film.height) != (settings.width, settings.height) => {
-                    let [width, height] = [film.width, film.height];
-                    Some(format!("The reference film is {width}x{height}; set the picture to that size"))
+                    Some(format!(
+                        "The reference film is {}x{} and the picture is {}x{}, so a difference would show the scaling; \
+                         choose File > Set the picture to the reference's size",
+                        film.width, film.height, settings.width, settings.height
+                    ))
                 }
                 Some(_) => None,
             },

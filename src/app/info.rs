@@ -5,6 +5,7 @@ use super::facts::Facts;
 use super::menu::item;
 use super::model::document::Document;
 use super::model::show::Show;
+use super::tips::{self, Side};
 use super::widgets::{About, control};
 use crate::stages::Stage;
 use crate::stress::Case;
@@ -34,8 +35,9 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
     ui.add(egui::Label::new(RichText::new(stage.title).heading()).wrap());
     changed_ui(ui, facts, commands);
     let link = format!("{} {}", stage.section, stage.section_title);
-    ui.add(egui::Hyperlink::from_label_and_url(link, stage.url()).open_in_new_tab(true))
-        .on_hover_text(format!("Opens this section of the book in the web browser:\n{}", stage.url()));
+    let link = ui.add(egui::Hyperlink::from_label_and_url(link, stage.url()).open_in_new_tab(true));
+    let help = format!("Opens this section of the book in the web browser:\n{}", stage.url());
+    tips::beside(ui, link, &help);
     for (heading, text) in
         [("What is new", stage.what_is_new), ("Why", stage.why), ("Look for", stage.look_for)]
     {
@@ -49,7 +51,8 @@ fn stage_ui(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Comman
     ui.horizontal_wrapped(|ui| {
         for (name, command) in [("Code", Command::Code), ("Companion", Command::Companion)] {
             let button = egui::Button::new(name).selected(facts.is_on(command));
-            if ui.add(button).on_hover_text(command.help()).clicked() {
+            let response = ui.add(button);
+            if tips::beside(ui, response, command.help()).clicked() {
                 commands.push(command);
             }
         }
@@ -63,11 +66,9 @@ fn show_me(ui: &mut Ui, stage: &Stage, facts: &Facts, commands: &mut Vec<Command
     let reason = facts.disabled_reason(command);
     let keys = command.keys(ui.ctx()).unwrap_or_default();
     let button = egui::Button::new("Show me").selected(facts.has_sight);
-    let response = ui
-        .add_enabled(reason.is_none(), button)
-        .on_hover_text(format!("{} ({keys})", command.help()))
-        .on_disabled_hover_text(reason.unwrap_or_default());
-    if response.clicked() {
+    let response = ui.add_enabled(reason.is_none(), button);
+    let help = format!("{} ({keys})", command.help());
+    if tips::explain(ui, response, Side::Beside, &help, reason.as_deref()).clicked() {
         commands.push(command);
     }
     if facts.has_sight {
@@ -92,10 +93,11 @@ fn changed_ui(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
         return;
     }
     ui.horizontal(|ui| {
-        ui.label(RichText::new("changed").color(ui.visuals().warn_fg_color))
-            .on_hover_text("The spheres are not those of the stage");
+        let label = ui.label(RichText::new("changed").color(ui.visuals().warn_fg_color));
+        tips::beside(ui, label, "The spheres are not those of the stage");
         let button = egui::Button::new("Reset").small();
-        let response = ui.add(button).on_hover_text(Command::ResetSpheres.help());
+        let response = ui.add(button);
+        let response = tips::beside(ui, response, Command::ResetSpheres.help());
         if response.accessible_name("Reset the scene").clicked() {
             commands.push(Command::ResetSpheres);
         }
@@ -119,8 +121,8 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
     ui.add_space(10.0);
     let command = Command::BookArithmetic;
     let button = egui::Button::new(command.name()).selected(facts.is_on(command));
-    let response = ui.add(button).on_hover_text(command.help());
-    if response.clicked() {
+    let response = ui.add(button);
+    if tips::beside(ui, response, command.help()).clicked() {
         commands.push(command);
     }
 }
@@ -167,14 +169,14 @@ fn compare_ui(
     ui.horizontal_wrapped(|ui| {
         for (command, name) in [(Command::Wipe, "Wipe"), (Command::WipeDifference, "Difference")] {
             let is_on = facts.is_on(command);
-            let response = ui.add(egui::Button::new(name).selected(is_on)).on_hover_text(command.help());
-            if response.clicked() {
+            let response = ui.add(egui::Button::new(name).selected(is_on));
+            if tips::beside(ui, response, command.help()).clicked() {
                 commands.push(command);
             }
         }
         if stage.pair.is_some() && stage.next().is_some_and(|next| Some(next.id) != stage.pair) {
-            ui.checkbox(is_with_next, "Next stage")
-                .on_hover_text("Compare with the next stage of the book instead of its pair");
+            let response = ui.checkbox(is_with_next, "Next stage");
+            tips::beside(ui, response, "Compare with the next stage of the book instead of its pair");
         }
     });
 }

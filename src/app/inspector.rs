@@ -29,6 +29,15 @@ pub struct Pixel {
     pub samples: u64,
 }
 
+/// What the picture that is compared with this one has at the pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OtherPixel {
+    /// Linear radiance.
+    pub mean: [f64; 3],
+    /// Its column and row, if that picture is scaled.
+    pub scaled: Option<[u32; 2]>,
+}
+
 /// The pixel under the pointer and what is known about it.
 #[derive(Default)]
 pub struct Inspector {
@@ -94,14 +103,14 @@ impl Inspector {
         });
     }
 
-    /// Draws the panel. `layer` is the displayed layer and its value at the pixel; `other` is the pixel's value in the
-    /// picture that is subtracted from this one.
+    /// Draws the panel. `layer` is the displayed layer and its value at the pixel; `other` is what is at that place in the
+    /// picture that is compared with this one.
     pub fn ui(
         &self,
         ui: &mut Ui,
         document: &Document,
         layer: Option<(Layer, [f64; 3])>,
-        other: Option<[f64; 3]>,
+        other: Option<OtherPixel>,
     ) {
         ui.label(RichText::new("Pixel").strong());
         match &self.pixel {
@@ -124,7 +133,7 @@ fn pixel_ui(
     document: &Document,
     pixel: &Pixel,
     layer: Option<(Layer, [f64; 3])>,
-    other: Option<[f64; 3]>,
+    other: Option<OtherPixel>,
     ui: &mut Ui,
 ) {
     let [x, y] = pixel.at;
@@ -148,8 +157,20 @@ fn pixel_ui(
         match other {
             Some(other) => {
                 row(ui, "A, this", decimals(pixel.mean));
-                row(ui, "B, other", decimals(other));
-                row(ui, "A − B", [0, 1, 2].map(|i| format!("{:+.4}", pixel.mean[i] - other[i])));
+                row(ui, "B, other", decimals(other.mean));
+                match other.scaled {
+                    // A difference of scaled pictures would show the scaling.
+                    Some([x, y]) => {
+                        name(ui, "B at");
+                        ui.monospace(format!("{x}"));
+                        ui.monospace(format!("{y}"));
+                        ui.end_row();
+                    }
+                    None => {
+                        let difference = [0, 1, 2].map(|i| pixel.mean[i] - other.mean[i]);
+                        row(ui, "A − B", difference.map(|value| format!("{value:+.4}")));
+                    }
+                }
             }
             None => row(ui, "linear", decimals(pixel.mean)),
         }
@@ -203,7 +224,8 @@ mod tests {
     fn a_difference_tells_both_sides() {
         let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
         let pixel = Pixel { at: [0, 0], mean: [0.5, 0.25, 1.0], error: None, bytes: [0; 3], samples: 1 };
-        let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some([0.25, 0.5, 1.0]), ui));
+        let other = OtherPixel { mean: [0.25, 0.5, 1.0], scaled: None };
+        let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, None, Some(other), ui));
         let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
         let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
         for text in ["A, this", "B, other", "A − B", "0.50000", "0.25000", "+0.2500", "-0.2500", "+0.0000"]

@@ -1,14 +1,18 @@
 //! Where everything is drawn in a frame: panels, the viewport, what lies over it, and dialogs.
 
 use super::facts::Facts;
+use super::inspector::OtherPixel;
 use super::model::Model;
+use super::model::document::Document;
 use super::model::first_steps::Step;
+use super::model::fitted::Fitted;
 use super::model::view::{Mode, ViewState};
 use super::places::Place;
 use super::present::{self, Lens, Seen};
-use super::viewport::{Handle, Pictures};
+use super::second::Second;
+use super::viewport::{Handle, Pictures, SecondPicture};
 use super::window::Window;
-use super::{info, menu, panels, plot, status_bar, theme, widgets};
+use super::{info, panels, plot, status_bar, theme, tips, title_bar, widgets};
 use eframe::egui::{self, Rect};
 
 /// Windows narrower than this many points have no room for two panels beside the picture.
@@ -52,8 +56,8 @@ impl Window {
             tone.ui(ui, view, &facts);
             let value =
                 inspector.pixel().and_then(|pixel| layers.value_at(pixel.at)).filter(|_| layer.is_some());
-            let other = view.subtracted(second.film()).zip(inspector.pixel());
-            let other = other.and_then(|(film, pixel)| film.mean(pixel.at));
+            let other =
+                inspector.pixel().and_then(|pixel| other_pixel(view, second, facts.document(), pixel.at));
             inspector.ui(ui, facts.shown(), value, other);
             paths.ui(ui, facts.document());
         };
@@ -62,7 +66,7 @@ impl Window {
         }
         if facts.model.has_panels() {
             Place::Menu.begin(ui);
-            menu::ui(ui, is_narrow, thumbnails, &facts, commands);
+            title_bar::ui(ui, thumbnails, &facts, commands);
             status_bar::ui(ui, &facts);
             if view.slots.is_used() {
                 Place::Slots.begin(ui);
@@ -86,8 +90,10 @@ impl Window {
                 scrolling(ui, panel, |ui| {
                     let has_info_below = is_narrow && has.has_info;
                     let help = "The window has no room for it at the right; it follows the controls";
-                    let is_asked =
-                        has_info_below && ui.button("Stage and pixel: below").on_hover_text(help).clicked();
+                    let is_asked = has_info_below && {
+                        let response = ui.button("Stage and pixel: below");
+                        tips::beside(ui, response, help).clicked()
+                    };
                     panels::ui(
                         ui,
                         (document, selected),
@@ -129,6 +135,7 @@ impl Window {
             };
             let has_film = shown.is_some();
             let inside = surfaces.inside(document).filter(|_| kept.is_none());
+            let (fitted, size) = (view.wiped(document).map(|(_, fitted)| fitted), facts.shown().size());
             let compared = view.compared_slot().map(|number| view.slots.title(number));
             let pictures = Pictures {
                 main: match layer.and_then(|layer| layers.shown_mut(layer)) {
@@ -136,9 +143,11 @@ impl Window {
                     None => shown.map(|shown| (&mut shown.texture, shown.divisor)),
                 },
                 has_film,
-                second: second.shown_mut().map(|shown| {
-                    let title = compared.unwrap_or_else(|| shown.document.title());
-                    (&mut shown.texture, shown.divisor, title)
+                second: second.shown_mut().map(|shown| SecondPicture {
+                    title: compared.unwrap_or_else(|| shown.document.title()),
+                    texture: &mut shown.texture,
+                    divisor: shown.divisor,
+                    fitted: fitted.unwrap_or(Fitted::new(size, size)),
                 }),
                 paths: kept.is_none().then_some(&*paths),
                 values,
@@ -206,6 +215,8 @@ impl Window {
         let share = (pointer.x - picture.left()) / picture.width();
         let is_other =
             view.mode() == Some(Mode::Wipe) && (share < view.divider) == view.is_other_earlier(document);
+        // The other picture may be scaled.
+        let wiped = view.wiped(document).filter(|_| is_other).map(|(_, fitted)| fitted);
         let mean = self.inspector.pixel().filter(|pixel| pixel.at == at && !is_other).map(|pixel| pixel.mean);
         let layer = view.show().layer();
         let (texture, divisor) = match layer.and_then(|layer| self.layers.shown_mut(layer)) {
@@ -220,10 +231,22 @@ impl Window {
                 (&shown.texture, shown.divisor)
             }
         };
+        let Some(at) = wiped.map_or(Some(at), |fitted| fitted.pixel(at)) else { return };
         let seen = Seen::around(at.map(|along| along / divisor), mean, |at| texture.colour(at));
         let seen = Seen { at, ..seen };
         Lens { room, picture, pointer, seen: &seen }.paint(ui);
     }
+}
+
+/// What the picture that the shown one is compared with has at the place of a pixel.
+fn other_pixel(view: &ViewState, second: &Second, live: &Document, at: [u32; 2]) -> Option<OtherPixel> {
+    if let Some((kept, fitted)) = view.wiped(live) {
+        let place = fitted.pixel(at)?;
+        let scaled = (!fitted.is_exact()).then_some(place);
+        return Some(OtherPixel { mean: kept.mean(place)?, scaled });
+    }
+    let mean = view.subtracted(second.film())?.mean(at)?;
+    Some(OtherPixel { mean, scaled: None })
 }
 
 /// Which slot is shown or subtracted. The titles of a wipe say it themselves.

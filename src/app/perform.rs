@@ -3,7 +3,6 @@
 use super::command::Command;
 use super::dialogs::{Dialog, Palette, PathBox, Purpose};
 use super::facts::neighbour;
-use super::menu;
 use super::model::Model;
 use super::model::device::{self, Device};
 use super::model::first_steps::Step;
@@ -15,6 +14,7 @@ use super::model::view::{Mode, With};
 use super::places;
 use super::plot;
 use super::theme;
+use super::title_bar;
 use super::window::Window;
 use crate::gallery::Figure;
 use crate::output::OutputFormat;
@@ -81,8 +81,10 @@ impl Window {
             Command::ViewFrom(_) | Command::Bookmark(_) | Command::FlyBookmarks => {
                 self.perform_flight(context, command);
             }
-            Command::Flights => self.model.remembered.has_flights ^= true,
-            Command::Gizmo => self.model.remembered.has_gizmo ^= true,
+            Command::Flights | Command::Gizmo => self.switch(command),
+            Command::ReferenceSize => {
+                self.take_size(self.model.view.reference.as_ref().map(|film| [film.width, film.height]))
+            }
             Command::AddSphere
             | Command::DuplicateSphere
             | Command::DeleteSphere
@@ -187,7 +189,7 @@ impl Window {
             Command::Companion => self.open_companion(context),
             Command::Stages => {
                 self.model.remembered.has_panels = true;
-                menu::open_stage_list(context);
+                title_bar::open_stage_list(context);
             }
             Command::ShowMe => self.toggle_sight(),
             Command::Present => self.toggle_presentation(context),
@@ -246,6 +248,32 @@ impl Window {
         // While all panels are hidden, show the requested one.
         *panel = !*panel || !remembered.has_panels;
         remembered.has_panels = true;
+    }
+
+    /// Turns a setting on or off, and says so if that is not seen.
+    fn switch(&mut self, command: Command) {
+        let remembered = &mut self.model.remembered;
+        let is_seen = match command {
+            Command::Gizmo => {
+                remembered.has_gizmo = !remembered.has_gizmo;
+                self.model.has_panels()
+            }
+            _ => {
+                remembered.has_flights = !remembered.has_flights;
+                false
+            }
+        };
+        if !is_seen {
+            let is_on = self.facts().is_on(command);
+            self.toasts.switched(&command.name(), is_on);
+        }
+    }
+
+    /// Gives the picture this size.
+    pub(super) fn take_size(&mut self, size: Option<[u32; 2]>) {
+        if let Some(size) = size {
+            self.model.document.give_size(size);
+        }
     }
 
     /// Shows the card with the first steps, or closes it for good.

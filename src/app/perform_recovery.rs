@@ -2,6 +2,7 @@
 
 use super::changes::Changes;
 use super::model::document::Document;
+use super::model::framing::Framing;
 use super::model::origin::Origin;
 use super::model::session::{Restored, Session};
 use super::model::view::ViewState;
@@ -54,10 +55,14 @@ impl Window {
     }
 
     fn show_restored(&mut self, restored: Restored) {
-        let Restored { document, view, is_paused, note } = restored;
+        let Restored { document, view, framing, is_paused, note } = restored;
         self.seconds_before = Some(0.0);
         self.show_document(document);
         self.show_view(view);
+        match framing {
+            Some(framing) => self.viewport.placement.show_as(framing),
+            None => self.viewport.placement.fit(),
+        }
         self.model.is_paused = is_paused;
         if let Some(note) = note {
             self.toasts.bad(note);
@@ -74,6 +79,7 @@ impl Window {
     /// Shows the usual first picture.
     pub(super) fn start_fresh(&mut self) {
         self.show_view(ViewState::default());
+        self.viewport.placement.fit();
         if std::mem::take(&mut self.model.is_paused) {
             self.main.resume();
             self.second.resume();
@@ -221,7 +227,8 @@ impl Window {
         if is_settled && resuming.is_none() && autosave.saved().is_some_and(is_behind) {
             self.recovery.resume(context, document);
         }
-        let shown = (document, &self.model.view);
+        let framing = self.framing();
+        let shown = (document, &self.model.view, framing);
         if let Some(reason) = self.recovery.note(context, shown, self.model.is_paused) {
             self.toasts.bad(format!("What this window shows is not kept: {reason}"));
         }
@@ -245,7 +252,8 @@ impl Window {
             }
             None => self.leave_film(&files, &document),
         };
-        let session = Session::of(&document, &self.model.view, self.model.is_paused);
+        let framing = self.framing();
+        let session = Session::of(&document, &self.model.view, self.model.is_paused).with_framing(framing);
         if document.job(1).is_ok()
             && let Err(reason) = files.write_note(&session.with_film(has_film))
         {
@@ -254,6 +262,12 @@ impl Window {
         if let Err(error) = files.leave_session() {
             crate::console::note(&format!("weekender: what the window showed is not kept: {error}"));
         }
+    }
+
+    /// Zoom and pan of the live picture, if they do not follow from the viewport.
+    fn framing(&self) -> Option<Framing> {
+        let is_live = self.model.view.slots.looked().is_none();
+        self.viewport.placement.framing(self.document().size()).filter(|_| is_live)
     }
 
     /// Writes the film of `document` if tracing it took long, and deletes that of another picture.

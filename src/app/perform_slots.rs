@@ -32,6 +32,10 @@ impl Window {
             (SlotCommand::Wipe, Some(number)) => view.toggle(Mode::Wipe, With::Slot(number)),
             (SlotCommand::Difference, Some(number)) => view.toggle(Mode::Difference, With::Slot(number)),
             (SlotCommand::OnlyNoise, Some(number)) => self.ask_only_noise(context, number),
+            (SlotCommand::TakeSize, Some(number)) => {
+                let size = view.slots.get(number).map(|slot| slot.kept.size());
+                self.take_size(size);
+            }
             (SlotCommand::Open, Some(number)) => {
                 if let Some(slot) = view.slots.get(number) {
                     self.slot_actions.reopen(context, &slot.kept);
@@ -146,11 +150,12 @@ impl Window {
         self.slot_actions.verdict.ask(context, &slot.kept, &subject, names);
     }
 
-    /// Ends the comparison with a slot if it has become impossible, and says why.
+    /// Ends the difference from a slot if it has become impossible, and says why.
     pub(super) fn leave_useless_comparison(&mut self) {
-        let Some(number) = self.model.view.compared_slot() else { return };
-        if let Some(reason) = self.facts().incomparable_slot(number) {
-            self.toasts.good(format!("No comparison: {}{}", reason[..1].to_lowercase(), &reason[1..]));
+        let view = &self.model.view;
+        let compared = view.compared_slot().filter(|_| view.mode() == Some(Mode::Difference));
+        if let Some(reason) = compared.and_then(|number| self.facts().slot_of_other_size(number)) {
+            self.toasts.good(format!("No difference: {}{}", reason[..1].to_lowercase(), &reason[1..]));
             self.model.view.end_comparison();
         }
     }

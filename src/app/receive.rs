@@ -111,19 +111,17 @@ impl Window {
 
     fn take_reference(&mut self, path: PathBuf, reference: ReferenceMeans) {
         self.remember_directory(&path);
-        let settings = self.document().settings;
-        if (reference.width, reference.height) == (settings.width, settings.height) {
-            self.model.view.reference = Some(Arc::new(reference));
+        let (mine, theirs) = (self.document().size(), [reference.width, reference.height]);
+        self.model.view.reference = Some(Arc::new(reference));
+        if mine == theirs {
             self.send(Command::Show(Show::Difference));
             self.toasts.good(format!("Showing the difference from {}", path.display()));
         } else {
+            let ([a, b], [x, y]) = (theirs, mine);
             self.toasts.bad(format!(
-                "Reference not loaded: {} is {}x{} and the picture is {}x{}; set the picture to that size",
-                path.display(),
-                reference.width,
-                reference.height,
-                settings.width,
-                settings.height
+                "No difference yet: {} is {a}x{b} and the picture is {x}x{y}; choose File > Set the picture to the \
+                 reference's size, then View > Show difference to reference",
+                path.display()
             ));
         }
     }

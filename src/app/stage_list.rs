@@ -4,10 +4,11 @@ use super::command::Command;
 use super::facts::Facts;
 use super::theme;
 use super::thumbnails::{SIZE, Thumbnails};
+use super::tips;
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align, EventFilter, FontId, Id, Key, Modifiers, Rect, RectAlign, Response, RichText, Sense,
-    TextStyle, Tooltip, Ui, WidgetInfo, pos2, vec2,
+    self, Align, EventFilter, FontId, Id, Key, Modifiers, Rect, Response, RichText, Sense, TextStyle, Ui,
+    WidgetInfo, pos2, vec2,
 };
 
 /// The width of the list in points.
@@ -95,12 +96,7 @@ fn row(ui: &mut Ui, id: Id, stage: &'static Stage, is_here: bool, thumbnails: &m
     let below = top + vec2(0.0, section.size().y);
     painter.galley(top, section, weak);
     painter.galley(below, title, text);
-    // Beside the list, so that it covers no other row.
-    let row = Rect::from_x_y_ranges(ui.clip_rect().expand(MARGIN).x_range(), rect.y_range());
-    let mut tip = Tooltip::for_enabled(&response);
-    tip.popup = tip.popup.anchor(row).align(RectAlign::RIGHT_START);
-    tip.show(|ui| ui.label(stage.what_is_new));
-    response
+    tips::explain_in_column(response, rect.x_range(), stage.what_is_new, None)
 }
 
 /// Whether this area was hidden a moment ago. Its first passes only measure its size.

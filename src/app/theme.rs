@@ -30,7 +30,7 @@ const DARK: Palette = Palette {
     hovered: Color32::from_rgb(54, 58, 64),
     pressed: Color32::from_rgb(66, 71, 79),
     line: Color32::from_rgb(48, 51, 56),
-    weak: Color32::from_rgb(148, 154, 163),
+    weak: Color32::from_rgb(160, 166, 175),
     text: Color32::from_rgb(205, 209, 214),
     strong: Color32::from_rgb(242, 244, 246),
     accent: Color32::from_rgb(112, 176, 240),
@@ -46,12 +46,12 @@ const LIGHT: Palette = Palette {
     hovered: Color32::from_rgb(218, 221, 223),
     pressed: Color32::from_rgb(204, 209, 213),
     line: Color32::from_rgb(214, 215, 215),
-    weak: Color32::from_rgb(96, 101, 108),
+    weak: Color32::from_rgb(88, 93, 100),
     text: Color32::from_rgb(48, 52, 57),
     strong: Color32::from_rgb(16, 18, 21),
     accent: Color32::from_rgb(28, 104, 178),
     on_accent: Color32::WHITE,
-    warn: Color32::from_rgb(150, 98, 0),
+    warn: Color32::from_rgb(138, 90, 0),
     bad: Color32::from_rgb(184, 38, 30),
 };
 
@@ -182,4 +182,43 @@ pub fn icon() -> Arc<egui::IconData> {
 /// rendering, while a fill costs as much as the whole content.
 pub fn panel(inner_margin: egui::Margin) -> egui::Frame {
     egui::Frame::new().inner_margin(inner_margin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The contrast of two colours by WCAG 2, 1 to 21.
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let luminance = |colour: Color32| {
+            let linear = |byte: u8| {
+                let value = f64::from(byte) / 255.0;
+                if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+            };
+            0.2126 * linear(colour.r()) + 0.7152 * linear(colour.g()) + 0.0722 * linear(colour.b())
+        };
+        let (a, b) = (luminance(a), luminance(b));
+        (a.max(b) + 0.05) / (a.min(b) + 0.05)
+    }
+
+    #[test]
+    fn text_is_readable_on_every_background() {
+        const LEAST: f64 = 4.5;
+        for palette in [&DARK, &LIGHT] {
+            let Palette { panel, surround, raised, hovered, weak, text, strong, .. } = *palette;
+            for colour in [weak, text, strong] {
+                for background in [panel, surround, raised, hovered] {
+                    let found = contrast(colour, background);
+                    assert!(found >= LEAST, "{colour:?} on {background:?}: {found:.2}");
+                }
+            }
+            for colour in [palette.accent, palette.warn, palette.bad] {
+                for background in [panel, raised] {
+                    let found = contrast(colour, background);
+                    assert!(found >= LEAST, "{colour:?} on {background:?}: {found:.2}");
+                }
+            }
+            assert!(contrast(palette.on_accent, palette.accent) >= LEAST);
+        }
+    }
 }

@@ -45,6 +45,13 @@ impl Toasts {
         self.add(text, Tone::Bad);
     }
 
+    /// Says that a setting is on or off now, in place of an earlier word about it.
+    pub fn switched(&mut self, name: &str, is_on: bool) {
+        let words = |is_on| format!("{name} {}", if is_on { "on" } else { "off" });
+        self.0.retain(|toast| toast.text != words(!is_on));
+        self.good(words(is_on));
+    }
+
     fn add(&mut self, text: String, tone: Tone) {
         self.0.retain(|toast| toast.text != text);
         self.0.push(Toast { text, tone, since: Instant::now() });

@@ -7,7 +7,8 @@ use super::model::show::Show;
 use super::model::tone::Tone;
 use super::model::view::{Mode, ViewState};
 use super::theme;
-use super::widgets::{About, compact, number, slider, under_name};
+use super::tips;
+use super::widgets::{About, compact, explained, number, slider, under_name};
 use crate::film::Histogram;
 use eframe::egui::{
     self, Align2, Color32, Pos2, Rect, RichText, Sense, Shape, Stroke, TextStyle, Ui, WidgetInfo, pos2, vec2,
@@ -87,7 +88,7 @@ impl ToneUi {
                     ui.label(RichText::new(text).color(ui.visuals().weak_text_color()));
                 }
             });
-        header.header_response.on_hover_text("How often each brightness occurs, red, green and blue");
+        tips::beside(ui, header.header_response, "How often each brightness occurs, red, green and blue");
         self.is_open = header.openness > 0.0;
         ui.add_space(4.0);
     }
@@ -123,7 +124,7 @@ fn range_ui(ui: &mut Ui, tone: &mut Tone) {
             let high = number(ui, place, high, Tone::RANGES, |drag| drag.speed(0.1).max_decimals(1));
             ui.label("stops");
             tone.mend_range(before);
-            low.union(high).on_hover_text(about.help)
+            explained(ui, low.union(high), about)
         })
         .inner
     });
@@ -162,9 +163,8 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
         let at = pos2(across(f64::from(stops)), area.bottom() + 1.0);
         painter.text(at, Align2::CENTER_TOP, text, font.clone(), ui.visuals().weak_text_color());
     }
-    response.on_hover_text(
-        "Linear radiance in stops: each step to the right is twice the light. Heights are square roots of counts. \
-         What is right of the dashed line is shown as white",
-    );
+    let help = "Linear radiance in stops: each step to the right is twice the light. Heights are square roots of counts. \
+         What is right of the dashed line is shown as white";
+    tips::beside(ui, response, help);
     ui.add(egui::Label::new(RichText::new(words).small().color(ui.visuals().weak_text_color())).wrap());
 }

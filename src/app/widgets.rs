@@ -1,8 +1,8 @@
 //! Controls for panels. Each has a name and a tooltip; a disabled control also shows the reason.
 
+use super::tips::{self, Side};
 use eframe::egui::{
-    self, DragValue, Rect, RectAlign, Response, RichText, Sense, Slider, SliderClamping, Tooltip, Ui,
-    UiBuilder, Vec2, vec2,
+    self, DragValue, Response, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, Vec2, vec2,
 };
 use glam::DVec3;
 use std::cell::Cell;
@@ -54,19 +54,9 @@ pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Re
     response
 }
 
-/// Adds the tooltip, and the reason if the control is disabled. It is shown beside the panel, so that it does not cover
-/// the next control.
+/// Adds the tooltip beside the panel, with the reason if the control is disabled.
 pub fn explained(ui: &Ui, response: Response, about: About<'_>) -> Response {
-    let row = Rect::from_x_y_ranges(ui.clip_rect().x_range(), response.rect.y_range());
-    let beside = |mut tip: Tooltip<'static>, text: String| {
-        tip.popup = tip.popup.anchor(row).align(RectAlign::RIGHT_START);
-        tip.show(|ui| ui.label(text));
-    };
-    beside(Tooltip::for_enabled(&response), about.help.to_owned());
-    if let Some(reason) = about.disabled_reason {
-        beside(Tooltip::for_disabled(&response), format!("{}\n\n{reason}", about.help));
-    }
-    response
+    tips::explain(ui, response, Side::Beside, about.help, about.disabled_reason)
 }
 
 /// A slider with its number. The slider covers the usual values `track`; the number takes any within `limits`.

@@ -141,8 +141,8 @@ fn is_done(command: Command, before: &weekender::app::Document, harness: &mut Ha
         Command::NextPanel | Command::GoOn => true,
         // See recent.rs and first_steps.rs.
         Command::CopyPicture | Command::Recent(_) | Command::FirstSteps => true,
-        // See slots.rs and crop.rs.
-        Command::Slot(_) => true,
+        // See slots.rs, sizes.rs and crop.rs.
+        Command::Slot(_) | Command::ReferenceSize => true,
         Command::Crop | Command::CopyCrop | Command::SaveCrop => true,
         // See tone.rs.
         Command::Brighter | Command::Darker | Command::NoExposure => true,

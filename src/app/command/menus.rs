@@ -17,6 +17,7 @@ impl Command {
             | Command::SaveCrop
             | Command::CopyCommand
             | Command::LoadReference
+            | Command::ReferenceSize
             | Command::CopyPlot
             | Command::SavePlot
             | Command::Quit => Group::File,

@@ -44,6 +44,8 @@ pub enum Command {
     CopyCommand,
     /// Load a film to compare with.
     LoadReference,
+    /// Give the picture the size of the film to compare with.
+    ReferenceSize,
     /// Copy the plot's points to the clipboard.
     CopyPlot,
     /// Save the plot's points.
@@ -192,6 +194,7 @@ impl Command {
             SaveCrop,
             CopyCommand,
             LoadReference,
+            ReferenceSize,
             CopyPlot,
             SavePlot,
             Quit,

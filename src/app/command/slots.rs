@@ -23,6 +23,8 @@ pub enum SlotCommand {
     Difference,
     /// Say whether the picture and the chosen slot differ only by noise.
     OnlyNoise,
+    /// Give the picture the size of the chosen slot's.
+    TakeSize,
     /// Go on from the picture of the chosen slot.
     Open,
     /// Empty the chosen slot.
@@ -35,11 +37,12 @@ impl SlotCommand {
     /// All commands for slots, in the order of the menu.
     pub fn all() -> Vec<SlotCommand> {
         use SlotCommand::{
-            BringBack, Delete, Difference, Keep, KeepIn, Look, LookLive, OnlyNoise, Open, Swap, Wipe,
+            BringBack, Delete, Difference, Keep, KeepIn, Look, LookLive, OnlyNoise, Open, Swap, TakeSize,
+            Wipe,
         };
         let mut all = vec![Keep, Swap, LookLive];
         all.extend(SlotNumber::ALL.map(Look));
-        all.extend([Wipe, Difference, OnlyNoise, Open]);
+        all.extend([Wipe, Difference, OnlyNoise, TakeSize, Open]);
         all.extend(SlotNumber::ALL.map(KeepIn));
         all.extend([Delete, BringBack]);
         all
@@ -56,6 +59,7 @@ impl SlotCommand {
             SlotCommand::Wipe => "Wipe against the slot".into(),
             SlotCommand::Difference => "Difference from the slot".into(),
             SlotCommand::OnlyNoise => "Is it only noise?".into(),
+            SlotCommand::TakeSize => "Set the picture to the slot's size".into(),
             SlotCommand::Open => "Go on from the slot".into(),
             SlotCommand::Delete => "Delete the slot".into(),
             SlotCommand::BringBack => "Bring back the slot".into(),
@@ -82,6 +86,9 @@ impl SlotCommand {
                 "Test whether the shown picture and the chosen slot's differ by more than noise, as \
                  \"weekender compare\" does"
             }
+            SlotCommand::TakeSize => {
+                "Render the live picture at the size of the chosen slot's, so that they can be subtracted"
+            }
             SlotCommand::Open => {
                 "Restore the chosen slot's scene, camera, settings and samples; Undo returns"
             }
@@ -101,7 +108,7 @@ impl SlotCommand {
             SlotCommand::Wipe => shift(Key::C),
             SlotCommand::Difference => shift(Key::X),
             SlotCommand::OnlyNoise => shift(Key::N),
-            SlotCommand::Open | SlotCommand::Delete | SlotCommand::BringBack => None,
+            SlotCommand::TakeSize | SlotCommand::Open | SlotCommand::Delete | SlotCommand::BringBack => None,
         }
     }
 }

@@ -21,6 +21,7 @@ impl Command {
             Command::SaveCrop => "Save the crop as PNG…".into(),
             Command::CopyCommand => "Copy as command".into(),
             Command::LoadReference => "Load reference film…".into(),
+            Command::ReferenceSize => "Set the picture to the reference's size".into(),
             Command::CopyPlot => "Copy error against time".into(),
             Command::SavePlot => "Save error against time (CSV)…".into(),
             Command::Quit => "Quit".into(),
@@ -116,7 +117,10 @@ impl Command {
             Command::CopyCommand => {
                 "The command line that renders this picture; on the CPU it is the same to the bit"
             }
-            Command::LoadReference => "Choose a film (.exr) of the same size for the difference view",
+            Command::LoadReference => "Choose a film (.exr) for the difference view",
+            Command::ReferenceSize => {
+                "Render the picture at the size of the reference film, so that they can be subtracted"
+            }
             Command::CopyPlot => "The plot's points as CSV, on the clipboard",
             Command::SavePlot => "The plot's points as CSV: backend, samples, seconds, errors",
             Command::Quit => "Close the window",

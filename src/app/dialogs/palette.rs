@@ -4,7 +4,15 @@ use super::outcome::Outcome;
 use crate::app::command::Command;
 use crate::app::facts::Facts;
 use crate::app::menu::line;
-use eframe::egui::{self, Key, Modifiers, RichText, Ui};
+use crate::app::theme;
+use eframe::egui::accesskit::Toggled;
+use eframe::egui::{
+    self, Align2, CornerRadius, Key, Modifiers, Response, RichText, Sense, Stroke, StrokeKind, TextStyle, Ui,
+    UiBuilder, vec2,
+};
+
+/// Where a row says whether a switch is on: so far from its right end, points.
+const STATE: f32 = 130.0;
 
 /// The search text and the selected line.
 #[derive(Default)]
@@ -13,21 +21,49 @@ pub struct Palette {
     chosen: usize,
 }
 
-/// Commands whose name or help contains every word of `text`, with their names. First comes the command with exactly this
-/// name, then those with all words in their name, then the others.
-fn matching(text: &str, commands: impl Iterator<Item = (Command, String)>) -> Vec<(Command, String)> {
-    let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
-    let has = |place: &str| words.iter().all(|word| place.to_lowercase().contains(word.as_str()));
-    let rank = |command: Command, name: &str| match name {
-        _ if name == text => Some(0),
-        _ if has(name) => Some(1),
-        _ => has(&format!("{name} {}", command.help())).then_some(2),
-    };
+/// How well a text finds a command; less is better. `None` if a word of it is neither in the name nor in the help.
+fn rank(text: &str, name: &str, help: &str) -> Option<usize> {
+    let [text, name, help] = [text.trim(), name, help].map(str::to_lowercase);
+    let (typed, of_name): (Vec<&str>, _) = (text.split_whitespace().collect(), words_of(&name));
+    let everything = format!("{name} {help}");
+    let begins = |words: &[&str]| typed.iter().all(|typed| words.iter().any(|word| word.starts_with(typed)));
+    let contains = |place: &str| typed.iter().all(|typed| place.contains(typed));
+    let initials: String = of_name.iter().filter_map(|word| word.chars().next()).collect();
+    let is_at_a_word =
+        || name.match_indices(&text).any(|(at, _)| !name[..at].ends_with(char::is_alphanumeric));
+    let ways: [&dyn Fn() -> bool; 8] = [
+        &|| name == text,
+        &|| name.starts_with(&text),
+        &is_at_a_word,
+        // Beginnings of words, in any order.
+        &|| begins(&of_name),
+        &|| text.len() > 1 && initials.contains(&text),
+        &|| contains(&name),
+        &|| begins(&words_of(&everything)),
+        &|| contains(&everything),
+    ];
+    ways.iter().position(|is_so| is_so())
+}
+
+/// The words of a name. Numbers of sections, such as 11.4, are words.
+fn words_of(text: &str) -> Vec<&str> {
+    text.split(|c: char| !c.is_alphanumeric() && c != '.').filter(|word| !word.is_empty()).collect()
+}
+
+/// The commands that `text` finds, the best first; `is_enabled` decides between equally good ones, then the order of the
+/// menus.
+fn matching(
+    text: &str,
+    commands: impl Iterator<Item = (Command, String)>,
+    is_enabled: impl Fn(Command) -> bool,
+) -> Vec<(Command, String)> {
     let mut found: Vec<_> = commands
         .filter(|(command, _)| *command != Command::Palette)
-        .filter_map(|(command, name)| Some((rank(command, &name)?, command, name)))
+        .filter_map(|(command, name)| Some((rank(text, &name, command.help())?, command, name)))
         .collect();
-    found.sort_by_key(|(rank, ..)| *rank);
+    if !text.trim().is_empty() {
+        found.sort_by_cached_key(|(rank, command, _)| (*rank, !is_enabled(*command)));
+    }
     found.into_iter().map(|(_, command, name)| (command, name)).collect()
 }
 
@@ -72,7 +108,8 @@ impl Palette {
         if response.changed() {
             self.chosen = 0;
         }
-        let found = matching(&self.text, listed(facts));
+        let is_enabled = |command| facts.disabled_reason(command).is_none();
+        let found = matching(&self.text, listed(facts), is_enabled);
         let last = found.len().saturating_sub(1);
         if down {
             self.chosen = (self.chosen + 1).min(last);
@@ -82,6 +119,7 @@ impl Palette {
         }
         let mut run = enter.then(|| found.get(self.chosen)).flatten().map(|(command, _)| *command);
         ui.add_space(6.0);
+        let mut told = found.get(self.chosen).map(|(command, _)| *command);
         let list =
             egui::ScrollArea::vertical().min_scrolled_height(height).max_height(height).auto_shrink(false);
         list.show(ui, |ui| {
@@ -89,19 +127,20 @@ impl Palette {
                 ui.label(RichText::new("No command matches").color(ui.visuals().weak_text_color()));
             }
             for (index, (command, name)) in found.iter().enumerate() {
-                let disabled_reason = facts.disabled_reason(*command);
-                let button = line(ui, *command, name.clone(), index == self.chosen);
-                let response =
-                    ui.add_enabled(disabled_reason.is_none(), button).on_hover_text(command.help());
-                let response = response.on_disabled_hover_text(disabled_reason.unwrap_or_default());
+                let response = row(ui, facts, *command, name, index == self.chosen);
                 if index == self.chosen && (up || down) {
                     response.scroll_to_me(None);
+                }
+                if response.hovered() {
+                    told = Some(*command);
                 }
                 if response.clicked() {
                     run = Some(*command);
                 }
             }
         });
+        ui.add_space(4.0);
+        about(ui, facts, told);
         match run {
             Some(command) => {
                 commands.push(command);
@@ -112,6 +151,46 @@ impl Palette {
     }
 }
 
+/// A command, whether it is on, and its keys.
+fn row(ui: &mut Ui, facts: &Facts, command: Command, name: &str, is_chosen: bool) -> Response {
+    let is_enabled = facts.disabled_reason(command).is_none();
+    let is_filled = is_chosen && is_enabled;
+    let response = ui.add_enabled(is_enabled, line(ui, command, name.to_owned(), is_filled));
+    if is_chosen && !is_enabled {
+        // Dimmed text would not be readable on the accent colour.
+        let stroke = Stroke::new(1.5, theme::accent(ui));
+        ui.painter().rect_stroke(response.rect, CornerRadius::same(5), stroke, StrokeKind::Inside);
+    }
+    if let Some(is_on) = facts.switch(command) {
+        let visuals = ui.visuals();
+        let colour = match (is_filled, is_on) {
+            (true, _) => visuals.selection.stroke.color,
+            (false, true) => visuals.strong_text_color(),
+            (false, false) => visuals.weak_text_color(),
+        };
+        let at = response.rect.right_center() - vec2(STATE, 0.0);
+        let font = TextStyle::Button.resolve(ui.style());
+        ui.painter().text(at, Align2::LEFT_CENTER, if is_on { "on" } else { "off" }, font, colour);
+        let toggled = if is_on { Toggled::True } else { Toggled::False };
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_toggled(toggled));
+    }
+    response
+}
+
+/// What a command does, or why it is disabled. It has two lines, so that nothing moves.
+fn about(ui: &mut Ui, facts: &Facts, command: Option<Command>) {
+    let text = command.map_or_else(String::new, |command| {
+        facts.disabled_reason(command).unwrap_or_else(|| command.help().to_owned())
+    });
+    let height = 2.0 * ui.text_style_height(&TextStyle::Body);
+    let size = vec2(ui.available_width(), height);
+    let (place, _) = ui.allocate_exact_size(size, Sense::hover());
+    let mut within = ui.new_child(UiBuilder::new().max_rect(place));
+    within.shrink_clip_rect(place);
+    let text = RichText::new(text).color(ui.visuals().weak_text_color());
+    within.add(egui::Label::new(text).wrap());
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,7 +198,7 @@ mod tests {
 
     fn found(text: &str) -> Vec<Command> {
         let all = Command::all().into_iter().map(|command| (command, command.name()));
-        matching(text, all).into_iter().map(|(command, _)| command).collect()
+        matching(text, all, |_| true).into_iter().map(|(command, _)| command).collect()
     }
 
     #[test]
@@ -135,5 +214,30 @@ mod tests {
         assert_eq!(found("undo").first(), Some(&Command::Undo));
         let stage = Stage::find("glass-schlick").unwrap();
         assert_eq!(found("11.4").first(), Some(&Command::Stage(stage)));
+    }
+
+    #[test]
+    fn beginnings_count_more_than_what_is_within_words() {
+        let help = "What it does with light";
+        // From the best to the worst.
+        let names = ["Light", "Light theme", "The light theme", "Zoom", "Flights"];
+        let ranks = names.map(|name| rank("light", name, help));
+        assert_eq!(ranks, [Some(0), Some(1), Some(2), Some(6), Some(5)]);
+        assert_eq!(rank("theme li", "The light theme", help), Some(3), "in any order");
+        assert_eq!(rank("tlt", "The light theme", help), Some(4), "initials");
+        assert_eq!(rank("oes", "Zoom", help), Some(7), "within a word of the help");
+        assert_eq!(rank("lightning", "The light theme", help), None);
+        assert_eq!(rank("LIGHT  ", "Light theme", help), Some(1), "neither case nor spaces matter");
+        assert_eq!(rank("", "Zoom", help), Some(1));
+    }
+
+    #[test]
+    fn what_is_enabled_comes_first_among_equals() {
+        let all = || [Command::ZoomOut, Command::ZoomIn].into_iter().map(|command| (command, command.name()));
+        let first = |is_enabled: fn(Command) -> bool| matching("zoom", all(), is_enabled)[0].0;
+        assert_eq!(
+            (first(|_| true), first(|command| command == Command::ZoomIn)),
+            (Command::ZoomOut, Command::ZoomIn)
+        );
     }
 }

@@ -96,6 +96,12 @@ impl Kept {
         [self.film.width(), self.film.height()]
     }
 
+    /// The linear radiance of a pixel, column and row.
+    pub fn mean(&self, [x, y]: [u32; 2]) -> Option<[f64; 3]> {
+        let is_inside = x < self.film.width() && y < self.film.height();
+        is_inside.then(|| self.film.mean(y as usize * self.film.width() as usize + x as usize))
+    }
+
     /// Its picture to subtract from another, if that was computed.
     pub fn known_means(&self) -> Option<&Arc<ReferenceMeans>> {
         self.means.get()

@@ -2,9 +2,10 @@
 
 use super::checked::CheckedScene;
 use super::document::Document;
+use super::framing::Framing;
+use super::kept_view::KeptView;
 use super::origin::{Origin, Source};
-use super::show::Show;
-use super::view::{Mode, ViewState, With};
+use super::view::ViewState;
 use crate::describe::SOFTWARE;
 use crate::progressive::Stop;
 use crate::recipe::{Recipe, file};
@@ -44,6 +45,7 @@ pub struct Session {
     is_paused: bool,
     /// A [`KeptView`]. A view that another version of the program does not know costs only the view.
     view: serde_json::Value,
+    framing: Option<Framing>,
 }
 
 /// An [`Origin`] as text.
@@ -69,60 +71,6 @@ enum KeptOrigin {
     },
 }
 
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(default)]
-struct KeptView {
-    show: Show,
-    mode: Option<Mode>,
-    is_by_book: bool,
-    is_with_next: bool,
-    divider: f32,
-    exposure: f64,
-    range: [f64; 2],
-}
-
-impl Default for KeptView {
-    fn default() -> Self {
-        KeptView::of(&ViewState::default())
-    }
-}
-
-impl KeptView {
-    fn of(view: &ViewState) -> Self {
-        KeptView {
-            // The film of a difference is not kept.
-            show: if view.show() == Show::Difference { Show::Picture } else { view.show() },
-            // Nor is a picture in a slot.
-            mode: view.mode().filter(|_| view.compared_slot().is_none()),
-            is_by_book: view.with() == With::Book,
-            is_with_next: view.is_with_next,
-            divider: view.divider,
-            exposure: view.tone.exposure,
-            range: view.tone.range,
-        }
-    }
-
-    fn view(self) -> ViewState {
-        let mut view = ViewState::default();
-        match self.mode {
-            Some(mode) => view.toggle(mode, if self.is_by_book { With::Book } else { With::Stage }),
-            None => view.choose(self.show),
-        }
-        view.is_with_next = self.is_with_next;
-        if (0.0..=1.0).contains(&self.divider) {
-            (view.divider, view.is_divider_unplaced) = (self.divider, false);
-        }
-        if self.exposure.is_finite() {
-            view.tone.expose(self.exposure);
-        }
-        let [low, high] = self.range;
-        if low < high && self.range.iter().all(|end| super::tone::Tone::RANGES.contains(end)) {
-            view.tone.range = self.range;
-        }
-        view
-    }
-}
-
 /// A session that can be shown again.
 #[derive(Debug)]
 pub struct Restored {
@@ -130,6 +78,8 @@ pub struct Restored {
     pub document: Document,
     /// How it is shown.
     pub view: ViewState,
+    /// Zoom and pan, unless the whole picture was shown.
+    pub framing: Option<Framing>,
     /// Whether tracing was paused.
     pub is_paused: bool,
     /// What could not be restored, in words.
@@ -182,12 +132,18 @@ impl Session {
             noise,
             is_paused,
             view: serde_json::to_value(KeptView::of(view)).unwrap_or_default(),
+            framing: None,
         }
     }
 
     /// The same, with or without a film beside it.
     pub fn with_film(self, has_film: bool) -> Self {
         Session { has_film, ..self }
+    }
+
+    /// The same with zoom and pan.
+    pub fn with_framing(self, framing: Option<Framing>) -> Self {
+        Session { framing, ..self }
     }
 
     /// Makes the picture and the view again.
@@ -208,7 +164,9 @@ impl Session {
         }
         document.job(1).map_err(|error| error.to_string())?;
         let view: KeptView = serde_json::from_value(self.view.clone()).unwrap_or_default();
-        Ok(Restored { document, view: view.view(), is_paused: self.is_paused, note })
+        let view = view.view(document.size());
+        let framing = self.framing.filter(|framing| framing.is_of(document.size()));
+        Ok(Restored { document, view, framing, is_paused: self.is_paused, note })
     }
 }
 
@@ -261,6 +219,8 @@ fn parse(text: &str) -> Result<Recipe, String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::show::Show;
+    use super::super::view::{Mode, With};
     use super::*;
     use crate::scene::Camera;
     use glam::DVec3;

@@ -3,6 +3,7 @@
 use super::checked::CheckedScene;
 use super::crop::Crop;
 use super::document::Document;
+use super::fitted::Fitted;
 use super::kept::Kept;
 use super::origin::Origin;
 use super::show::Show;
@@ -205,8 +206,10 @@ impl ViewState {
     fn other(&self, document: &Document) -> Option<Other> {
         if let With::Slot(number) = self.with {
             let slot = self.slots.get(number)?;
-            let is_same_size = slot.kept.size() == self.shown_document(document).size();
-            return is_same_size.then(|| Other::Kept(Arc::clone(&slot.kept)));
+            // A difference of scaled pictures would show the scaling.
+            let is_possible =
+                self.mode == Some(Mode::Wipe) || slot.kept.size() == self.shown_document(document).size();
+            return is_possible.then(|| Other::Kept(Arc::clone(&slot.kept)));
         }
         match document.stage().filter(|_| self.with == With::Stage) {
             Some(stage) => self.other_of(stage).map(Other::Stage),
@@ -230,6 +233,13 @@ impl ViewState {
             (Some(mine), Some(Other::Stage(other))) => other.index() < mine.index(),
             _ => false,
         }
+    }
+
+    /// The kept picture at the other side of a wipe, and where it lies in the place of the shown one.
+    pub fn wiped(&self, live: &Document) -> Option<(&Arc<Kept>, Fitted)> {
+        let number = self.compared_slot().filter(|_| self.mode == Some(Mode::Wipe))?;
+        let kept = &self.slots.get(number)?.kept;
+        Some((kept, Fitted::new(kept.size(), self.shown_document(live).size())))
     }
 
     /// The film that the shown difference is taken from, if a difference is shown; `other` is the second picture's.

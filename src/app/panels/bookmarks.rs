@@ -3,6 +3,7 @@
 use crate::app::command::Command;
 use crate::app::facts::Facts;
 use crate::app::model::remembered::Bookmark;
+use crate::app::tips::{self, Side};
 use crate::scene::Camera;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{self, Button, PopupCloseBehavior, RichText, Ui, vec2};
@@ -38,8 +39,8 @@ pub(super) fn ui(
                 Some(keys) => format!("{} ({keys})", command.help()),
                 None => command.help().to_owned(),
             };
-            let response = ui.add_enabled(disabled_reason.is_none(), Button::new(name)).on_hover_text(help);
-            let response = response.on_disabled_hover_text(disabled_reason.unwrap_or_default());
+            let response = ui.add_enabled(disabled_reason.is_none(), Button::new(name));
+            let response = tips::explain(ui, response, Side::Beside, &help, disabled_reason.as_deref());
             if response.accessible_name(command.name()).clicked() {
                 commands.push(command);
             }
@@ -63,7 +64,8 @@ pub(super) fn ui(
                     let button = Button::new(if is_here { name.strong() } else { name }).truncate();
                     let size = vec2(ui.available_width() - MENU - 4.0, side);
                     let command = Command::Bookmark(place);
-                    let response = ui.add_sized(size, button).on_hover_text(command.help());
+                    let response = ui.add_sized(size, button);
+                    let response = tips::beside(ui, response, command.help());
                     if response.accessible_name(facts.name(command)).clicked() {
                         commands.push(command);
                     }
@@ -72,7 +74,7 @@ pub(super) fn ui(
                     let (response, _) =
                         menu.ui(ui, |ui| entry(ui, (place, count), bookmark, camera, &mut change));
                     let help = "Rename, move or forget this bookmark";
-                    response.on_hover_text(help).accessible_name(format!("Change {}", bookmark.name));
+                    tips::beside(ui, response, help).accessible_name(format!("Change {}", bookmark.name));
                 });
             }
         },
@@ -101,7 +103,9 @@ fn entry(
     }
     let item = |ui: &mut Ui, is_enabled: bool, name: &str, help: &str| {
         let button = Button::new(name).min_size(vec2(ui.available_width(), 0.0));
-        let is_clicked = ui.add_enabled(is_enabled, button).on_hover_text(help).clicked();
+        let response = ui.add_enabled(is_enabled, button);
+        let column = response.rect.x_range();
+        let is_clicked = tips::explain_in_column(response, column, help, None).clicked();
         if is_clicked {
             ui.close();
         }

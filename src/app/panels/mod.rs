@@ -15,6 +15,7 @@ use super::model::document::Document;
 use super::model::edit::Edit;
 use super::model::remembered::Remembered;
 use super::spheres::Selected;
+use super::tips::{self, Side};
 use eframe::egui::{self, RichText, Ui};
 use reset::Reset;
 
@@ -68,10 +69,9 @@ fn group(
             let Some(Reset { is_changed, reset }) = reset else { return };
             let is_changed = is_changed(document);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let button = ui
-                    .add_enabled(is_changed, egui::Button::new("Reset").small())
-                    .on_hover_text("Reset to the stage's values")
-                    .on_disabled_hover_text("Nothing here differs from the stage")
+                let button = ui.add_enabled(is_changed, egui::Button::new("Reset").small());
+                let (help, reason) = ("Reset to the stage's values", "Nothing here differs from the stage");
+                let button = tips::explain(ui, button, Side::Beside, help, Some(reason))
                     .accessible_name(format!("Reset {}", name.to_lowercase()));
                 if button.clicked() {
                     reset(document);

@@ -5,6 +5,7 @@ use crate::app::command::Command;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::model::sizing::Sizing;
+use crate::app::tips;
 use crate::app::widgets::{About, explained, whole_number};
 use crate::output::OutputFormat;
 use crate::render::SIZE_LIMIT;
@@ -35,7 +36,8 @@ pub(super) fn ui(ui: &mut Ui, document: &mut Document, facts: &Facts, commands: 
             ("EXR film", Command::Save(OutputFormat::Exr)),
             ("Scene", Command::SaveScene),
         ] {
-            let response = ui.button(name).on_hover_text(command.help());
+            let response = ui.button(name);
+            let response = tips::beside(ui, response, command.help());
             if response.accessible_name(format!("Save {name}")).clicked() {
                 commands.push(command);
             }
@@ -44,7 +46,8 @@ pub(super) fn ui(ui: &mut Ui, document: &mut Document, facts: &Facts, commands: 
     let command = Command::CopyCommand;
     let width = ui.available_width();
     let button = egui::Button::new(command.name()).min_size(egui::vec2(width, 0.0));
-    if ui.add(button).on_hover_text(command.help()).clicked() {
+    let response = ui.add(button);
+    if tips::beside(ui, response, command.help()).clicked() {
         commands.push(command);
     }
 }

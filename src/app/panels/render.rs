@@ -5,6 +5,7 @@ use crate::app::facts::Facts;
 use crate::app::model::device::{Device, core_count, lane_counts};
 use crate::app::model::document::Document;
 use crate::app::model::remembered::Remembered;
+use crate::app::tips;
 use crate::app::widgets::{About, check, control, whole};
 use crate::render::{DEPTH_LIMIT, RenderSettings, SamplerKind};
 use crate::stages::Shading;
@@ -80,8 +81,10 @@ fn device(ui: &mut Ui, chosen: &mut Device) {
                 for device in Device::ALL {
                     let reason = device.unavailable();
                     let button = egui::Button::selectable(device == *chosen, device.label());
-                    let response = ui.add_enabled(reason.is_none(), button).on_hover_text(device.long_help());
-                    if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() {
+                    let response = ui.add_enabled(reason.is_none(), button);
+                    let column = response.rect.x_range();
+                    let help = device.long_help();
+                    if tips::explain_in_column(response, column, &help, reason.as_deref()).clicked() {
                         *chosen = device;
                         ui.close();
                     }

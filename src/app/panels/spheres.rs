@@ -7,6 +7,7 @@ use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::model::edit::{Body, Edit};
 use crate::app::spheres::Selected;
+use crate::app::tips::{self, Side};
 use crate::app::widgets::{About, control, explained, named, number, slider, under_name, vector};
 use crate::scene::{Material, RADIUS_LIMITS, REFRACTION_INDEX_LIMITS};
 use crate::stages::Shading;
@@ -68,8 +69,8 @@ fn button(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>, command: Comm
         Some(keys) => format!("{} ({keys})", command.help()),
         None => command.help().to_owned(),
     };
-    let response = ui.add_enabled(disabled_reason.is_none(), egui::Button::new(name)).on_hover_text(help);
-    let response = response.on_disabled_hover_text(disabled_reason.unwrap_or_default());
+    let response = ui.add_enabled(disabled_reason.is_none(), egui::Button::new(name));
+    let response = tips::explain(ui, response, Side::Beside, &help, disabled_reason.as_deref());
     if response.accessible_name(command.name()).clicked() {
         commands.push(command);
     }
@@ -83,7 +84,8 @@ fn name(ui: &mut Ui, selected: &Selected, facts: &Facts, commands: &mut Vec<Comm
         button(ui, facts, commands, Command::NextSphere, "›");
         let text = format!("sphere {}, {}", selected.sphere, selected.material);
         let help = format!("Sphere {} of {}, counted from 0", selected.sphere, selected.count);
-        ui.add(egui::Label::new(RichText::new(text).strong()).truncate()).on_hover_text(help);
+        let response = ui.add(egui::Label::new(RichText::new(text).strong()).truncate());
+        tips::beside(ui, response, &help);
     });
     ui.add_space(3.0);
 }

@@ -4,6 +4,7 @@ use super::paint::end_of;
 use super::{COUNT_LIMIT, Path, Paths};
 use crate::app::inspector::names;
 use crate::app::model::document::Document;
+use crate::app::tips::{self, Side};
 use crate::app::widgets::compact;
 use crate::scene::Scene;
 use eframe::egui::{self, DragValue, RichText, Ui};
@@ -36,7 +37,8 @@ impl Paths {
             ui.spacing_mut().item_spacing.x = 4.0;
             let drag = DragValue::new(&mut count).range(1..=COUNT_LIMIT).speed(0.2).suffix(" paths");
             let help = format!("How many of the pixel's samples are listed, 1 to {COUNT_LIMIT}");
-            ui.add(drag).on_hover_text(help).accessible_name("Paths listed");
+            let drag = ui.add(drag);
+            tips::beside(ui, drag, &help).accessible_name("Paths listed");
             let at = selected.unwrap_or(0);
             let [before, after] = [at.checked_sub(1), Some(at + 1).filter(|next| *next <= last)];
             if let Some(to) = step_button(ui, "‹", "Path of the sample before", before) {
@@ -45,7 +47,8 @@ impl Paths {
             if let Some(to) = step_button(ui, "›", "Path of the sample after", after) {
                 selected = Some(to);
             }
-            let clear = ui.small_button("Clear").on_hover_text("Remove the paths from the picture");
+            let clear = ui.small_button("Clear");
+            let clear = tips::beside(ui, clear, "Remove the paths from the picture");
             is_cleared = clear.accessible_name("Clear paths").clicked();
         });
         if listed.document.camera != document.camera {
@@ -63,8 +66,9 @@ impl Paths {
                         path_ui(ui, path, &mut ray, document.scene());
                     }
                 })
-                .header_response
-                .on_hover_text("One path of this pixel; the open one is drawn most clearly");
+                .header_response;
+            let help = "One path of this pixel; the open one is drawn most clearly";
+            let header = tips::beside(ui, header, help);
             if header.accessible_name(format!("Path of sample {index}")).clicked() {
                 selected = (selected != Some(index)).then_some(index);
             }
@@ -85,8 +89,9 @@ impl Paths {
 
 /// A small button that leads to `to`, if there is such a place. Returns it when clicked.
 fn step_button(ui: &mut Ui, label: &str, name: &str, to: Option<usize>) -> Option<usize> {
-    let response = ui.add_enabled(to.is_some(), egui::Button::new(label).small()).on_hover_text(name);
-    let response = response.on_disabled_hover_text("There is none").accessible_name(name);
+    let response = ui.add_enabled(to.is_some(), egui::Button::new(label).small());
+    let response =
+        tips::explain(ui, response, Side::Beside, name, Some("There is none")).accessible_name(name);
     to.filter(|_| response.clicked())
 }
 

@@ -13,6 +13,7 @@ pub use left::{Left, Part};
 
 use super::answers::Answers;
 use super::model::document::Document;
+use super::model::framing::Framing;
 use super::model::session::{Restored, Session};
 use super::model::view::ViewState;
 use crate::interrupt::Interrupt;
@@ -195,7 +196,7 @@ impl Recovery {
     pub fn note(
         &mut self,
         context: &Context,
-        (document, view): (&Document, &ViewState),
+        (document, view, framing): (&Document, &ViewState, Option<Framing>),
         is_paused: bool,
     ) -> Option<String> {
         let mut words = None;
@@ -221,7 +222,8 @@ impl Recovery {
         }
         let Some(files) = &self.files else { return words };
         let (write, shown, view) = (files.note_writer(), document.clone(), view.clone());
-        let work = move || write(&Session::of(&shown, &view, is_paused).with_film(has_film));
+        let session = move || Session::of(&shown, &view, is_paused).with_framing(framing).with_film(has_film);
+        let work = move || write(&session());
         self.is_noting = self.notes.ask("files", context, work).is_ok();
         self.next_note = Instant::now() + NOTES_APART;
         self.noted = Some((document.clone(), has_film));

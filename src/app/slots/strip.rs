@@ -6,6 +6,7 @@ use crate::app::menu::item;
 use crate::app::model::slots::{Slot, SlotNumber, Slots};
 use crate::app::texture::Texture;
 use crate::app::theme;
+use crate::app::tips::{self, Side};
 use crate::memory::words;
 use crate::output::OutputFormat;
 use eframe::egui::{
@@ -75,15 +76,20 @@ impl Strip {
                     ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
                     if let Some(name) = slots.name_mut(number) {
                         let edit = TextEdit::singleline(name).desired_width(NAME).margin(vec2(4.0, 1.0));
-                        let response =
-                            ui.add(edit).on_hover_text("The name of this slot; click to change it");
+                        let response = ui.add(edit);
+                        let help = "The name of this slot; click to change it";
+                        let response = tips::explain(ui, response, Side::Above, help, None);
                         let response = response.accessible_name(format!("Name of slot {number}"));
                         is_touched |= response.gained_focus();
                     }
                     let [width, height] = slot.kept.size();
                     let about = format!("{width}x{height}, {} samples", slot.kept.samples());
                     let about = RichText::new(about).small().color(ui.visuals().weak_text_color());
-                    ui.label(about).on_hover_text(memory_words(&slot, slots));
+                    ui.horizontal(|ui| {
+                        let label = ui.label(about);
+                        tips::explain(ui, label, Side::Above, &memory_words(&slot, slots), None);
+                        is_touched |= size_button(ui, number, facts, commands);
+                    });
                     ui.horizontal(|ui| {
                         is_touched |= buttons(ui, number, is_compared, facts, commands);
                     });
@@ -132,7 +138,7 @@ impl Strip {
         ui.painter().text(place.center(), Align2::CENTER_CENTER, number.to_string(), font, colour);
         let keys = Command::Slot(SlotCommand::Look(number)).keys(ui.ctx()).unwrap_or_default();
         let help = format!("Look at this picture, or return to the live one ({keys}; J flips)");
-        response.on_hover_text(help).clicked()
+        tips::explain(ui, response, Side::Above, &help, None).clicked()
     }
 }
 
@@ -151,12 +157,28 @@ fn live(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) {
             let button = Button::new(label).small().selected(is_on).min_size(vec2(44.0, 19.0));
             let response = ui.add_enabled(reason.is_none() || is_on, button);
             let keys = command.keys(ui.ctx()).map_or_else(String::new, |keys| format!(" ({keys})"));
-            let response = response.on_hover_text(format!("{}{keys}", command.help()));
-            if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() && !is_on {
+            let help = format!("{}{keys}", command.help());
+            let response = tips::explain(ui, response, Side::Above, &help, reason.as_deref());
+            if response.clicked() && !is_on {
                 commands.push(command);
             }
         }
     });
+}
+
+/// A button that gives the picture the size of the slot, if it has another one. Returns whether it was clicked.
+fn size_button(ui: &mut Ui, number: SlotNumber, facts: &Facts, commands: &mut Vec<Command>) -> bool {
+    if facts.slot_of_other_size(number).is_none() {
+        return false;
+    }
+    let command = Command::Slot(SlotCommand::TakeSize);
+    let response = ui.add(Button::new(RichText::new("Set size").small()).small());
+    let response = tips::explain(ui, response, Side::Above, command.help(), None)
+        .accessible_name(format!("Set the picture to the size of slot {number}"));
+    if response.clicked() {
+        commands.push(command);
+    }
+    response.clicked()
 }
 
 /// What can be done with a slot. Returns whether a command was given, which is for this slot.
@@ -168,17 +190,19 @@ fn buttons(
     commands: &mut Vec<Command>,
 ) -> bool {
     let mut is_given = false;
-    let incomparable = facts.incomparable_slot(number);
-    for (label, command) in [
-        ("Wipe", Command::Slot(SlotCommand::Wipe)),
-        ("A − B", Command::Slot(SlotCommand::Difference)),
-        ("Noise?", Command::Slot(SlotCommand::OnlyNoise)),
+    let unequal = facts.slot_of_other_size(number);
+    for (label, command, reason) in [
+        ("Wipe", SlotCommand::Wipe, None),
+        ("A − B", SlotCommand::Difference, unequal.as_deref()),
+        ("Noise?", SlotCommand::OnlyNoise, unequal.as_deref()),
     ] {
+        let command = Command::Slot(command);
         let is_on = is_compared && facts.is_on(command);
         let button = Button::new(label).small().selected(is_on);
-        let response = ui.add_enabled(incomparable.is_none(), button).on_hover_text(command.help());
-        let response = response.accessible_name(format!("{} {number}", command.name()));
-        if response.on_disabled_hover_text(incomparable.clone().unwrap_or_default()).clicked() {
+        let response = ui.add_enabled(reason.is_none(), button);
+        let response = tips::explain(ui, response, Side::Above, command.help(), reason)
+            .accessible_name(format!("{} {number}", command.name()));
+        if response.clicked() {
             commands.push(command);
             is_given = true;
         }
@@ -208,7 +232,7 @@ fn buttons(
         commands.len() > before
     });
     let help = "Go on from this picture, save it, or delete it";
-    response.on_hover_text(help).accessible_name(format!("More about slot {number}"));
+    tips::explain(ui, response, Side::Above, help, None).accessible_name(format!("More about slot {number}"));
     is_given | inner.is_some_and(|inner| inner.inner)
 }
 

@@ -9,7 +9,7 @@ mod selection;
 mod still;
 mod touch;
 
-pub use paint::Pictures;
+pub use paint::{Pictures, SecondPicture};
 pub use placement::Placement;
 use placement::whole_pixels;
 pub use touch::Touch;

@@ -3,6 +3,7 @@
 use super::placement::{Placement, Zoom};
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
+use crate::app::model::fitted::Fitted;
 use crate::app::model::show::Show;
 use crate::app::model::view::Mode;
 use crate::app::paths::Paths;
@@ -34,14 +35,26 @@ pub struct Pictures<'a> {
     pub main: Option<(&'a mut Texture, u32)>,
     /// Whether there is a picture of the film.
     pub has_film: bool,
-    /// The second picture, the factor by which it is smaller, and its title.
-    pub second: Option<(&'a mut Texture, u32, String)>,
+    /// The second picture.
+    pub second: Option<SecondPicture<'a>>,
     /// Paths to draw over the picture, if it is the live one.
     pub paths: Option<&'a Paths>,
     /// Numbers to draw in large pixels.
     pub values: &'a PixelValues,
     /// What the user should know about the picture.
     pub notices: Vec<String>,
+}
+
+/// The picture at the other side of a wipe.
+pub struct SecondPicture<'a> {
+    /// Its pixels.
+    pub texture: &'a mut Texture,
+    /// The factor by which it is smaller than its full size.
+    pub divisor: u32,
+    /// Its name.
+    pub title: String,
+    /// Where it lies in the place of the first picture.
+    pub fitted: Fitted,
 }
 
 /// Draws the picture at `rect`, within `room`.
@@ -55,16 +68,19 @@ pub(super) fn paint(
     facts: &Facts,
 ) {
     let painter = ui.painter().with_clip_rect(room);
-    let options = |divisor: u32| {
-        // Smooth until pixels are large, except where each is one of the screen's. A preview is always smooth.
+    let options = |divisor: u32, is_scaled: bool| {
+        // Smooth until pixels are large, except where each is one of the screen's. Previews and pictures of another size
+        // are always smooth.
         let is_exact = (placement.times() - 1.0).abs() < 1e-4;
-        let is_square = divisor == 1 && (is_exact || placement.times() >= SQUARES);
+        let is_square = divisor == 1 && !is_scaled && (is_exact || placement.times() >= SQUARES);
         if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR }
     };
     let context = ui.ctx();
     let Pictures { main, has_film, second, paths, values, notices } = pictures;
-    let second = second.map(|(texture, divisor, title)| (texture.id(context, options(divisor)), title));
-    let main = main.map(|(texture, divisor)| (texture.id(context, options(divisor)), divisor));
+    let second = second.map(|SecondPicture { texture, divisor, title, fitted }| {
+        (texture.id(context, options(divisor, !fitted.is_exact())), title, fitted)
+    });
+    let main = main.map(|(texture, divisor)| (texture.id(context, options(divisor, false)), divisor));
     // The hole is one point smaller, so that no gap stays between picture and background.
     let hole = if main.is_some() { rect.shrink(1.0).intersect(room) } else { Rect::NOTHING };
     fill_around(&painter, room, hole, theme::surround(ui));
@@ -74,12 +90,12 @@ pub(super) fn paint(
     let font = TextStyle::Body.resolve(ui.style());
     let view = &facts.model.view;
     if view.mode() == Some(Mode::Wipe)
-        && let Some((texture, title)) = second
+        && let Some((texture, title, fitted)) = second
     {
         let whose = if view.has_other_camera(document) { ", with its own camera" } else { "" };
-        let titles = [facts.title(), format!("{title}{whose}")];
+        let titles = [facts.title(), format!("{title}{whose}{}", fitted.words())];
         let is_left = view.is_other_earlier(document);
-        paint_wipe(ui, &painter, rect, divider, (texture, is_left), &titles);
+        paint_wipe(ui, &painter, rect, divider, (texture, is_left, fitted), &titles);
     }
     let is_difference = view.mode() == Some(Mode::Difference);
     let scale = if is_difference { Some(HeatScale::DIFFERENCE) } else { view.show().scale(&view.tone) };
@@ -105,8 +121,8 @@ pub(super) fn paint(
         let colour = ui.visuals().weak_text_color();
         painter.text(rect.center(), Align2::CENTER_CENTER, text, font.clone(), colour);
     }
-    if let Zoom::Times(times) = placement.zoom() {
-        let text = format!("{:.0} %", 100.0 * times);
+    if let Zoom::Times(_) | Zoom::As(_) = placement.zoom() {
+        let text = format!("{:.0} %", 100.0 * placement.times());
         badge(ui, &painter, corners.right_top() + vec2(-8.0, 8.0), Align2::RIGHT_TOP, &text, &font);
     }
     if facts.model.view.tone.exposure != 0.0 && view.show() == Show::Picture && !is_difference {
@@ -142,14 +158,21 @@ fn paint_wipe(
     painter: &egui::Painter,
     rect: Rect,
     share: f32,
-    (texture, is_left): (egui::TextureId, bool),
+    (texture, is_left, fitted): (egui::TextureId, bool, Fitted),
     [mine, theirs]: &[String; 2],
 ) {
     let x = rect.left() + rect.width() * share;
     let shares = if is_left { [0.0, share] } else { [share, 1.0] };
-    let uv = Rect::from_x_y_ranges(shares[0]..=shares[1], 0.0..=1.0);
     let [from, to] = shares.map(|share| rect.left() + rect.width() * share);
-    painter.image(texture, Rect::from_x_y_ranges(from..=to, rect.y_range()), uv, Color32::WHITE);
+    let side = Rect::from_x_y_ranges(from..=to, rect.y_range());
+    let [left, top, right, bottom] = fitted.part().map(|share| share as f32);
+    let place = Rect::from_min_max(rect.lerp_inside(vec2(left, top)), rect.lerp_inside(vec2(right, bottom)));
+    let seen = place.intersect(side);
+    fill_around(painter, side, seen, theme::surround(ui));
+    if seen.is_positive() {
+        let [min, max] = [seen.min, seen.max].map(|corner| ((corner - place.min) / place.size()).to_pos2());
+        painter.image(texture, seen, Rect { min, max }, Color32::WHITE);
+    }
     let [left, right] = if is_left { [theirs, mine] } else { [mine, theirs] };
     painter.vline(x, rect.y_range(), Stroke::new(3.0, Color32::from_black_alpha(120)));
     painter.vline(x, rect.y_range(), Stroke::new(1.5, Color32::WHITE));
@@ -283,7 +306,14 @@ mod tests {
         for is_left in [false, true] {
             let harness = Harness::builder().with_size(rect.size()).build_ui(|ui| {
                 let painter = ui.painter().with_clip_rect(rect);
-                paint_wipe(ui, &painter, rect, 0.25, (egui::TextureId::default(), is_left), &titles);
+                paint_wipe(
+                    ui,
+                    &painter,
+                    rect,
+                    0.25,
+                    (egui::TextureId::default(), is_left, Fitted::new([8, 4], [8, 4])),
+                    &titles,
+                );
             });
             let left_of = |title: &str| {
                 let place = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {

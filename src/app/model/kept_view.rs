@@ -1,0 +1,85 @@
+//! A view as text, for the next window.
+
+use super::crop::Crop;
+use super::show::Show;
+use super::tone::Tone;
+use super::view::{Mode, ViewState, With};
+use serde::{Deserialize, Serialize};
+
+/// A [`ViewState`] as text.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(default)]
+pub struct KeptView {
+    show: Show,
+    mode: Option<Mode>,
+    is_by_book: bool,
+    is_with_next: bool,
+    divider: f32,
+    exposure: f64,
+    range: [f64; 2],
+    /// First column and row, width and height.
+    crop: Option<[[u32; 2]; 2]>,
+}
+
+impl Default for KeptView {
+    fn default() -> Self {
+        KeptView::of(&ViewState::default())
+    }
+}
+
+impl KeptView {
+    /// What is kept of a view.
+    pub fn of(view: &ViewState) -> Self {
+        KeptView {
+            // The film of a difference is not kept.
+            show: if view.show() == Show::Difference { Show::Picture } else { view.show() },
+            // Nor is a picture in a slot.
+            mode: view.mode().filter(|_| view.compared_slot().is_none()),
+            is_by_book: view.with() == With::Book,
+            is_with_next: view.is_with_next,
+            divider: view.divider,
+            exposure: view.tone.exposure,
+            range: view.tone.range,
+            crop: view.crop.flatten().map(|crop| [crop.first, crop.size]),
+        }
+    }
+
+    /// The view of a picture of `size` pixels.
+    pub fn view(self, size: [u32; 2]) -> ViewState {
+        let mut view = ViewState::default();
+        match self.mode {
+            Some(mode) => view.toggle(mode, if self.is_by_book { With::Book } else { With::Stage }),
+            None => view.choose(self.show),
+        }
+        view.is_with_next = self.is_with_next;
+        if (0.0..=1.0).contains(&self.divider) {
+            (view.divider, view.is_divider_unplaced) = (self.divider, false);
+        }
+        if self.exposure.is_finite() {
+            view.tone.expose(self.exposure);
+        }
+        let [low, high] = self.range;
+        if low < high && self.range.iter().all(|end| Tone::RANGES.contains(end)) {
+            view.tone.range = self.range;
+        }
+        let crop = self.crop.map(|[first, size]| Crop { first, size });
+        let is_whole = |crop: &Crop| crop.size != [0, 0] && crop.within(size) == Some(*crop);
+        view.crop = crop.filter(is_whole).map(Some);
+        view
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crop_comes_back_if_the_picture_has_all_of_it() {
+        let mut view = ViewState::default();
+        let crop = Crop { first: [2, 3], size: [4, 7] };
+        view.crop = Some(Some(crop));
+        let found = |size| KeptView::of(&view).view(size).crop;
+        assert_eq!((found([32, 18]), found([6, 10])), (Some(Some(crop)), Some(Some(crop))));
+        assert_eq!((found([5, 18]), found([2, 2])), (None, None));
+    }
+}
