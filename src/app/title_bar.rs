@@ -35,7 +35,7 @@ const STAGE: f32 = 284.0;
 const LEAST_STAGE: f32 = 150.0;
 
 /// The narrowest button of the stage before buttons say less, points.
-const READABLE_STAGE: f32 = 250.0;
+const READABLE_STAGE: f32 = 220.0;
 
 /// Width of Pause and "Go on", points. It is the same for both, so that nothing beside the button moves.
 const PAUSE: f32 = 58.0;

@@ -102,7 +102,6 @@ fn tips_of_slots_cover_no_other_control_of_the_strip() {
     }
 }
 
-/// In two rows, a tip of the first row would cover the second.
 #[test]
 fn tips_of_the_title_bar_cover_none_of_its_controls() {
     for size in SIZES {
