@@ -269,13 +269,6 @@ impl Window {
         }
     }
 
-    /// Gives the picture this size.
-    pub(super) fn take_size(&mut self, size: Option<[u32; 2]>) {
-        if let Some(size) = size {
-            self.model.document.give_size(size);
-        }
-    }
-
     /// Shows the card with the first steps, or closes it for good.
     fn toggle_first_steps(&mut self) {
         let Model { has_first_steps, remembered, .. } = &mut self.model;

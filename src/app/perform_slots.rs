@@ -58,6 +58,13 @@ impl Window {
         context.request_repaint();
     }
 
+    /// Gives the picture this size.
+    pub(super) fn take_size(&mut self, size: Option<[u32; 2]>) {
+        if let Some(size) = size {
+            self.model.document.give_size(size);
+        }
+    }
+
     /// The film on the screen.
     pub(super) fn subject(&self) -> Subject<'_> {
         let model = &self.model;
