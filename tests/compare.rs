@@ -117,6 +117,17 @@ fn a_picture_is_decoded_as_its_recipe_says() {
     }
 }
 
+#[test]
+fn a_backend_repeats_the_samples_of_a_picture_without_an_error_estimate() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    render(at, "one-half.png", &["--samples", "16", "--estimate-error", "off"]);
+    let (code, found) = json(&["one-half.png", "cpu", "--samples", "16"], at);
+    assert_eq!(code, 0, "{found}");
+    // Two halves would have other samples, whose noise is ten times as large.
+    assert!(found["rms"].as_f64().unwrap() < 0.004, "{found}");
+}
+
 /// A PFM of 64x16 pixels whose first 60 columns are `value`.
 fn pfm(at: &Path, name: &str, value: f32) {
     let pixel = |i: usize| if i % 64 < 60 { value } else { 0.25 + i as f32 / 4096.0 };

@@ -1,23 +1,23 @@
 //! The log, the version, and what the program prints where it has no runtime directory.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
+mod program_common;
+
+use program_common::{text, weekender};
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 
 const PICTURE: [&str; 7] = ["--batch", "--size", "32x18", "--samples", "8", "--device", "cpu"];
 
 fn program(directory: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    for variable in ["RUST_LOG", "DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
-        command.env_remove(variable);
-    }
-    command.current_dir(directory).args(arguments).stdin(Stdio::null());
+    let mut command = weekender(directory, arguments);
+    command.env_remove("RUST_LOG");
     command
 }
 
 fn said(output: &Output) -> [String; 2] {
-    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned())
+    [&output.stdout, &output.stderr].map(|bytes| text(bytes))
 }
 
 #[test]

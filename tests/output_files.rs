@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod program_common;
+
 use image::{ImageFormat, ImageReader};
+use program_common::names;
 use std::fs;
 use std::io;
 use std::path::Path;
@@ -33,15 +36,6 @@ fn description() -> Description {
     description.set(key::CAMERA, "from 0,0,0 at 0,0,-1: 90 degrees");
     description.set("Note", "");
     description
-}
-
-fn names(directory: &Path) -> Vec<String> {
-    let mut names: Vec<_> = fs::read_dir(directory)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod report;
 mod sources;
 mod stress;
 mod subcommands;
+mod typed;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
@@ -39,8 +40,7 @@ pub use stress::StressOptions;
 pub use values::JsonTarget;
 
 use crate::failure::Failure;
-use crate::shell;
-use clap::{CommandFactory, Parser};
+use clap::{CommandFactory, FromArgMatches, Parser};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use subcommands::{Raw, RawCommand};
@@ -113,12 +113,10 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<
 /// [`Failure::CommandLine`] or [`Failure::Input`]; nothing has been written in either case.
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let typed = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());
-    let command = ["weekender".into()].into_iter().chain(typed).collect::<Vec<_>>().join(" ");
-    let words = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());
-    let typed = shell::line(["weekender".into()].into_iter().chain(words));
     let program = called(arguments.first());
-    let raw = Raw::try_parse_from(&arguments).map_err(Failure::CommandLine)?;
+    let matches = command().try_get_matches_from(&arguments).map_err(Failure::CommandLine)?;
+    let typed = typed::without_directories(&arguments, &matches);
+    let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     if raw.version {
         return Ok(Request::Version { is_verbose: raw.verbose });
     }
@@ -142,7 +140,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         Some(RawCommand::Compare(raw)) => {
             compare::compare(*raw).map(|options| Request::Compare(Box::new(options))).map_err(Failure::input)
         }
-        Some(RawCommand::Report(raw)) => report::report(*raw, command)
+        Some(RawCommand::Report(raw)) => report::report(*raw, typed)
             .map(|options| Request::Report(Box::new(options)))
             .map_err(Failure::input),
         Some(RawCommand::Stress(raw)) => {

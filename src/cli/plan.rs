@@ -12,7 +12,7 @@ use crate::output::FrameRate;
 use crate::recipe::Recipe;
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::stages::Stage;
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, ValueHint};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -63,7 +63,7 @@ pub(super) struct RawPlan {
     #[arg(long, value_enum, default_value = "text", help_heading = "Files")]
     pub format: PlanFormat,
     /// How the commands call this program [default: as it was called, with its directory if that was given]
-    #[arg(long, value_name = "NAME", help_heading = "Files")]
+    #[arg(long, value_name = "NAME", value_hint = ValueHint::ExecutablePath, help_heading = "Files")]
     pub program: Option<String>,
 }
 

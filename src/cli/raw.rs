@@ -11,7 +11,7 @@ use crate::recipe::Recipe;
 use crate::render::{DEPTH_LIMIT, SAMPLE_LIMIT, SamplerKind};
 use crate::scene::VFOV_LIMITS_DEGREES;
 use clap::builder::PossibleValue;
-use clap::{Args, ValueEnum};
+use clap::{Args, ValueEnum, ValueHint};
 use glam::DVec3;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -179,7 +179,8 @@ pub(super) struct RawBackend {
 #[derive(Debug, Default, PartialEq, Args)]
 pub(super) struct RawPicture {
     /// A built-in scene, field:N for a field of N spheres, or a scene file [default: three-spheres]
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "stage", help_heading = "Picture")]
+    #[arg(long, value_name = "NAME|FILE.toml", value_hint = ValueHint::FilePath, conflicts_with = "stage",
+          help_heading = "Picture")]
     pub scene: Option<String>,
     /// A stage of the book; "all" renders all of them to the directory --out
     #[arg(long, value_name = "ID", help_heading = "Picture")]

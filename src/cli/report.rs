@@ -130,7 +130,7 @@ pub struct ReportOptions {
     pub out: PathBuf,
     /// Whether progress is shown.
     pub progress: ProgressChoice,
-    /// The command as typed.
+    /// The command as typed, with file names instead of paths.
     pub command: String,
 }
 
@@ -204,7 +204,7 @@ const TARGETS: [f64; 2] = [0.01, 0.001];
 const REPORT_FILES: [&str; 5] =
     ["report.json", "report.md", "report.csv", "error-vs-time.png", "error-vs-time.svg"];
 
-/// Validates the flags of `weekender report`; `command` is the command as typed.
+/// Validates the flags of `weekender report`; `command` is what the report says of itself.
 pub(super) fn report(raw: RawReport, command: String) -> Result<ReportOptions, CliError> {
     let defaults = if raw.calibration { CALIBRATION } else { RACE };
     let backends = report_backends(&raw, &defaults)?;

@@ -153,7 +153,6 @@ fn sides(options: &CompareOptions) -> Result<([Side; 2], Option<PairedSamples>)>
 fn beside(options: &CompareOptions, read: &Side, rendering: &mut Rendering) -> Result<Side> {
     let mut recipe = options.recipe.clone();
     (recipe.settings.width, recipe.settings.height) = (read.width, read.height);
-    recipe.settings.estimate_error |= read.film.is_none();
     let job = recipe.job()?;
     job.check_memory(2)?;
     check_memory(read.width, read.height, 2)?;

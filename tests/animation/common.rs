@@ -1,7 +1,9 @@
-//! The program, run in a directory of its own.
+//! Renders of frames, and a scene with keyframes.
+
+pub use crate::program_common::{names, weekender};
 
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
 
 /// Keyframes of a scene file after its `[camera]`.
 pub const SCENE: &str = "\
@@ -35,16 +37,6 @@ radius = 1.0
 material = \"ground\"
 ";
 
-pub fn weekender(directory: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    // If a command that should be refused is accepted, it must not open a window.
-    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
-        command.env_remove(display);
-    }
-    command.current_dir(directory).args(arguments).stdin(Stdio::null());
-    command
-}
-
 pub fn run(directory: &Path, arguments: &[&str]) -> Output {
     weekender(directory, arguments).output().unwrap()
 }
@@ -56,15 +48,6 @@ pub fn render(directory: &Path, arguments: &[&str]) -> serde_json::Value {
     let output = run(directory, &[&small, samples, arguments].concat());
     assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
-}
-
-pub fn names(directory: &Path) -> Vec<String> {
-    let mut names: Vec<String> = std::fs::read_dir(directory)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
 }
 
 /// The bytes of a picture's pixels.

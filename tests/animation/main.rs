@@ -5,5 +5,7 @@
 mod common;
 mod frames;
 mod paths;
+#[path = "../program_common/mod.rs"]
+mod program_common;
 mod refused;
 mod scene_file;

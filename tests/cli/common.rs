@@ -1,23 +1,15 @@
-//! The program, run in a directory of its own.
+//! Runs of the program with an end, and refusals.
+
+pub use crate::program_common::{names, text, weekender};
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::process::{Child, ExitStatus, Output, Stdio};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 pub const PATIENCE: Duration = Duration::from_secs(120);
-
-pub fn weekender(directory: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    // If a command that should be refused is accepted, it must not open a window.
-    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
-        command.env_remove(display);
-    }
-    command.current_dir(directory).args(arguments).stdin(Stdio::null());
-    command
-}
 
 /// Runs the program and fails if it does not end.
 pub fn run(directory: &Path, arguments: &[&str]) -> Output {
@@ -58,19 +50,6 @@ pub fn render(directory: &Path, arguments: &[&str]) -> Output {
     let output = run(directory, &[&["--batch", "--size", "32x18", "--threads", "2"], arguments].concat());
     assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
     output
-}
-
-pub fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-pub fn names(directory: &Path) -> Vec<String> {
-    let mut names: Vec<String> = std::fs::read_dir(directory)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    names
 }
 
 pub fn temp() -> TempDir {

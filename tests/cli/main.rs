@@ -6,4 +6,6 @@ mod common;
 mod ending;
 mod films;
 mod outputs;
+#[path = "../program_common/mod.rs"]
+mod program_common;
 mod values;

@@ -1,6 +1,7 @@
 //! The program and its signals.
 
-use std::fs::{self};
+pub use crate::program_common::{names, text};
+
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread::sleep;
@@ -23,22 +24,13 @@ pub fn rounds(usual: u32) -> u32 {
 }
 
 pub fn weekender(at: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(PROGRAM);
-    command
-        .current_dir(at)
-        .args(arguments)
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
+    let mut command = crate::program_common::weekender(at, arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
     command
 }
 
 pub fn batch(at: &Path, progress: &str, arguments: &[&str]) -> Command {
     weekender(at, &[&PICTURE[..], &[progress], arguments].concat())
-}
-
-pub fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
 }
 
 pub fn succeeds(command: &mut Command) {
@@ -76,13 +68,4 @@ pub fn until(what: &str, is_so: impl Fn() -> bool) {
 
 pub fn film(path: &Path) -> Film {
     checkpoint::load(path).unwrap().film
-}
-
-/// Files in a directory, except unfinished ones that a kill leaves behind.
-pub fn names(at: &Path) -> Vec<String> {
-    let entries = fs::read_dir(at).unwrap();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }

@@ -11,4 +11,6 @@ mod common;
 mod limits;
 mod outputs;
 mod parts;
+#[path = "../program_common/mod.rs"]
+mod program_common;
 mod signals;

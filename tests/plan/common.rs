@@ -1,16 +1,18 @@
-//! The program, run in a directory of its own.
+//! Plans of a small picture.
 
+pub use crate::program_common::text;
+
+use crate::program_common::weekender;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 use weekender::film::{Film, checkpoint};
 
 /// A small picture. Two threads of the CPU make the same bits everywhere.
 pub const PICTURE: [&str; 6] = ["--size", "32x18", "--device", "cpu", "--threads", "2"];
 
 pub fn command(at: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    command.current_dir(at).args(arguments).stdin(Stdio::null());
-    for name in ["DISPLAY", "WAYLAND_DISPLAY", "SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"] {
+    let mut command = weekender(at, arguments);
+    for name in ["SLURM_ARRAY_TASK_ID", "JOB_COMPLETION_INDEX"] {
         command.env_remove(name);
     }
     command
@@ -30,10 +32,6 @@ pub fn ends(at: &Path, code: i32, arguments: &[&str]) -> (String, String) {
 
 pub fn succeeds(at: &Path, arguments: &[&str]) -> String {
     ends(at, 0, arguments).0
-}
-
-pub fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
 }
 
 pub fn film(path: &Path) -> Film {

@@ -7,6 +7,8 @@ mod frames;
 mod info;
 mod merging;
 mod parts;
+#[path = "../program_common/mod.rs"]
+mod program_common;
 mod refused;
 mod scripts;
 #[cfg(unix)]

@@ -22,6 +22,24 @@ pub struct Fake {
     pub pause: Duration,
     pub fails_at: Option<u64>,
     pub panics_at: Option<u64>,
+    /// The time that it takes to prepare.
+    pub preparation: Duration,
+    /// What it says after every pass.
+    pub message: Option<&'static str>,
+}
+
+impl Fake {
+    /// A renderer that works.
+    pub fn new(name: &'static str) -> Self {
+        Fake {
+            name,
+            pause: PAUSE,
+            fails_at: None,
+            panics_at: None,
+            preparation: Duration::ZERO,
+            message: None,
+        }
+    }
 }
 
 pub fn sample(pixel: usize, index: u64) -> PixelSum {
@@ -34,7 +52,12 @@ impl Renderer for Fake {
         BackendInfo { name: self.name, device: "fake".into(), lanes: 1, threads: 1 }
     }
 
+    fn take_messages(&mut self) -> Vec<String> {
+        self.message.into_iter().map(str::to_owned).collect()
+    }
+
     fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        std::thread::sleep(self.preparation);
         Ok(())
     }
 
@@ -68,7 +91,7 @@ impl Renderer for Fake {
 pub fn factory() -> Factory {
     Box::new(|choice| {
         let fails_at = matches!(choice, BackendChoice::Reference { .. }).then_some(16);
-        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at, panics_at: None }))
+        Ok(Box::new(Fake { fails_at, ..Fake::new(choice.name()) }))
     })
 }
 
@@ -93,7 +116,7 @@ pub fn job(width: u32) -> RenderJob {
 
 pub fn expected(samples: u64) -> Film {
     let mut film = job(2).new_film();
-    let mut fake = Fake { name: "alone", pause: Duration::ZERO, fails_at: None, panics_at: None };
+    let mut fake = Fake { pause: Duration::ZERO, ..Fake::new("alone") };
     fake.accumulate(&job(2), 0..samples, &mut film, &AtomicBool::new(false)).unwrap();
     film
 }

@@ -1,6 +1,6 @@
 //! Failures and panics of backends.
 
-use super::common::{CPU, FAILING, Fake, PAUSE, expected, job, other_cpu, started, wait_for};
+use super::common::{CPU, FAILING, Fake, expected, job, other_cpu, started, wait_for};
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
@@ -27,7 +27,7 @@ fn a_failing_backend_hands_its_film_to_the_cpu() {
 #[test]
 fn a_failing_fallback_ends_with_what_there_is() {
     let fails = |_: &BackendChoice| {
-        let fake = Fake { name: "cpu", pause: Duration::ZERO, fails_at: Some(8), panics_at: None };
+        let fake = Fake { pause: Duration::ZERO, fails_at: Some(8), ..Fake::new("cpu") };
         Ok(Box::new(fake) as Box<dyn Renderer>)
     };
     let mut progressive = Progressive::with_factory(Box::new(fails)).unwrap();
@@ -41,7 +41,7 @@ fn a_failing_fallback_ends_with_what_there_is() {
 fn a_panic_keeps_the_film_and_another_backend_goes_on() {
     let progressive = Progressive::with_factory(Box::new(|choice| {
         let panics_at = (*choice == CPU).then_some(16);
-        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at }))
+        Ok(Box::new(Fake { panics_at, ..Fake::new(choice.name()) }))
     }));
     let mut progressive = progressive.unwrap();
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(100)));
@@ -58,7 +58,7 @@ fn a_panic_of_every_backend_leaves_the_film_of_the_last_whole_pass() {
     let seen = Arc::clone(&asked);
     let progressive = Progressive::with_factory(Box::new(move |choice| {
         seen.lock().unwrap().push(choice.words());
-        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: Some(16) }))
+        Ok(Box::new(Fake { panics_at: Some(16), ..Fake::new(choice.name()) }))
     }));
     let mut progressive = progressive.unwrap();
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(100)));
@@ -73,7 +73,7 @@ fn a_panic_while_preparing_or_looking_ends_nothing() {
     let mut is_first = true;
     let progressive = Progressive::with_factory(Box::new(move |choice| {
         assert!(!std::mem::take(&mut is_first), "no such backend");
-        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None }))
+        Ok(Box::new(Fake::new(choice.name())))
     }));
     let mut progressive = progressive.unwrap();
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(2000)));
@@ -112,7 +112,7 @@ impl Renderer for Forgetful {
 #[test]
 fn samples_that_were_asked_for_and_not_added_are_missed() {
     let progressive = Progressive::with_factory(Box::new(|choice| {
-        let fake = Fake { name: choice.name(), pause: Duration::ZERO, fails_at: None, panics_at: None };
+        let fake = Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) };
         Ok(if *choice == CPU { Box::new(Forgetful) as Box<dyn Renderer> } else { Box::new(fake) })
     }));
     let mut progressive = progressive.unwrap();
@@ -125,9 +125,7 @@ fn samples_that_were_asked_for_and_not_added_are_missed() {
 
 #[test]
 fn a_member_that_panics_leaves_its_samples_to_the_others() {
-    let fake = |name, panics_at| -> Box<dyn Renderer> {
-        Box::new(Fake { name, pause: PAUSE, fails_at: None, panics_at })
-    };
+    let fake = |name, panics_at| -> Box<dyn Renderer> { Box::new(Fake { panics_at, ..Fake::new(name) }) };
     let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(4))]);
     let mut film = job(2).new_film();
     together.accumulate(&job(2), 0..64, &mut film, &AtomicBool::new(false)).unwrap();
@@ -138,9 +136,7 @@ fn a_member_that_panics_leaves_its_samples_to_the_others() {
 
 #[test]
 fn members_are_described_and_credited_together() {
-    let fake = |name, fails_at| -> Box<dyn Renderer> {
-        Box::new(Fake { name, pause: PAUSE, fails_at, panics_at: None })
-    };
+    let fake = |name, fails_at| -> Box<dyn Renderer> { Box::new(Fake { fails_at, ..Fake::new(name) }) };
     let mut together = Together::new(vec![fake("cpu", None), fake("gpu", None)]);
     let BackendInfo { name, threads, .. } = together.info();
     assert_eq!((name, threads), ("cpu,gpu", 2));
@@ -158,38 +154,10 @@ fn members_are_described_and_credited_together() {
     assert_eq!(credits, [("cpu", 64)]);
 }
 
-/// Says the same after every pass.
-struct Insistent(Fake);
-
-impl Renderer for Insistent {
-    fn info(&self) -> BackendInfo {
-        self.0.info()
-    }
-
-    fn take_messages(&mut self) -> Vec<String> {
-        vec!["a layer is too thin".to_owned()]
-    }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        Ok(())
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.0.accumulate(job, range, film, cancel)
-    }
-}
-
 #[test]
 fn what_is_said_after_every_pass_is_told_once() {
     let progressive = Progressive::with_factory(Box::new(|choice| {
-        let fake = Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None };
-        Ok(Box::new(Insistent(fake)))
+        Ok(Box::new(Fake { message: Some("a layer is too thin"), ..Fake::new(choice.name()) }))
     }));
     let mut progressive = progressive.unwrap();
     progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(64)));

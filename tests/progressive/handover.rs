@@ -44,7 +44,7 @@ fn switching_back_calls_the_switch_off() {
             std::thread::sleep(Duration::from_millis(50));
             made.send(()).unwrap();
         }
-        Ok(Box::new(Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None }))
+        Ok(Box::new(Fake::new(choice.name())))
     }));
     let mut progressive = progressive.unwrap();
     progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
@@ -113,7 +113,7 @@ fn a_pause_brings_home_what_the_device_holds() {
     let traced = Arc::new(Mutex::new(0));
     let count = Arc::clone(&traced);
     let progressive = Progressive::with_factory(Box::new(move |choice| {
-        let fake = Fake { name: choice.name(), pause: Duration::ZERO, fails_at: None, panics_at: None };
+        let fake = Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) };
         Ok(Box::new(Holding { fake, held: Vec::new(), traced: Arc::clone(&count) }))
     }));
     let mut progressive = progressive.unwrap();
@@ -147,7 +147,7 @@ fn a_pause_brings_home_what_the_device_holds() {
 #[test]
 fn a_film_goes_on_where_it_has_gaps() {
     let mut film = job(2).new_film();
-    let mut fake = Fake { name: "before", pause: Duration::ZERO, fails_at: None, panics_at: None };
+    let mut fake = Fake { pause: Duration::ZERO, ..Fake::new("before") };
     for range in [3..5, 10..30] {
         fake.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
     }
@@ -167,7 +167,7 @@ fn a_film_goes_on_where_it_has_gaps() {
 #[test]
 fn the_history_of_a_film_with_other_samples_misses_no_power_of_two() {
     let mut film = job(2).new_film();
-    let mut fake = Fake { name: "before", pause: Duration::ZERO, fails_at: None, panics_at: None };
+    let mut fake = Fake { pause: Duration::ZERO, ..Fake::new("before") };
     fake.accumulate(&job(2), 1000..1003, &mut film, &AtomicBool::new(false)).unwrap();
     let mut progressive = Progressive::with_factory(factory()).unwrap();
     progressive
@@ -234,7 +234,7 @@ fn another_backend_begins_with_short_passes() {
     let noted = Arc::clone(&passes);
     let progressive = Progressive::with_factory(Box::new(move |choice| {
         let pause = if *choice == CPU { Duration::ZERO } else { PAUSE };
-        let fake = Fake { name: choice.name(), pause, fails_at: None, panics_at: None };
+        let fake = Fake { pause, ..Fake::new(choice.name()) };
         if *choice == CPU {
             return Ok(Box::new(fake));
         }

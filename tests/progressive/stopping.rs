@@ -1,14 +1,10 @@
 //! What ends a render, pauses it, or starts another.
 
-use super::common::{CPU, Fake, PATIENCE, PAUSE, expected, job, started, wait_for, wait_until};
-use std::ops::Range;
-use std::sync::atomic::AtomicBool;
+use super::common::{CPU, Fake, PATIENCE, expected, job, started, wait_for, wait_until};
 use std::time::Duration;
-use weekender::film::Film;
 use weekender::progressive::{
     EndReason, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, RenderRequest, Stop,
 };
-use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 
 #[test]
 fn a_plan_of_samples_is_met_exactly() {
@@ -62,7 +58,7 @@ fn the_noise_target_ends_it() {
 #[test]
 fn the_error_at_the_end_is_that_of_the_whole_film() {
     let mut progressive = Progressive::with_factory(Box::new(|choice| {
-        Ok(Box::new(Fake { name: choice.name(), pause: Duration::ZERO, fails_at: None, panics_at: None }))
+        Ok(Box::new(Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) }))
     }))
     .unwrap();
     progressive.start(RenderRequest::new(job(16_384), CPU, Plan::samples(6)));
@@ -99,7 +95,7 @@ fn a_stop_keeps_the_film_and_can_be_taken_back() {
 fn a_new_job_takes_over_in_the_middle_of_a_pass() {
     let mut progressive = Progressive::with_factory(Box::new(|_| {
         let pause = Duration::from_millis(1);
-        Ok(Box::new(Fake { name: "cpu", pause, fails_at: None, panics_at: None }))
+        Ok(Box::new(Fake { pause, ..Fake::new("cpu") }))
     }))
     .unwrap();
     progressive.start(RenderRequest::new(job(7), CPU, Plan { pass_target: PATIENCE, ..Plan::endless() }));
@@ -119,37 +115,11 @@ fn abandoned_work_leaves_nothing() {
     assert_eq!(progressive.finish(), None);
 }
 
-/// Takes a while to prepare.
-struct Unhurried(Fake);
-
-const PREPARATION: Duration = Duration::from_millis(100);
-
-impl Renderer for Unhurried {
-    fn info(&self) -> BackendInfo {
-        self.0.info()
-    }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        std::thread::sleep(PREPARATION);
-        Ok(())
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.0.accumulate(job, range, film, cancel)
-    }
-}
-
 #[test]
 fn the_time_limit_includes_preparation() {
+    const PREPARATION: Duration = Duration::from_millis(100);
     let progressive = Progressive::with_factory(Box::new(|choice| {
-        let fake = Fake { name: choice.name(), pause: PAUSE, fails_at: None, panics_at: None };
-        Ok(Box::new(Unhurried(fake)))
+        Ok(Box::new(Fake { preparation: PREPARATION, ..Fake::new(choice.name()) }))
     }));
     let mut progressive = progressive.unwrap();
     let stop = Stop { seconds: Some(PREPARATION.as_secs_f64() / 2.0), ..Stop::default() };
