@@ -201,7 +201,7 @@ impl<'a> Report<'a> {
         }
         self.progress.at(&format!("rounding of {}", recipe.name), 0.0);
         let job = job(recipe, SamplerKind::Sobol, 0, true)?;
-        let samples = self.options.max_samples.clamp(2, ROUNDING_SAMPLES);
+        let samples = self.options.max_samples.min(ROUNDING_SAMPLES);
         let mut exact = backends::create(&backends::BackendChoice::Reference { threads: None })?;
         let exact = film(exact.as_mut(), &job, samples)?;
         for (name, renderer) in missing {

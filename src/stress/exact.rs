@@ -48,7 +48,7 @@ impl Double {
     }
 
     fn is_positive(self) -> bool {
-        self.high > 0.0 || (self.high == 0.0 && self.low > 0.0)
+        self.high > 0.0
     }
 }
 
