@@ -27,7 +27,7 @@ function theGpu() {
 
 // What one press of Live starts: the reader's settings, and the film that is made of them. A loop belongs to one
 // session; when that has ended, the loop touches nothing any more.
-class Session {
+export class Session {
   constructor(panel, stage) {
     Object.assign(this, { panel, stage, isEnded: false, wake: () => {} });
     this.reset();

@@ -325,6 +325,12 @@ fn sliders_fit_their_stages() {
         assert_eq!(has("depth"), has_bounces, "{}", stage.id);
         let is_used = |kind: &str| scene.materials.iter().any(|named| named.material.kind() == kind);
         assert_eq!(has("fuzz"), is_used("metal"), "{}", stage.id);
+        // Of many metals, that of the largest sphere has a slider.
+        let metals = scene.spheres.iter().filter(|sphere| scene.material_of(sphere).kind() == "metal");
+        if let Some(largest) = metals.max_by(|a, b| a.radius.total_cmp(&b.radius)) {
+            let label = format!("Fuzz ({})", scene.materials[largest.material].name);
+            assert!(sliders.iter().any(|slider| slider["label"] == label.as_str()), "{}: {label}", stage.id);
+        }
         assert_eq!(has("index"), is_used("dielectric"), "{}", stage.id);
     }
 }

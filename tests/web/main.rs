@@ -6,6 +6,7 @@ mod bytes;
 #[path = "../gpu_common/mod.rs"]
 mod gpu_common;
 mod page;
+mod session;
 
 /// Says that something was not tested, or fails where `WEEKENDER_REQUIRE_BROWSER=1` is set.
 fn skip(reason: &str) {
