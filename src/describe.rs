@@ -128,6 +128,17 @@ mod tests {
     }
 
     #[test]
+    fn the_film_says_how_many_samples_it_has() {
+        let recipe = Recipe::builtin("three-spheres").expect("built in");
+        let mut film = Film::new(1, 1, 1);
+        film.record(0..10, 0).expect("empty");
+        // The status can be that of a later pass.
+        let status = Status { samples_per_pixel: 12, ..Status::default() };
+        let description = describe(&recipe, None, &film, &status, None);
+        assert_eq!(description.get(key::SAMPLES), Some("10"));
+    }
+
+    #[test]
     fn all_who_rendered_are_named() {
         let info = |name: &'static str, lanes| BackendInfo { name, device: "x".into(), lanes, threads: 1 };
         let part =

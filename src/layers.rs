@@ -147,6 +147,14 @@ mod tests {
     }
 
     #[test]
+    fn what_has_no_albedo_of_its_own_is_white() {
+        let mut recipe = Stage::find("glass-schlick").unwrap().recipe();
+        recipe.settings.max_depth = 1;
+        let glass = image(Layer::Albedo, &recipe, 1).mean([8, 9]);
+        assert_eq!(glass, [1.0; 3]);
+    }
+
+    #[test]
     fn rays_are_as_many_as_the_renderer_counts() {
         use crate::render::Renderer;
         use crate::render_cpu::{CpuOptions, CpuRenderer};

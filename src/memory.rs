@@ -203,6 +203,22 @@ mod tests {
     }
 
     #[test]
+    fn a_group_has_what_its_limit_leaves_and_what_is_cached() {
+        let group = tempfile::tempdir().unwrap();
+        let free = |limit: &str, stat: Option<&str>| {
+            let write = |name: &str, text: &str| fs::write(group.path().join(name), text).unwrap();
+            write("limit", limit);
+            write("used", "700\n");
+            stat.into_iter().for_each(|stat| write("memory.stat", stat));
+            free_of(group.path().to_str().unwrap(), "limit", "used")
+        };
+        assert_eq!(free("1000\n", None), Some(300));
+        assert_eq!(free("1000\n", Some("active_file 150\ninactive_file 50\n")), Some(500));
+        assert_eq!(free("100\n", Some("active_file 0\n")), Some(0));
+        assert_eq!(free("max\n", None), None);
+    }
+
+    #[test]
     fn the_systems_words_are_understood() {
         let available = |text| kilobytes(text, "MemAvailable:");
         assert_eq!(available("MemTotal: 9 kB\nMemAvailable:    2048 kB\n"), Some(2 << 20));

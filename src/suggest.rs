@@ -38,6 +38,7 @@ mod tests {
     fn slips_and_beginnings_are_recognised() {
         let names = ["glass-refract", "glass-tir", "glass-schlick", "sky", "metal"];
         assert_eq!(similar_names("matal", names), ["metal"]);
+        assert_eq!(similar_names("sk", names), ["sky"]);
         assert_eq!(similar_names("glass", names).len(), 3);
         assert_eq!(similar_names("SKY", names), ["sky"]);
         assert!(similar_names("xylophone", names).is_empty());

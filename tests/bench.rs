@@ -108,6 +108,10 @@ fn without_a_compiler_the_baseline_is_left_out() {
     assert!(output.status.success());
     let table = text(&output.stdout);
     assert!(table.contains("skipped") && table.contains("no-such-compiler"), "{table}");
+    // An empty name is none.
+    command.env("CC", " ");
+    let table = text(&command.output().unwrap().stdout);
+    assert!(table.contains("C89, cc -O2"), "{table}");
 }
 
 #[test]

@@ -250,3 +250,15 @@ fn a_near_miss_is_told_of_the_side_that_misses() {
     let told = Told { job: &job, names: ["cpu", "reference"], paths: [&hits, &far], tolerance: 1e-3 };
     assert!(!told.verdict(&compare(&job, told.paths, 1e-3)).contains("misses"));
 }
+
+#[test]
+fn positions_are_as_exact_as_the_largest_that_the_path_has_passed() {
+    let job = small("three-spheres", 4, 3);
+    let path = |z: f64| {
+        let ray = |origin, direction| RecordedRay { origin, direction, throughput: [1.0; 3], hit: None };
+        let rays = vec![ray([0.0, 0.0, 1000.0], [0.0, 0.0, -1.0]), ray([0.0, 0.0, z], [0.0, 1.0, 0.0])];
+        PathRecord { rays, radiance: [0.5; 3] }
+    };
+    assert_eq!(compare(&job, [&path(0.0), &path(1e-3)], 1e-4).first, None);
+    assert!(compare(&job, [&path(0.0), &path(1.0)], 1e-4).first.is_some());
+}

@@ -7,6 +7,7 @@ use glam::DVec3;
 use gpu_common::{cpu, gpu, job_of};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
+use weekender::prepared::PreparedScene;
 use weekender::render::{RenderError, RenderJob, RenderSettings, Renderer, SamplerKind, Stats};
 use weekender::render_gpu::{
     Fault, FaultInjection, GpuError, GpuOptions, GpuRenderer, HierarchyKind, InjectionPoint, adapters,
@@ -380,16 +381,24 @@ fn a_camera_that_moves_keeps_the_scene_on_the_device() {
     let job = job_of(&field(300).0, BOOK_CAMERA, [64, 36], 8, SamplerKind::Sobol, false);
     rendered(&mut moved, &job, 2);
     assert!(!moved.report().hierarchy_time.is_zero());
-    let camera = Camera { look_from: BOOK_CAMERA.look_from * 1.1, ..BOOK_CAMERA };
     let settings = RenderSettings { width: 48, height: 27, ..*job.settings() };
-    let next = job.seen_by(camera, settings).unwrap();
-    let film = rendered(&mut moved, &next, 2);
-    assert!(moved.report().hierarchy_time.is_zero(), "{:?}", moved.report());
-    let Some(mut fresh) = gpu(GpuOptions::default()) else { return };
-    assert!(film.halves() == rendered(&mut fresh, &next, 2).halves());
+    let low = DVec3::new(13.0, 0.05, 3.0);
+    for look_from in [BOOK_CAMERA.look_from * 1.1, low] {
+        let next = job.seen_by(Camera { look_from, ..BOOK_CAMERA }, settings).unwrap();
+        let film = rendered(&mut moved, &next, 2);
+        assert!(moved.report().hierarchy_time.is_zero(), "{:?}", moved.report());
+        let Some(mut fresh) = gpu(GpuOptions::default()) else { return };
+        assert!(film.halves() == rendered(&mut fresh, &next, 2).halves());
+        // Near the ground, the ground is measured from the point below the eye.
+        let anchors = |job| -> Vec<_> {
+            PreparedScene::<f32>::new(job).anchored.iter().map(|sphere| sphere.anchor).collect()
+        };
+        assert_eq!(anchors(&job) != anchors(&next), look_from == low);
+    }
 
     // A different scene gets a new hierarchy.
     let other = job_of(&field(200).0, BOOK_CAMERA, [48, 27], 8, SamplerKind::Sobol, false);
     let film = rendered(&mut moved, &other, 2);
+    let Some(mut fresh) = gpu(GpuOptions::default()) else { return };
     assert!(film.halves() == rendered(&mut fresh, &other, 2).halves());
 }

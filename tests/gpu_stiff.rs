@@ -65,6 +65,7 @@ fn closed_forms_hold() {
     let inside = Camera { look_from: DVec3::new(0.2, 0.1, -0.3), look_at: DVec3::NEG_Y, ..AT_BALL };
     let side = DVec3::new(0.9, 0.0, 0.0);
     let trapped = Camera { look_from: side, look_at: side + DVec3::Y, vup: DVec3::Z, ..AT_BALL };
+    let into = Camera { look_from: DVec3::ZERO, look_at: DVec3::NEG_Y, vup: DVec3::Z, ..AT_BALL };
     let ground = (DVec3::NEG_Y * 1001.0, 1000.0, WHITE);
     let at = DVec3::new(1e4, -3e4, 1e5);
     let cases: Vec<(&str, Vec<Ball>, Camera, u32, f64)> = vec![
@@ -72,6 +73,7 @@ fn closed_forms_hold() {
         ("almost copies", vec![(DVec3::ZERO, 1.0, MATTE), (DVec3::X * 1e-6, 1.0, MATTE)], AT_BALL, 50, 0.5),
         ("shells", shells(300), AT_BALL, 50, 0.5),
         ("an eye on a ball", vec![(at, 0.5, MATTE)], near(at + up * 0.5), 50, 1.0),
+        ("from a ball into it", vec![(DVec3::NEG_Y * 1000.0, 1000.0, MATTE)], into, 50, 0.5),
         ("an eye on glass", vec![(at, 0.5, GLASS)], near(at + up * 0.5), 50, 1.0),
         ("an eye near a ball", vec![(at, 0.5, MATTE)], near(at + up * (0.5 + 1e-7)), 50, 1.0),
         ("a closed ball on the ground", vec![(DVec3::ZERO, 1.0, WHITE), ground], inside, 300, 0.0),

@@ -97,10 +97,13 @@ fn a_picture_says_what_was_said_of_it() {
     foreign.set("Place", "東京 or Köln");
     let mut latin = description();
     latin.set("Place", "Köln");
+    let mut mixed = Description::new("# a recipe");
+    mixed.set("Place", "東京 or Köln");
     let large_recipe: String =
         (0..100_000).map(|i| format!("center = [{i}, {}, 0]\n", i * 7919 % 1013)).collect();
     let large = Description::new(&large_recipe);
-    for (case, description) in [description(), foreign, latin, large, Description::new("")].iter().enumerate()
+    for (case, description) in
+        [description(), foreign, latin, mixed, large, Description::new("")].iter().enumerate()
     {
         for format in OutputFormat::ALL {
             let path = directory.path().join(format!("a{}", format.ending()));

@@ -237,6 +237,15 @@ fn a_scene_that_became_another_is_measured_again() {
     let recipe = weekender::recipe::file::parse(reference.description.recipe(), "reference").unwrap();
     assert_eq!(recipe.settings.sampler.name(), "sobol");
     assert_eq!(run(), first);
+    // Figures of another version of the file mean something else.
+    let json = at.join("found/report.json");
+    let text = fs::read_to_string(&json).unwrap();
+    let (head, runs) = text.split_once("\"runs\"").unwrap();
+    let head = head.replacen("\"schema\": 1,", "\"schema\": 0,", 1);
+    let other = format!("{head}\"runs\"{}", runs.replace("\"mse\": ", "\"mse\": 1"));
+    assert_ne!(other, text);
+    fs::write(&json, other).unwrap();
+    assert_eq!(run()[0]["points"][5]["mse"], first[0]["points"][5]["mse"]);
     scene("0.9");
     let second = run();
     assert_eq!(second.as_array().unwrap().len(), 4);

@@ -149,9 +149,11 @@ pub struct BackendListing {
 
 /// The backends of this machine, ordered as on the command line.
 pub fn list() -> Vec<BackendListing> {
-    let levels = Isa::available();
+    listing(Isa::available(), &adapters())
+}
+
+fn listing(levels: Vec<Isa>, adapters: &[AdapterInfo]) -> Vec<BackendListing> {
     let best = levels.last().copied();
-    let adapters = adapters();
     let auto_adapter = adapters.iter().position(AdapterInfo::is_fit);
     let cpu = levels.into_iter().map(|isa| {
         let lanes: Vec<String> = isa.lane_counts().iter().map(usize::to_string).collect();
@@ -232,11 +234,34 @@ mod tests {
         assert_eq!(failed[1], BackendChoice::Cpu(low_priority));
         let panicked = CpuOptions { panics_after: Some(3), ..CpuOptions::default() };
         let next = BackendChoice::fallback(&[BackendChoice::Cpu(panicked)]);
+        let Some(BackendChoice::Cpu(options)) = &next else { panic!("{next:?}") };
+        assert_eq!(options.panics_after, None);
         assert_eq!(next.map(|next| next.words()), Some("the CPU's scalar code"));
     }
 
     #[test]
     fn one_listed_backend_is_the_automatic_one() {
         assert_eq!(list().iter().filter(|line| line.is_auto).count(), 1);
+        let adapter = |is_software, lacks: Option<&str>| AdapterInfo {
+            name: "an adapter".to_owned(),
+            kind: "other",
+            backend: "Vulkan".to_owned(),
+            driver: String::new(),
+            is_software,
+            storage_binding_limit: 1 << 27,
+            buffer_limit: 1 << 28,
+            has_timestamps: false,
+            subgroup_size: 32,
+            lacks: lacks.map(str::to_owned),
+        };
+        let unfit = [adapter(true, None), adapter(false, Some("no compute shaders"))];
+        let chosen = |adapters: &[AdapterInfo]| {
+            let list = listing(vec![Isa::Portable, Isa::Sse42], adapters);
+            list.iter().map(|line| line.is_auto).collect::<Vec<_>>()
+        };
+        assert_eq!(chosen(&unfit), [false, true, false, false, false]);
+        let [software, _] = unfit;
+        let fit = [software, adapter(false, None), adapter(false, None)];
+        assert_eq!(chosen(&fit), [false, false, false, true, false, false]);
     }
 }

@@ -182,6 +182,7 @@ mod tests {
             }
         }
         assert_eq!(seen.len(), 3, "{seen:?}");
+        assert!(begin.elapsed() >= 2 * render.every, "there is a pause between two writings");
         drop(progressive);
         keeper.finish();
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);

@@ -200,6 +200,16 @@ mod tests {
     }
 
     #[test]
+    fn fine_lines_stand_at_every_digit_unless_there_would_be_too_many() {
+        let fine = |scale, limits| {
+            let axis = Axis { limits: Some(limits), ..Axis::new("", scale) };
+            axis.ruler(std::iter::empty()).fine_ticks.len()
+        };
+        assert_eq!(fine(Scale::Log, [1.0, 100.0]), 2 * 8);
+        assert_eq!([fine(Scale::Log, [1.0, 1e9]), fine(Scale::Linear, [1.0, 100.0])], [0, 0]);
+    }
+
+    #[test]
     fn an_axis_holds_its_values_whatever_they_are() {
         for values in [vec![], vec![3.0], vec![f64::NAN, 1.0, 1e9], vec![0.0, -1.0], vec![5.0, 5.0]] {
             for scale in [Scale::Linear, Scale::Log] {

@@ -76,4 +76,20 @@ mod tests {
             assert_eq!(minus(&ranges_of(&all), &ranges_of(&taken)), left, "{all:?} - {taken:?}");
         }
     }
+
+    #[test]
+    fn what_a_film_has_more_is_its_own() {
+        let film = |samples: u64, rejected: u64, red: u64| {
+            let mut film = Film::new(2, 1, 1);
+            film.halves_mut()[0][1] = PixelSum([red, 0, 0]);
+            film.record(0..samples, rejected).unwrap();
+            film
+        };
+        let rest = difference(film(6, 3, 50), &film(4, 1, 20)).unwrap();
+        assert_eq!((rest.samples().to_string().as_str(), rest.rejected()), ("4..6", 2));
+        assert_eq!(rest.halves()[0][1], PixelSum([30, 0, 0]));
+        // What is less than the base was not made from it.
+        assert!(difference(film(6, 0, 50), &film(4, 1, 20)).is_none());
+        assert!(difference(film(6, 3, 10), &film(4, 1, 20)).is_none());
+    }
 }

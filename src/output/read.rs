@@ -240,6 +240,15 @@ mod tests {
         }
     }
 
+    #[test]
+    fn where_rows_have_two_transfers_the_lower_limit_counts() {
+        let file = b"P6 1 2 255 \x80\x80\x80\x80\x80\x80";
+        let encoding = Encoding::Book(Transfer::LinearAboveGamma2);
+        let read = decode_picture(io::Cursor::new(file), file.len() as u64, encoding).unwrap();
+        assert!(read.pixels[0][0] > 0.5 && read.pixels[1][0] < 0.3, "{:?}", read.pixels);
+        assert_eq!(read.limit, (255.0_f64 / 256.0).powi(2));
+    }
+
     proptest! {
         #[test]
         fn a_byte_stands_for_the_values_that_become_it(x in 0.0..1.2_f64) {

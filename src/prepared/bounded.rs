@@ -43,3 +43,25 @@ impl Boundable for Bounded<'_, '_> {
         Aabb::new(vector(center - reach, below), vector(center + reach, above))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_leaves_room_for_the_rounding_of_radius_and_place() {
+        for (place, radius) in [(0.0, 3.0), (5.0, 0.1), (-7.0, 7.0)] {
+            let (center, origin) = (DVec3::new(0.0, place, 0.0), DVec3::ZERO);
+            let sphere = Sphere { center, radius, material: 0 };
+            let aabb = Bounded::all([&sphere], &origin)[0].aabb();
+            let room = BOX_MARGIN * place.abs().max(radius);
+            for axis in 0..3 {
+                let [low, high] = [aabb.min[axis], aabb.max[axis]].map(f64::from);
+                assert!(
+                    low <= center[axis] - radius - room && high >= center[axis] + radius + room,
+                    "{aabb:?}"
+                );
+            }
+        }
+    }
+}

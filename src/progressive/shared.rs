@@ -106,3 +106,22 @@ impl Shared {
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use std::sync::atomic::AtomicU32;
+
+    #[test]
+    fn a_death_of_the_render_thread_is_told() {
+        let (shared, count) = (Shared::default(), Arc::new(AtomicU32::new(0)));
+        let noted = Arc::clone(&count);
+        shared.set_notice(Box::new(move || {
+            noted.fetch_add(1, Ordering::Relaxed);
+        }));
+        shared.died();
+        assert!(shared.status().phase.is_over());
+        assert_eq!(count.load(Ordering::Relaxed), 1);
+    }
+}

@@ -310,4 +310,19 @@ mod tests {
         assert!(renderer.tile_occupancy().expect("packets").tiles.is_empty());
         assert_eq!(CpuRenderer::reference(Some(1)).expect("available").tile_occupancy(), None);
     }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn threads_of_low_priority_give_way() {
+        let niceness = |low_priority| {
+            let options = CpuOptions { threads: Some(1), low_priority, ..CpuOptions::default() };
+            CpuRenderer::new(options).unwrap().threads.install(|| {
+                let stat = std::fs::read_to_string("/proc/thread-self/stat").unwrap();
+                // The 19th field; the second is a name in brackets, which may hold blanks.
+                let (_, from_third) = stat.rsplit_once(") ").unwrap();
+                from_third.split(' ').nth(16).unwrap().parse::<i32>().unwrap()
+            })
+        };
+        assert_eq!(niceness(true), (niceness(false) + NICENESS).min(19));
+    }
 }

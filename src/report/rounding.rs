@@ -77,5 +77,8 @@ mod tests {
         assert!(found.floor.is_none() && found.floor_limit < found.rms, "{found:?}");
         let found = rounding("s", "b", &film(|p, h| chance(p, h) + 1e-2), &exact);
         assert!((found.floor.unwrap() - 1e-2).abs() < 4e-3, "{found:?}");
+        // Halves that differ in opposite directions have nothing in common; the limit is a number all the same.
+        let found = rounding("s", "b", &film(|_, half| if half == 0 { 1e-3 } else { -1e-3 }), &exact);
+        assert!(found.floor.is_none() && found.floor_limit > 0.0, "{found:?}");
     }
 }

@@ -40,3 +40,32 @@ pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
     }
     (first != other).then(|| "the spheres, materials or sky differ".to_owned())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+    use crate::stages::Transfer;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_differs_first_is_named_with_both_values() {
+        let recipe = Recipe::builtin("three-spheres").unwrap();
+        let told = |change: fn(&mut Recipe)| {
+            let mut other = recipe.clone();
+            change(&mut other);
+            difference(&recipe.job().unwrap(), &other.job().unwrap())
+        };
+        assert_eq!(told(|_| {}), None);
+        assert_eq!(told(|recipe| recipe.settings.width = 7).unwrap(), "size is 800x450 here, 7x450 there");
+        assert_eq!(told(|recipe| recipe.settings.seed = 5).unwrap(), "seed is 0 here, 5 there");
+        let camera = told(|recipe| recipe.camera.vfov_degrees = 20.0).unwrap();
+        assert!(camera.starts_with("camera is ") && camera.contains("vfov_degrees: 20.0"), "{camera}");
+        let rules = told(|recipe| recipe.rules.transfer = Transfer::Linear).unwrap();
+        assert!(rules.starts_with("rules of the stage is ") && rules.contains("Linear"), "{rules}");
+        let fewer = told(|recipe| Arc::make_mut(&mut recipe.scene).spheres.truncate(4)).unwrap();
+        assert_eq!(fewer, "number of spheres is 5 here, 4 there");
+        let moved = told(|recipe| Arc::make_mut(&mut recipe.scene).spheres[0].radius *= 0.5).unwrap();
+        assert_eq!(moved, "the spheres, materials or sky differ");
+    }
+}

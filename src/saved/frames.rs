@@ -50,3 +50,44 @@ impl FrameState {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::write_image;
+
+    #[test]
+    fn a_frame_is_whole_if_all_that_made_it_is_the_same() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("frame.png");
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
+        let of = |recipe: &Recipe, software: &str| FrameState::of(&path, recipe, software);
+        assert_eq!(of(&recipe, "Weekender 1"), FrameState::Missing);
+
+        let mut film = recipe.job().unwrap().new_film();
+        film.record(0..2, 0).unwrap();
+        let mut description = Description::new(&file::to_picture_toml(&recipe));
+        description.set(key::SOFTWARE, "Weekender 1");
+        description.set(key::SAMPLES, 2);
+        let write = |description: &Description| {
+            write_image(&path, &film, recipe.rules.transfer, description).unwrap()
+        };
+        write(&description);
+        assert_eq!(of(&recipe, "Weekender 1"), FrameState::Whole);
+
+        let told = |recipe: &Recipe, software: &str, part: &str| match of(recipe, software) {
+            FrameState::Wrong(words) => assert!(words.contains(part), "{words} should say {part}"),
+            other => panic!("{other:?}, but should say {part}"),
+        };
+        told(&recipe, "Weekender 2", "from Weekender 1, not Weekender 2");
+        let mut other = recipe.clone();
+        other.settings.seed = 5;
+        told(&other, "Weekender 1", "of another picture: seed is 5 here, 0 there");
+        description.set(key::SAMPLES, 1);
+        write(&description);
+        told(&recipe, "Weekender 1", "of 1 samples per pixel, not 2");
+        std::fs::write(&path, "no picture").unwrap();
+        told(&recipe, "Weekender 1", "frame.png");
+    }
+}

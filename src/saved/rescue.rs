@@ -99,6 +99,8 @@ mod tests {
         assert!(!at("unused").exists());
         let second = keep(&[at("made/deep")]).unwrap();
         assert!(second != path && second.exists() && path.exists());
+        // No file system has names as long as a picture's name may be.
+        assert!(keep_in(&[at("made")], &"long".repeat(200), &film, &description).unwrap().exists());
 
         let lost = keep(&[at("file"), at("file/x")]).unwrap_err();
         for part in ["lost", "6 per pixel", "7 s", "file/x"] {

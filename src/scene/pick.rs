@@ -127,6 +127,12 @@ mod tests {
         assert_eq!((pick.sphere, pick.distance, pick.normal), (1, 0.5, DVec3::Z));
         let on_surface = two().pick(DVec3::new(0.0, 0.0, -0.5), DVec3::Z);
         assert_eq!(on_surface, None);
+        // Rounding may put the eye on a large sphere a little below its surface.
+        let mut earth = Scene::default();
+        let ground = earth.add_material("ground", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        earth.add_sphere(DVec3::ZERO, 1e9, ground);
+        assert_eq!(earth.pick(DVec3::Y * (1e9 - 1e-3), DVec3::Y), None);
+        assert_eq!(earth.pick(DVec3::Y * (1e9 - 10.0), DVec3::Y).unwrap().distance, 10.0);
     }
 
     #[test]

@@ -29,6 +29,11 @@ fn keyframes_are_written_and_read_back_to_the_bit() {
     for text in [to_toml(&recipe), to_picture_toml(&recipe)] {
         assert_eq!(parse(&text, "scene").unwrap(), recipe);
     }
+    // So they are where the scene is only named.
+    let field = Recipe::find("field:10000").unwrap();
+    let text = to_picture_toml(&Recipe { keyframes: recipe.keyframes.clone(), ..field });
+    assert!(text.len() < 2000, "{text}");
+    assert_eq!(parse(&text, "scene").unwrap().keyframes, recipe.keyframes);
 }
 
 #[test]

@@ -67,6 +67,15 @@ fn only_what_changed_is_rendered_again() {
 }
 
 #[test]
+fn references_are_in_the_order_of_their_file() {
+    let file = std::fs::read_to_string(checkout().join("docs/companion/references.toml")).unwrap();
+    let keys = file.lines().filter_map(|line| line.strip_prefix('[')?.strip_suffix(']'));
+    let html = Html::new(&PAGE.html);
+    let ids: Vec<&str> = html.ids().into_iter().filter_map(|id| id.strip_prefix("ref-")).collect();
+    assert_eq!(keys.collect::<Vec<_>>(), ids);
+}
+
+#[test]
 fn every_link_leads_somewhere() {
     let html = Html::new(&PAGE.html);
     let ids = html.ids();

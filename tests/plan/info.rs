@@ -22,6 +22,7 @@ fn files_say_what_they_are() {
     };
     assert_eq!(of("p"), "\"plan\" \"metal\" \"metal\" 8 \"0..8\" null 2");
     assert_eq!(of("p/plan.json"), of("p"));
+    assert_eq!([&json("p")["halves"], &json("p/part-1.exr")["halves"]], [2, 2]);
     assert_eq!(of("p/part-1.exr"), "\"film\" \"metal\" \"metal\" 4 \"4..8\" 4 null");
     assert_eq!(of("a b.exr"), "\"film\" \"three-spheres\" null 4 \"0..4\" 4 null");
     assert_eq!(of("a.png"), "\"picture\" \"three-spheres\" null 4 null null null");

@@ -78,6 +78,21 @@ fn a_signal_ends_it_with_the_picture_so_far() {
 }
 
 #[test]
+fn nothing_is_written_while_nothing_comes() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, "p", &["--samples", "8", "--parts", "2"]);
+    let child = watch(at);
+    render_part(at, "p", 0);
+    until(at, 4);
+    // It looks at the parts every second.
+    sleep(Duration::from_millis(2500));
+    render_part(at, "p", 1);
+    let (code, told) = ended(child);
+    assert_eq!((code, told.matches("4 of 8 samples per pixel").count()), (Some(0), 1), "{told}");
+}
+
+#[test]
 fn between_two_writings_it_waits_as_long_as_it_is_told_to() {
     let at = TempDir::new().unwrap();
     let at = at.path();

@@ -145,6 +145,14 @@ fn members_are_described_and_credited_together() {
     let credits = together.credits(64);
     assert_eq!(credits.iter().map(|(_, samples)| samples).sum::<u64>(), 64);
     assert_eq!(credits.iter().map(|(info, _)| info.name).collect::<Vec<_>>(), ["cpu", "gpu"]);
+    // Who has failed has a share in the samples until then, but not in later ones.
+    let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(48))]);
+    let mut film = job(2).new_film();
+    for range in [0..64, 64..128] {
+        together.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
+        let sum: u64 = together.credits(64).iter().map(|(_, samples)| samples).sum();
+        assert_eq!(sum, 64);
+    }
     // Who fails before its first sample has no share in the picture.
     let mut together = Together::new(vec![fake("cpu", None), fake("gpu", Some(0))]);
     let mut film = job(2).new_film();

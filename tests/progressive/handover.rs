@@ -227,6 +227,36 @@ impl Renderer for Noting {
     }
 }
 
+#[test]
+fn the_history_has_each_power_of_two_once() {
+    let progressive = Progressive::with_factory(Box::new(|choice| {
+        // Passes stay at two samples.
+        Ok(Box::new(Fake { pause: Plan::INTERACTIVE_PASS / 2, ..Fake::new(choice.name()) }))
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(RenderRequest::new(job(2), CPU, Plan::samples(12)));
+    let history = progressive.wait_until_over().history;
+    let samples: Vec<u64> = history.iter().map(|point| point.samples_per_pixel).collect();
+    assert_eq!(samples, [2, 4, 8]);
+}
+
+#[test]
+fn after_a_failure_passes_are_short_again() {
+    let passes = Arc::new(Mutex::new(Vec::new()));
+    let noted = Arc::clone(&passes);
+    let progressive = Progressive::with_factory(Box::new(move |choice| {
+        if *choice == FAILING {
+            let pause = Duration::ZERO;
+            return Ok(Box::new(Fake { pause, fails_at: Some(1024), ..Fake::new(choice.name()) }));
+        }
+        Ok(Box::new(Noting { fake: Fake::new(choice.name()), passes: Arc::clone(&noted) }))
+    }));
+    let mut progressive = progressive.unwrap();
+    progressive.start(RenderRequest::new(job(2), FAILING, Plan::samples(2048)));
+    assert_eq!(progressive.wait_until_over().samples_per_pixel, 2048);
+    assert_eq!(passes.lock().unwrap()[0], 2);
+}
+
 /// A pass of many samples by a fast backend can take a slow one minutes.
 #[test]
 fn another_backend_begins_with_short_passes() {
