@@ -3,7 +3,7 @@
 use super::calibration::{Calibration, TOLERANCE};
 use super::data::{Curve, Data};
 use super::summary::{CurvePoint, CurveSummary, SamplerRatio};
-use crate::statistics::fit::Crossing;
+use crate::statistics::fit::{Crossing, Point, time_to};
 use std::fmt::Write;
 
 /// Backends that others are compared with, if they were measured.
@@ -242,7 +242,6 @@ fn rounding(text: &mut String, data: &Data, curves: &[CurveSummary]) {
 
 /// Number of samples at which the error of a curve would be `error`.
 fn samples_to(curve: &CurveSummary, error: f64) -> Option<f64> {
-    use crate::statistics::fit::{Point, time_to};
     let known = curve.points.iter().filter(|p| p.rmse > 0.0);
     let points: Vec<Point> = known.map(|p| Point { time: p.samples as f64, error: p.rmse }).collect();
     time_to(&points, error).map(|crossing| crossing.time)
