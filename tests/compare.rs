@@ -124,7 +124,7 @@ fn a_backend_repeats_the_samples_of_a_picture_without_an_error_estimate() {
     render(at, "one-half.png", &["--samples", "16", "--estimate-error", "off"]);
     let (code, found) = json(&["one-half.png", "cpu", "--samples", "16"], at);
     assert_eq!(code, 0, "{found}");
-    // Two halves would have other samples, whose noise is ten times as large.
+    // Two halves would have other samples, which differ by 0.02.
     assert!(found["rms"].as_f64().unwrap() < 0.004, "{found}");
 }
 
