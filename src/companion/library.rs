@@ -102,7 +102,7 @@ const FILES: &[(&str, &str)] = embedded![
     "src/sampling/warp.rs"
     "src/scene/builtin/book.rs"
     "src/scene/camera.rs"
-    "src/stages/table.rs"
+    "src/stages/table/setups.rs"
 ];
 
 impl Library {

@@ -1,6 +1,6 @@
 //! Chapters 12 to 14: the positionable camera, its lens, and the final picture.
 
-use super::{PATHS, THREE_BALLS};
+use super::setups::{PATHS, THREE_BALLS};
 use crate::scene::Camera;
 use crate::scene::builtin::{BOOK_CAMERA, book, touching_spheres};
 use crate::stages::{Rules, Setup, Stage, sights};

@@ -1,6 +1,6 @@
 //! Chapters 9 to 11: diffuse surfaces, metal and glass.
 
-use super::{LINEAR, PATHS, THREE_BALLS};
+use super::setups::{LINEAR, PATHS, THREE_BALLS};
 use crate::scene::builtin::{LeftSphere, metals, three_spheres};
 use crate::stages::{DielectricLaws, Diffuse, Rules, Setup, Stage, SurfaceRule, Transfer, sights};
 

@@ -1,6 +1,6 @@
 //! Chapters 2 to 8: pictures, rays, spheres and their normals, antialiasing.
 
-use super::{LINEAR, ONE_RAY, PATHS};
+use super::setups::{LINEAR, ONE_RAY, PATHS};
 use crate::scene::builtin::{matte_on_ground, one_sphere};
 use crate::stages::{Rules, Setup, Shading, Stage, sights};
 
