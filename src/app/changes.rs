@@ -15,6 +15,8 @@ pub struct Changes {
     undo: Undoer<Document>,
     last: Document,
     moved: Option<Instant>,
+    /// A move was noted in this frame, however long the frame takes.
+    has_moved: bool,
     /// The changes of this frame belong to a move that began earlier.
     is_in_gesture: bool,
     /// The document was changed by undo or redo, which is not a new undo step.
@@ -31,6 +33,7 @@ impl Changes {
             }),
             last: document,
             moved: None,
+            has_moved: false,
             is_in_gesture: false,
             is_undoing: false,
         }
@@ -65,12 +68,13 @@ impl Changes {
     /// Notes a change by hand, which is previewed first.
     pub fn note_move(&mut self) {
         self.moved = Some(Instant::now());
+        self.has_moved = true;
     }
 
     /// Ends the move. The changes of a command are not part of it.
     pub fn end_move(&mut self) {
         self.moved = None;
-        self.is_in_gesture = false;
+        (self.has_moved, self.is_in_gesture) = (false, false);
     }
 
     /// Whether something is being moved.
@@ -106,7 +110,7 @@ impl Changes {
         }
         self.last.clone_from(document);
         self.is_undoing = false;
-        self.is_in_gesture = self.is_moving() || is_by_hand;
+        self.is_in_gesture = std::mem::take(&mut self.has_moved) || self.is_moving() || is_by_hand;
         // What lasts becomes a step of its own.
         if !is_typing {
             self.undo.feed_state(context.input(|input| input.time), document);
@@ -121,5 +125,27 @@ fn restore(document: &mut Document, state: &Document) {
     let follows = !before.has_own_size && !document.has_own_size;
     if follows && std::sync::Arc::ptr_eq(&before.origin, &document.origin) {
         document.set_size(before.size());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+
+    #[test]
+    fn a_move_with_long_frames_is_one_step() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        let first = document.camera;
+        for step in 1..=3 {
+            changes.note_move();
+            changes.moved = Instant::now().checked_sub(2 * SETTLE);
+            document.camera.vfov_degrees += f64::from(step);
+            assert!(changes.follow(&context, &document, false));
+        }
+        changes.undo(&mut document);
+        assert_eq!(document.camera, first);
+        assert!(!changes.can_undo(&document));
     }
 }
