@@ -56,7 +56,6 @@ impl Window {
 
     fn show_restored(&mut self, restored: Restored) {
         let Restored { document, view, framing, is_paused, note } = restored;
-        self.seconds_before = Some(0.0);
         self.show_document(document);
         self.show_view(view);
         match framing {
@@ -84,7 +83,6 @@ impl Window {
             self.main.resume();
             self.second.resume();
         }
-        self.seconds_before = Some(0.0);
         self.show_document(Document::new(Origin::usual()));
     }
 

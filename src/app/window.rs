@@ -265,7 +265,6 @@ impl Window {
         if stop != usual && document.stop.samples.is_none() {
             document.stop = stop;
         }
-        self.seconds_before = Some(0.0);
         self.show_document(document);
     }
 
