@@ -49,20 +49,15 @@ impl Verdict {
         self.found = None;
         let [first, second] = names.clone();
         self.names = Some(names);
-        let mut recipe = kept.document.recipe();
-        recipe.samples_per_pixel = kept.samples();
-        let kept = Picture { name: first, recipe, film: Arc::clone(&kept.film) };
-        let (mut recipe, number) = (subject.document().recipe(), self.number);
+        let kept = Picture { name: first, recipe: kept.document.recipe(), film: Arc::clone(&kept.film) };
+        let (recipe, number) = (subject.document().recipe(), self.number);
         let answer = self.answers.answer(context);
         let shared = subject.shared_film();
         // The live film goes on, so it is copied first.
         subject.inspect(move |film| {
             let copy = shared.map_or_else(|| film.try_copy().map(Arc::new), Ok);
             match copy {
-                Ok(film) => {
-                    recipe.samples_per_pixel = film.sample_count();
-                    compare_on_thread(number, kept, Picture { name: second, recipe, film }, answer);
-                }
+                Ok(film) => compare_on_thread(number, kept, Picture { name: second, recipe, film }, answer),
                 Err(error) => answer.give((number, Err(error.to_string()))),
             }
         });
@@ -188,4 +183,25 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
         (false, _) => "More than noise",
     };
     Ok(Found { headline, is_equal: comparison.is_equal(), text: told(&sides, &comparison) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_answer_to_an_earlier_question_is_not_shown() {
+        let context = egui::Context::default();
+        let mut verdict = Verdict { names: Some(Default::default()), number: 2, ..Verdict::default() };
+        verdict.answers.answer(&context).give((1, Err("earlier".to_owned())));
+        verdict.receive();
+        assert_eq!(verdict.words(), None);
+        verdict.answers.answer(&context).give((2, Err("mine".to_owned())));
+        verdict.receive();
+        assert_eq!(verdict.words(), Some(Err("mine")));
+        verdict.close();
+        verdict.answers.answer(&context).give((2, Err("late".to_owned())));
+        verdict.receive();
+        assert_eq!((verdict.is_open(), verdict.words()), (false, None));
+    }
 }
