@@ -2,16 +2,18 @@
 
 use crate::common::{has_samples, open, opened, save, send, until};
 use egui_kittest::Harness;
-use weekender::app::{Command, Window};
+use std::path::Path;
+use weekender::app::{Command, SlotCommand, SlotNumber, Window};
 use weekender::cli;
 use weekender::film::{checkpoint, key};
 use weekender::output::OutputFormat;
 use weekender::progressive::Stop;
+use weekender::stages::Stage;
 
 const PICTURE: &str = "--stage defocus --size 48x27 --vfov 31 --device cpu";
 
 /// Saves a film of [`PICTURE`] with forty samples.
-fn save_film(path: &std::path::Path, more: &str) {
+fn save_film(path: &Path, more: &str) {
     let mut harness = open(&format!("{PICTURE} {more} --samples 40"));
     until(&mut harness, "the end", has_samples(40));
     save(&mut harness, Command::Save(OutputFormat::Exr), path);
@@ -81,19 +83,64 @@ fn the_film_of_another_picture_is_refused() {
     until(&mut harness, "a render from the beginning", has_samples(50));
 }
 
+/// Says of a film that it took a million seconds.
+fn make_old(path: &Path) {
+    let mut file = checkpoint::load(path).unwrap();
+    file.description.set(key::SECONDS, 1e6);
+    checkpoint::save(path, &file.film, &file.description).unwrap();
+}
+
+/// Saves what is shown, and returns the seconds of tracing that its film tells.
+fn seconds(harness: &mut Harness<'_, Window>, path: &Path) -> f64 {
+    save(harness, Command::Save(OutputFormat::Exr), path);
+    checkpoint::load(path).unwrap().description.get(key::SECONDS).unwrap().parse().unwrap()
+}
+
+#[test]
+fn another_picture_begins_at_zero_seconds() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    save_film(&path, "");
+    make_old(&path);
+    let mut harness = open(&format!("--resume {} --device cpu --samples 40", path.display()));
+    until(&mut harness, "the film", has_samples(40));
+    let run = harness.state().status().run;
+    send(&mut harness, Command::Stage(Stage::find("normals").unwrap()));
+    until(&mut harness, "the stage", |window| window.status().run > run && has_samples(1)(window));
+    assert!(seconds(&mut harness, &directory.path().join("stage.exr")) < 1e5);
+}
+
+#[test]
+fn kept_pictures_have_seconds_of_their_own() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    save_film(&path, "");
+    make_old(&path);
+    let mut harness = open(&format!("--resume {} --device cpu --samples 90", path.display()));
+    until(&mut harness, "the end", |window| has_samples(90)(window) && window.status().phase.is_over());
+    send(&mut harness, Command::Slot(SlotCommand::Keep));
+    until(&mut harness, "a kept picture", |window| window.slot(SlotNumber::ALL[0]).is_some());
+    harness.state_mut().document_mut().camera.vfov_degrees = 25.0;
+    harness.run_steps(2);
+    until(&mut harness, "another film", |window| has_samples(90)(window) && window.status().phase.is_over());
+    assert!(seconds(&mut harness, &directory.path().join("live.exr")) < 1e5);
+    send(&mut harness, Command::Slot(SlotCommand::Look(SlotNumber::ALL[0])));
+    let kept = seconds(&mut harness, &directory.path().join("kept.exr"));
+    assert!(kept > 1e6 + 1e-4, "{kept}: those of the film and of this window");
+    send(&mut harness, Command::Slot(SlotCommand::Open));
+    until(&mut harness, "the film of the slot", |window| {
+        window.document().camera.vfov_degrees == 31.0 && window.looked().is_none() && has_samples(90)(window)
+    });
+    let opened = seconds(&mut harness, &directory.path().join("opened.exr"));
+    assert!((opened - kept).abs() < 1e-6, "{opened} instead of {kept}");
+}
+
 #[test]
 fn a_new_start_forgets_the_seconds_of_the_film() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("film.exr");
     save_film(&path, "");
-    let mut file = checkpoint::load(&path).unwrap();
-    file.description.set(key::SECONDS, 1e6);
-    checkpoint::save(&path, &file.film, &file.description).unwrap();
-    let seconds = |harness: &mut Harness<'_, Window>, name: &str| -> f64 {
-        let path = directory.path().join(name);
-        save(harness, Command::Save(OutputFormat::Exr), &path);
-        checkpoint::load(&path).unwrap().description.get(key::SECONDS).unwrap().parse().unwrap()
-    };
+    make_old(&path);
     let has_traced = |samples: u64| {
         move |window: &Window| {
             let traced = window.status().contributions.iter().map(|part| part.samples_per_pixel);
@@ -102,9 +149,9 @@ fn a_new_start_forgets_the_seconds_of_the_film() {
     };
     let mut harness = open(&format!("--resume {} --device cpu --samples 90", path.display()));
     until(&mut harness, "the film's end", has_traced(50));
-    assert!(seconds(&mut harness, "resumed.exr") > 1e6);
+    assert!(seconds(&mut harness, &directory.path().join("resumed.exr")) > 1e6);
     send(&mut harness, Command::Restart);
     until(&mut harness, "the new film's end", has_traced(90));
-    let traced = seconds(&mut harness, "new.exr");
+    let traced = seconds(&mut harness, &directory.path().join("new.exr"));
     assert!(traced < 1e5, "{traced} s");
 }

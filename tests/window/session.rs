@@ -14,36 +14,36 @@ use weekender::film::{Film, checkpoint};
 use weekender::output::OutputFormat;
 
 /// A picture that never ends by itself.
-const ENDLESS: &str = "--stage glass-schlick --size 32x18 --samples 4000000000 --device cpu";
+pub const ENDLESS: &str = "--stage glass-schlick --size 32x18 --samples 4000000000 --device cpu";
 
 /// What is traced for longer than this is kept.
-const SOON: Duration = Duration::from_millis(200);
+pub const SOON: Duration = Duration::from_millis(200);
 
-fn options(arguments: &str, state: &Path, autosave_every: Duration) -> WindowOptions {
+pub fn options(arguments: &str, state: &Path, autosave_every: Duration) -> WindowOptions {
     let words = std::iter::once("weekender").chain(arguments.split_whitespace());
     let Request::Window(options) = cli::parse(words.map(Into::into)).unwrap() else { panic!("no window") };
     WindowOptions { state_directory: Some(state.to_owned()), autosave_every, ..*options }
 }
 
 /// A window of a user who knows the first steps.
-fn kept_in(state: &Path, arguments: &str, every: Duration) -> Harness<'static, Window> {
+pub fn kept_in(state: &Path, arguments: &str, every: Duration) -> Harness<'static, Window> {
     let mut window = Window::new(options(arguments, state, every), None).unwrap();
     window.remembered_mut().first_steps.is_over = true;
     opened(window)
 }
 
-fn window(state: &Path, arguments: &str) -> Harness<'static, Window> {
+pub fn window(state: &Path, arguments: &str) -> Harness<'static, Window> {
     kept_in(state, arguments, SOON)
 }
 
 /// Closes the window as eframe does.
-fn close(mut harness: Harness<'_, Window>) {
+pub fn close(mut harness: Harness<'_, Window>) {
     harness.state_mut().save(&mut Storage::default());
     harness.state_mut().end_in_order();
 }
 
 /// The files of this ending, by name.
-fn files(state: &Path, ending: &str) -> Vec<PathBuf> {
+pub fn files(state: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(state).unwrap().map(|entry| entry.unwrap().path());
     let mut files: Vec<PathBuf> =
         entries.filter(|path| path.extension().is_some_and(|own| own == ending)).collect();
@@ -52,7 +52,7 @@ fn files(state: &Path, ending: &str) -> Vec<PathBuf> {
 }
 
 /// Draws frames until there is a film with its note.
-fn until_film(harness: &mut Harness<'_, Window>, state: &Path) {
+pub fn until_film(harness: &mut Harness<'_, Window>, state: &Path) {
     until(harness, "a film", |_| {
         let notes = files(state, "json").into_iter().map(|path| fs::read_to_string(path).unwrap());
         files(state, "exr").len() == 1
@@ -61,7 +61,7 @@ fn until_film(harness: &mut Harness<'_, Window>, state: &Path) {
 }
 
 /// Draws frames until the card offers something.
-fn until_offered(harness: &mut Harness<'_, Window>) {
+pub fn until_offered(harness: &mut Harness<'_, Window>) {
     until(harness, "an offer", Window::has_offer);
     harness.run_steps(3);
 }

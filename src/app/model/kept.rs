@@ -153,4 +153,13 @@ mod tests {
         assert_eq!(Thumbnail::of(&film(3, 2, 256), &document).size, [3, 2]);
         assert_eq!(Thumbnail::of(&film(16_000, 1, 256), &document).size, [128, 1]);
     }
+
+    #[test]
+    fn a_comparison_takes_memory() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let kept = Kept::new(document, film(4, 2, 1), Arc::default(), None);
+        assert_eq!(kept.bytes(), 8 * 24);
+        assert_eq!(kept.means().means.len(), 8);
+        assert_eq!(kept.bytes(), 8 * 24 + 8 * 12, "three numbers of 4 bytes per pixel");
+    }
 }
