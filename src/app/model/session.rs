@@ -323,10 +323,10 @@ mod tests {
         let found = again(&document, &view).view;
         assert_eq!((found.show(), found.tone), (Show::Luminance, view.tone));
         view.toggle(Mode::Wipe, With::Book);
-        view.divider = 0.25;
+        (view.divider, view.is_with_next) = (0.25, true);
         let found = again(&document, &view).view;
         assert_eq!((found.mode(), found.with(), found.divider), (Some(Mode::Wipe), With::Book, 0.25));
-        assert!(!found.is_divider_unplaced);
+        assert!(found.is_with_next && !found.is_divider_unplaced);
     }
 
     #[test]

@@ -225,3 +225,41 @@ impl Writing {
         self.context.request_repaint();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+
+    #[test]
+    fn slow_writing_takes_a_small_share_of_the_time() {
+        let every = Duration::from_secs(60);
+        let wait_after = |seconds: u64| {
+            let mut autosave = Autosave::new(every);
+            let begun = Instant::now().checked_sub(Duration::from_secs(seconds)).unwrap();
+            let (_, outcome) = channel();
+            let document = Document::new(Origin::usual());
+            assert_eq!(autosave.note(UnderWay { document, begun, outcome }, Some(Ok(7))), None);
+            assert_eq!(autosave.saved().unwrap().samples, 7);
+            autosave.due.saturating_duration_since(Instant::now()).as_secs_f64().round()
+        };
+        assert_eq!(wait_after(0), 60.0);
+        assert_eq!(wait_after(10), 200.0, "20 times as long as writing took");
+    }
+
+    #[test]
+    fn the_same_fault_is_told_once() {
+        let mut autosave = Autosave::new(Duration::ZERO);
+        let mut tell = |outcome: Result<u64, &str>| {
+            let (_, receiver) = channel();
+            let document = Document::new(Origin::usual());
+            let under_way = UnderWay { document, begun: Instant::now(), outcome: receiver };
+            autosave.note(under_way, Some(outcome.map_err(str::to_owned)))
+        };
+        let told = tell(Err("the disk is full")).unwrap();
+        assert!(told.starts_with("Not autosaved: the disk is full"), "{told}");
+        assert_eq!(tell(Err("the disk is full")), None);
+        assert_eq!(tell(Ok(1)), None);
+        assert!(tell(Err("the disk is full")).is_some(), "again after it worked");
+    }
+}

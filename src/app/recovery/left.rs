@@ -199,6 +199,19 @@ mod tests {
     }
 
     #[test]
+    fn the_newest_files_come_first() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = |name: &str| directory.path().join(name);
+        for (name, age) in [("window-1-1.exr", 200), ("window-2-1.exr", 100), ("window-3-1.exr", 300)] {
+            let file = std::fs::File::create(at(name)).unwrap();
+            file.set_modified(SystemTime::now() - Duration::from_secs(age)).unwrap();
+        }
+        let left = RecoveryFiles::left_in(directory.path());
+        let films: Vec<_> = left.iter().map(|files| files.film().to_owned()).collect();
+        assert_eq!(films, ["window-2-1.exr", "window-1-1.exr", "window-3-1.exr"].map(at));
+    }
+
+    #[test]
     fn damaged_files_are_named_until_they_are_deleted() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
