@@ -186,6 +186,8 @@ mod tests {
             previews.pictured(&document, 8, 1e4, 0.2);
         }
         assert_eq!(previews.follow_move(&document), Preview { divisor: 10, samples: 1 });
+        previews.pictured(&document, 2, 1e6, 0.2);
+        assert_eq!(previews.follow_move(&document).divisor, 10, "a late picture of an earlier preview");
         previews.end_move();
         previews.pictured(&document, 8, 1e6, 0.05);
         assert!(previews.follow_move(&document).divisor < 10, "another move");
@@ -197,6 +199,11 @@ mod tests {
         assert_eq!(previews.first_look(&document("book", [320, 180])), None);
         let look = previews.first_look(&document("book", [1600, 900])).unwrap();
         assert!(look.divisor > 2, "{look:?}");
+        // Each half of the film needs a sample.
+        let mut between = document("book", [640, 360]);
+        assert!(between.settings.estimate_error && previews.first_look(&between).is_some());
+        between.settings.estimate_error = false;
+        assert_eq!(previews.first_look(&between), None);
         previews.render_speed = Some(1e9);
         assert_eq!(previews.first_look(&document("book", [1600, 900])), None);
     }

@@ -141,6 +141,8 @@ fn verdict(present: &Present, settled: Duration, is_by_hand: bool, changes: usiz
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::stages::Stage;
 
     const YOUNG: Present = Present { is_documents: true, seconds: 2.0, is_needed: false };
     const LONG: Duration = Duration::from_secs(1);
@@ -175,5 +177,24 @@ mod tests {
     fn a_size_that_never_settles_is_not_followed_for_ever() {
         assert_eq!(verdict(&YOUNG, LONG, false, CHANGES - 1), Verdict::Change);
         assert_eq!(verdict(&YOUNG, LONG, false, CHANGES), Verdict::Keep);
+    }
+
+    #[test]
+    fn sizes_that_were_asked_for_are_not_restless() {
+        let (context, mut sizer) = (Context::default(), Sizer::default());
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut follow = |sizer: &mut Sizer, room| {
+            sizer.follow(&context, &mut document, (Sizing::Viewport, room), &YOUNG);
+            document.size()
+        };
+        for width in 0..2 * CHANGES as u32 {
+            sizer.ask();
+            assert_eq!(follow(&mut sizer, [320 + 16 * width, 9000])[0], 320 + 16 * width);
+        }
+        // The window is resized, and the size stays.
+        let settled = Instant::now().checked_sub(LONG).unwrap();
+        sizer.fitting = Some(([160, 90], settled));
+        assert_eq!(follow(&mut sizer, [160, 9000]), [160, 90]);
+        assert_eq!(sizer.offer(), None);
     }
 }

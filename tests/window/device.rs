@@ -62,6 +62,18 @@ fn a_pause_outlasts_a_move_of_the_camera() {
 }
 
 #[test]
+fn a_new_start_ends_a_pause() {
+    let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000");
+    until(&mut harness, "samples", has_samples(8));
+    harness.key_press(Key::Space);
+    until(&mut harness, "a pause", |window| window.status().phase == weekender::progressive::Phase::Paused);
+    let run = harness.state().status().run;
+    send(&mut harness, Command::Restart);
+    assert!(!harness.state().is_paused());
+    until(&mut harness, "a new film", |window| window.status().run > run && has_samples(8)(window));
+}
+
+#[test]
 fn what_changes_with_the_estimate_moves_no_button() {
     let mut harness = open("--stage glass-schlick --size 64x36 --samples 4000000000 --noise-target 0.0001");
     let places = |harness: &Harness<'_, Window>| {

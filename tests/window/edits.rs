@@ -48,6 +48,21 @@ fn numbers_of_the_panel_change_the_sphere_one_undo_step_each() {
 }
 
 #[test]
+fn undo_selects_the_sphere_that_it_changes() {
+    let mut harness = opened();
+    let (metal, middle) = (metal_sphere(&harness), middle_sphere(&harness));
+    select(&mut harness, metal);
+    let at = on_screen(&harness, spheres(&harness)[metal].center);
+    drag_from(&mut harness, at, egui::vec2(-30.0, -20.0));
+    select(&mut harness, middle);
+    send(&mut harness, Command::Undo);
+    assert_eq!(harness.state().selected(), Some(metal));
+    send(&mut harness, Command::Deselect);
+    send(&mut harness, Command::Redo);
+    assert_eq!(harness.state().selected(), Some(metal));
+}
+
+#[test]
 fn a_slider_drag_is_one_undo_step() {
     let mut harness = opened();
     let metal = metal_sphere(&harness);

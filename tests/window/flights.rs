@@ -92,6 +92,18 @@ fn any_input_ends_a_flight_where_it_is() {
 }
 
 #[test]
+fn a_camera_that_is_set_during_a_flight_stays() {
+    let mut harness = bookmarked();
+    send(&mut harness, Command::Bookmark(0));
+    harness.run_steps(15);
+    let mut mine = camera(&harness);
+    mine.vfov_degrees = 33.0;
+    harness.state_mut().document_mut().camera = mine;
+    harness.run_steps(60);
+    assert_eq!(camera(&harness), mine);
+}
+
+#[test]
 fn with_shift_or_without_flights_the_camera_jumps() {
     let mut harness = bookmarked();
     send(&mut harness, Command::Flights);

@@ -137,6 +137,20 @@ fn the_wheel_goes_to_what_is_under_the_pointer_and_never_through() {
 }
 
 #[test]
+fn the_wheel_ends_at_the_point_of_a_slanting_surface_and_does_not_slide_along() {
+    let mut harness = opened("view-distant");
+    let ground = harness.state().picture_rect().lerp_inside(vec2(0.1, 0.95));
+    let point = under(&harness, ground).expect("the ground");
+    for _ in 0..40 {
+        scroll(&mut harness, ground, 10.0);
+        let now = on_screen(&harness, point);
+        assert!(now.distance(ground) < 3.0, "the point went from {ground} to {now}");
+    }
+    let near = camera(&harness).look_from.distance(point);
+    assert!(near < 0.5, "it came near: {near}");
+}
+
+#[test]
 fn the_wheel_in_the_sky_goes_there_at_the_depth_of_look_at() {
     let mut harness = opened("view-distant");
     let (at, before) = (sky(&harness), camera(&harness));

@@ -199,6 +199,37 @@ fn the_handle_changes_the_radius() {
     assert!((after.radius / before.radius - 0.7).abs() < 0.01, "{} {}", before.radius, after.radius);
     send(&mut harness, Command::Undo);
     assert_eq!(spheres(&harness)[middle], before);
+    // Grabbed beside its middle, it moves as far as the pointer and does not jump.
+    let beside = handle + egui::vec2(6.0, 0.0);
+    drag_from(&mut harness, beside, egui::vec2(to, 0.0));
+    let beside = spheres(&harness)[middle];
+    assert!((beside.radius / after.radius - 1.0).abs() < 0.005, "{} {}", after.radius, beside.radius);
+}
+
+#[test]
+fn the_lens_is_focused_on_the_near_side_of_a_sphere() {
+    let mut harness = opened();
+    let metal = metal_sphere(&harness);
+    select(&mut harness, metal);
+    let sphere = spheres(&harness)[metal];
+    send(&mut harness, Command::FocusSphere);
+    let camera = harness.state().document().camera;
+    let nearest = sphere.center + (camera.look_from - sphere.center).normalize() * sphere.radius;
+    let depth = camera.depth_of(nearest);
+    assert!(depth < camera.depth_of(sphere.center) - 0.5 * sphere.radius);
+    assert!(
+        (camera.focus_distance.unwrap() - depth).abs() < 1e-9,
+        "{:?}, not {depth}",
+        camera.focus_distance
+    );
+    let told = harness.state().messages();
+    assert!(told.iter().any(|text| text.starts_with("A pinhole is sharp everywhere")), "{told:?}");
+    // From inside, nothing of its surface is ahead at that point.
+    harness.state_mut().document_mut().camera.look_from = sphere.center + DVec3::new(0.0, 0.0, 0.1);
+    harness.run_steps(2);
+    send(&mut harness, Command::FocusSphere);
+    let camera = harness.state().document().camera;
+    assert!((camera.focus_distance.unwrap() - camera.depth_of(sphere.center)).abs() < 1e-9);
 }
 
 #[test]

@@ -59,6 +59,14 @@ fn the_target_is_dragged() {
 
     send(&mut harness, Command::Undo);
     assert_eq!(target(&harness), 0.002, "a whole drag is one change");
+    // Wherever it is grabbed, the same way leads to the same target.
+    for off in [-5.0, 0.0] {
+        harness.run_steps(3);
+        let from = line(&harness) + vec2(40.0, off);
+        drag(&mut harness, from, from + vec2(20.0, -20.0));
+        assert_eq!(target(&harness), moved, "grabbed {off} points below the line");
+        send(&mut harness, Command::Undo);
+    }
 }
 
 #[test]

@@ -146,6 +146,16 @@ fn the_screen_can_be_blanked() {
 }
 
 #[test]
+fn the_place_among_the_stages_is_told() {
+    let mut harness = present("--stage ppm-tiny", [1280.0, 720.0]);
+    let count = Stage::ALL.len();
+    assert!(has(&harness, &format!("1 of {count}")));
+    send(&mut harness, Command::Stage(&Stage::ALL[count - 1]));
+    harness.run_steps(3);
+    assert!(has(&harness, &format!("{count} of {count}")));
+}
+
+#[test]
 fn the_progress_is_shown_along_the_bottom() {
     let mut harness = present("--stage metal --size 32x18 --samples 64", [1280.0, 720.0]);
     until(&mut harness, "the end", |window| window.status().phase.is_over());

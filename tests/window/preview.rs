@@ -91,6 +91,25 @@ fn the_pixel_under_the_pointer_is_never_that_of_a_preview() {
     assert!(previews > 10, "{previews}");
 }
 
+#[test]
+fn a_command_copied_during_a_move_renders_the_picture_and_not_the_preview() {
+    let mut harness = open(&format!("--stage sky {LARGE}"));
+    until(&mut harness, "the end", has_samples(4));
+    let at = harness.state().picture_rect().center();
+    hold(&mut harness, at, true);
+    move_until_preview(&mut harness, |window| window.document_mut().camera.vfov_degrees -= 0.01);
+    assert_ne!(harness.state().status().samples_per_pixel, 4, "the preview has fewer");
+    harness.state_mut().send(Command::CopyCommand);
+    harness.step();
+    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    let copied = copied.unwrap();
+    assert!(copied.contains(" --samples=4 "), "{copied}");
+    hold(&mut harness, at, false);
+}
+
 /// The upper half of this stage's picture is linear, the lower half is not.
 #[test]
 fn the_bytes_of_a_pixel_are_those_of_its_row() {

@@ -103,6 +103,18 @@ fn a_sight_is_seen_by_the_stages_camera() {
 }
 
 #[test]
+fn an_exposure_chosen_during_a_sight_stays() {
+    let mut harness = open("--stage metal");
+    until(&mut harness, "a picture", has_samples(1));
+    send(&mut harness, Command::ShowMe);
+    send(&mut harness, Command::Brighter);
+    assert!(harness.state().has_sight());
+    send(&mut harness, Command::ShowMe);
+    assert!(!harness.state().has_sight());
+    assert_eq!(harness.state().disabled_reason(Command::NoExposure), None, "there still is an exposure");
+}
+
+#[test]
 fn a_sight_returns_to_the_comparison_that_was_shown() {
     let mut harness = open("--stage glass-schlick");
     until(&mut harness, "a picture", has_samples(1));

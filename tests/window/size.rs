@@ -178,6 +178,17 @@ fn the_books_size_is_one_click_away() {
     assert_eq!(size(&harness), large);
 }
 
+/// In the book, pictures whose pixels are the lesson are not enlarged.
+#[test]
+fn the_books_size_of_a_tiny_picture_is_tiny() {
+    for (id, size) in [("ppm-tiny", [16, 9]), ("ppm-gradient", [480, 270])] {
+        let mut harness = open(&format!("--stage {id}"));
+        send(&mut harness, Command::Size(Sizing::Book));
+        harness.run_steps(2);
+        assert_eq!(self::size(&harness), size, "{id}");
+    }
+}
+
 #[test]
 fn a_typed_size_is_the_pictures_own() {
     let mut harness = following(FOLLOWING, [1000.0, 1400.0]);

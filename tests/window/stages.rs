@@ -1,9 +1,10 @@
 //! Every stage of the book.
 
 use crate::common::{has_samples, open, open_sized, send, until};
-use eframe::egui::Key;
+use eframe::egui::{Key, Role, Shape};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use weekender::app::Command;
+use weekender::app::{Command, Window};
 use weekender::stages::Stage;
 
 #[test]
@@ -37,6 +38,33 @@ fn every_stage_is_compared_with_another() {
     harness.key_press(Key::X);
     harness.run_steps(2);
     assert!(!harness.state().is_comparing());
+}
+
+#[test]
+fn a_stage_with_a_pair_can_be_compared_with_the_next_one_instead() {
+    let (stage, pair, next) = Stage::ALL
+        .iter()
+        .filter_map(|stage| Some((stage, Stage::find(stage.pair?).ok()?, stage.next()?)))
+        .find(|(_, pair, next)| pair != next)
+        .unwrap();
+    let mut harness = open(&format!("--stage {} --size 32x18", stage.id));
+    harness.key_press(Key::C);
+    until(&mut harness, "a wipe", |window| window.has_other_picture());
+    let seen = |harness: &mut Harness<'_, Window>| {
+        harness.run_steps(5);
+        let picture = harness.state().picture_rect();
+        [pair, next].map(|other| {
+            harness.output().shapes.iter().any(|clipped| match &clipped.shape {
+                Shape::Text(text) => picture.contains(text.pos) && text.galley.text().contains(other.title),
+                _ => false,
+            })
+        })
+    };
+    assert_eq!(seen(&mut harness), [true, false]);
+    harness.get_by_role_and_label(Role::CheckBox, "Next stage").click();
+    harness.run_steps(3);
+    until(&mut harness, "the next stage", |window| window.has_other_picture());
+    assert_eq!(seen(&mut harness), [false, true]);
 }
 
 #[test]

@@ -151,4 +151,23 @@ mod tests {
         assert_eq!((corner.colour(), corner.colours[0], corner.colours[80]), (Some([0, 17, 7]), None, None));
         assert_eq!(corner.colours.iter().flatten().count(), 25);
     }
+
+    #[test]
+    fn the_lens_does_not_cover_what_it_shows() {
+        let context = Context::default();
+        let room = Rect::from_min_size(pos2(0.0, 50.0), vec2(1000.0, 600.0));
+        let size = vec2(200.0, 260.0);
+        // A picture as wide as the room, and one that is enlarged beyond it.
+        for picture in [room, room.expand(300.0)] {
+            for x in [10.0, 450.0, 550.0, 990.0] {
+                let pointer = pos2(x, 350.0);
+                let plate = beside(&context, room, picture, pointer, size);
+                assert!(room.contains_rect(plate) && !plate.contains(pointer), "{plate} at {pointer}");
+                assert!((plate.center().x - x).abs() > 300.0, "on the other side: {plate} at {pointer}");
+            }
+        }
+        let narrow = Rect { max: pos2(600.0, 650.0), ..room };
+        let plate = beside(&context, room, narrow, pos2(100.0, 350.0), size);
+        assert!(plate.left() > narrow.right() && plate.right() < room.right(), "{plate}");
+    }
 }

@@ -200,6 +200,11 @@ mod tests {
         let narrow = Camera { vfov_degrees: 1.0, ..Camera::BOOK };
         assert_eq!(super::to_copy(&scene, &narrow, 1.5, 1).normalize(), DVec3::Z);
         assert_eq!(super::to_copy(&scene, &narrow, 1.5, 99), DVec3::ZERO);
+        // The shell around a bubble of glass is no obstacle for a second bubble.
+        let mut scene = Scene::default();
+        scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.9, 0);
+        scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, 0);
+        assert!(super::to_copy(&scene, &Camera::BOOK, 1.5, 1).normalize().distance(DVec3::X) < 1e-12);
     }
 
     #[test]

@@ -149,6 +149,13 @@ mod tests {
         assert_eq!(visible(&recipe.camera, middle), POINTS);
         let below = Camera { look_from: DVec3::new(0.0, -300.0, -1.0), vup: DVec3::Z, ..recipe.camera };
         assert_eq!(visible(&below, middle), 0);
+        // A sphere beside the line of sight hides a part of a small one behind it.
+        let mut scene = Scene::default();
+        scene.add_sphere(DVec3::new(0.0, 0.0, -4.0), 0.2, 0);
+        scene.add_sphere(DVec3::new(1.0, 0.0, -2.0), 0.95, 0);
+        let outline = Outline::new(&Camera::BOOK, 1.0, scene.spheres[0].center, 0.2, Some(&scene));
+        let visible = outline.points.iter().filter(|point| point.is_visible).count();
+        assert!(visible > POINTS / 4 && visible < 3 * POINTS / 4, "{visible}");
     }
 
     #[test]

@@ -144,5 +144,7 @@ mod tests {
         assert_eq!(near.slide(close, DVec3::ZERO, 0.01, None), DVec3::ZERO);
         let along = near.slide(close, close + DVec3::X, 0.01, None);
         assert!(along.distance(close + DVec3::X) < 1e-9, "{along}");
+        let towards = near.slide(close, close - 0.0005 * DVec3::Z, 0.01, None);
+        assert!(towards.distance(close) < 1e-9, "it is not pushed away: {towards}");
     }
 }

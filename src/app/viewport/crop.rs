@@ -214,4 +214,16 @@ mod tests {
         let anew = go(Some(crop), at(25, 15), pos2(9e3, 9e3));
         assert_eq!((anew.first, anew.last()), ([25, 15], [31, 17]), "no pixel beyond the last");
     }
+
+    #[test]
+    fn the_pointer_shows_what_a_drag_does() {
+        let crop = Some(Crop { first: [4, 3], size: [10, 6] });
+        let over = |x: f32, y: f32| cursor(drag_at(RECT, SIZE, crop, pos2(x, y)), false);
+        assert_eq!(over(350.0, 200.0), CursorIcon::Crosshair);
+        assert_eq!(over(190.0, 110.0), CursorIcon::Grab);
+        assert_eq!([over(140.0, 110.0), over(240.0, 110.0)], [CursorIcon::ResizeHorizontal; 2]);
+        assert_eq!([over(190.0, 80.0), over(190.0, 140.0)], [CursorIcon::ResizeVertical; 2]);
+        assert_eq!([over(140.0, 80.0), over(240.0, 140.0)], [CursorIcon::ResizeNwSe; 2]);
+        assert_eq!([over(240.0, 80.0), over(140.0, 140.0)], [CursorIcon::ResizeNeSw; 2]);
+    }
 }
