@@ -86,7 +86,10 @@ mod tests {
         };
         let found = prediction(&status, Some(0.002)).unwrap();
         assert!((found.time - 30.0).abs() < 1e-6, "{found:?}");
-        assert!(found.range[0] > 10.0 && found.range[1] < 90.0, "{found:?}");
+        let now = Point { time: 10.0, error: 0.004 };
+        let [low, high] = predict(&[], now, 0.002).unwrap().range;
+        assert_eq!(found.range, [low - 10.0, high - 10.0]);
+        assert!(found.range[0] < 30.0 && found.range[1] > 30.0, "{found:?}");
         assert!(prediction_words(&found).starts_with("in about 30 s ("), "{}", prediction_words(&found));
         assert_eq!(prediction(&status, Some(0.01)), None);
         assert_eq!(prediction(&status, None), None);

@@ -68,6 +68,11 @@ mod tests {
         assert_eq!(speed.paths_per_second(), None, "nothing is known yet");
         speed.follow(&status("gpu", 10.2, 20_000));
         assert!((speed.paths_per_second().unwrap() - 100_000.0).abs() < 1e-3);
+        // A new film begins at zero seconds.
+        for (seconds, paths) in [(0.1, 50), (0.2, 100)] {
+            speed.follow(&Status { run: 2, ..status("gpu", seconds, paths) });
+        }
+        assert!((speed.paths_per_second().unwrap() - 500.0).abs() < 1e-6);
     }
 
     #[test]

@@ -267,6 +267,8 @@ mod tests {
         assert!(words.starts_with("error 0.00400, 0.002 in about 3 s ("), "{words}");
         assert_eq!(error_words(&status, None), "error 0.00400");
         assert_eq!(error_words(&status, Some(0.01)), "error 0.00400, below 0.01");
+        status.samples_per_pixel = 1;
+        assert_eq!(error_words(&status, Some(0.002)), "error 0.00400", "too early for a prediction");
         status.error = None;
         assert_eq!(error_words(&status, Some(0.01)), "error –");
     }
