@@ -93,18 +93,25 @@ fn the_pixel_under_the_pointer_is_never_that_of_a_preview() {
 
 #[test]
 fn a_command_copied_during_a_move_renders_the_picture_and_not_the_preview() {
-    let mut harness = open(&format!("--stage sky {LARGE}"));
-    until(&mut harness, "the end", has_samples(4));
+    let mut harness = open("--stage sky --size 1600x900 --device cpu --samples 4000");
+    until(&mut harness, "a picture", has_samples(1));
     let at = harness.state().picture_rect().center();
     hold(&mut harness, at, true);
     let change = |window: &mut Window| window.document_mut().camera.vfov_degrees -= 0.01;
     move_until_preview(&mut harness, change);
+    let has_some = |window: &Window| (1..4000).contains(&window.status().samples_per_pixel);
     let begin = Instant::now();
-    while !(1..4).contains(&harness.state().status().samples_per_pixel) {
+    while !has_some(harness.state()) {
         assert!(begin.elapsed() < Duration::from_secs(60), "no preview has samples");
         change(harness.state_mut());
-        harness.step();
-        std::thread::sleep(Duration::from_millis(5));
+        // A change in each frame would begin a new preview before the last one has samples.
+        for _ in 0..20 {
+            harness.step();
+            if has_some(harness.state()) {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
     }
     change(harness.state_mut());
     harness.state_mut().send(Command::CopyCommand);
@@ -114,7 +121,7 @@ fn a_command_copied_during_a_move_renders_the_picture_and_not_the_preview() {
         _ => None,
     });
     let copied = copied.unwrap();
-    assert!(copied.contains(" --samples=4 "), "{copied}");
+    assert!(copied.contains(" --samples=4000 "), "{copied}");
     hold(&mut harness, at, false);
 }
 
