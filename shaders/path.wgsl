@@ -131,7 +131,6 @@ fn intersect(ray: Ray) -> Nearest {
     // Counts that are known when the kernel is compiled let its loops be unrolled.
     let opaque_count = select(job.opaque_count, OPAQUE_COUNT, FEW_SPHERES);
     let two_root_count = select(job.two_root_count, TWO_ROOT_COUNT, FEW_SPHERES);
-    let anchored_count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
     let listed = opaque_count + two_root_count;
     if SURFACE != SURFACE_EXACT {
         let t_min = select(0.0, BOOK_T_MIN, SURFACE == SURFACE_BOOK);
@@ -140,23 +139,32 @@ fn intersect(ray: Ray) -> Nearest {
         }
         return nearest;
     }
-    if HIERARCHY && CWBVH {
-        nearest = traverse_cwbvh(ray, nearest);
-    } else if HIERARCHY {
-        nearest = traverse(ray, nearest);
-    } else {
-        for (var i = 0u; i < opaque_count; i++) {
-            nearest = take(nearest, near_root(ray, sphere_at(i), i), i);
+    if HIERARCHY {
+        // A hit of the ground rules out the boxes behind it.
+        nearest = take_anchored(ray, nearest, listed);
+        if CWBVH {
+            return traverse_cwbvh(ray, nearest);
         }
-        if TWO_ROOT {
-            for (var i = opaque_count; i < listed; i++) {
-                nearest = take(nearest, nearest_root(ray, sphere_at(i), i), i);
-            }
+        return traverse(ray, nearest);
+    }
+    for (var i = 0u; i < opaque_count; i++) {
+        nearest = take(nearest, near_root(ray, sphere_at(i), i), i);
+    }
+    if TWO_ROOT {
+        for (var i = opaque_count; i < listed; i++) {
+            nearest = take(nearest, nearest_root(ray, sphere_at(i), i), i);
         }
     }
+    return take_anchored(ray, nearest, listed);
+}
+
+// Takes the hits of the anchored spheres, where they are nearer. The first has the number `first`.
+fn take_anchored(ray: Ray, found: Nearest, first: u32) -> Nearest {
+    var nearest = found;
     if ANCHORED {
-        for (var i = 0u; i < anchored_count; i++) {
-            nearest = take(nearest, anchored_root(ray, anchored_at(i), listed + i), listed + i);
+        let count = select(job.anchored_count, ANCHORED_COUNT, FEW_ANCHORED);
+        for (var i = 0u; i < count; i++) {
+            nearest = take(nearest, anchored_root(ray, anchored_at(i), first + i), first + i);
         }
     }
     return nearest;

@@ -28,11 +28,13 @@ fn take(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
     return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
 }
 
-// Of two spheres at the same distance, the first in the list stays. Leaves do not keep the order of the list.
+// Of two spheres at the same distance, the first in the list stays. Leaves do not keep the order of the list, and
+// anchored spheres come last in it.
 fn take_in_any_order(nearest: Nearest, key: u32, sphere: u32) -> Nearest {
     var nearer = key < nearest.key;
     if key == nearest.key && nearest.sphere != NONE {
-        nearer = rank_of(sphere) < rank_of(nearest.sphere);
+        nearer = nearest.sphere >= job.opaque_count + job.two_root_count
+            || rank_of(sphere) < rank_of(nearest.sphere);
     }
     return Nearest(select(nearest.key, key, nearer), select(nearest.sphere, sphere, nearer));
 }

@@ -23,7 +23,6 @@ const PAIRS: &[Pair] = &[
             ("shade", "packets take turns, a thread has one path"),
             ("next_stream", "a lane counts its stream up, a thread has its bounce"),
             ("last_stream", "a lane counts its stream up, a thread has its bounce"),
-            ("take_anchored", "before a hierarchy or after a list; the shader does it once, in `intersect`"),
             (
                 "normalised_or",
                 "`normalized` of lanes.wgsl; a thread tests for short directions in `scatter_path`",
