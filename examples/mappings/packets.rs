@@ -14,7 +14,8 @@ use weekender::render::{RenderJob, Renderer};
 use weekender::render_cpu::broadcast::BroadcastScene;
 use weekender::render_cpu::camera::{pinhole_ray, screen};
 use weekender::render_cpu::lanes::{
-    Float, Instructions, Lanes, Lanes4, Lanes8, Lanes16, Mask, Scalar, Unsigned, V3, WideU, unit_float,
+    Float, Instructions, Lanes, Lanes4, Lanes8, Lanes16, Mask, Scalar, Unsigned, V3, WideU, rows_of,
+    unit_float,
 };
 use weekender::render_cpu::material::{incidence_of, scatter, surface_of};
 use weekender::render_cpu::rng::{numbers, sampler_key};
@@ -243,8 +244,9 @@ fn hit_records<L: Lanes<Real = f32>>(l: L, scene: &BroadcastScene<f32>, hit: L::
     } else {
         let mut indices = WideU::default();
         L::store_u(l.keep(!hit.eq(l.splat_u(NONE)), hit), &mut indices);
+        let rows = rows_of(&scene.prepared.records, &indices);
         for (group, columns) in columns.iter_mut().enumerate() {
-            *columns = l.gather(&scene.prepared.records, &indices, group);
+            *columns = l.gather(&rows, group);
         }
     }
     HitRecords { columns }

@@ -3,8 +3,8 @@
 //! Twin: shaders/bvh.wgsl
 
 use super::lanes::{Float, Lanes, Mask, V3, splat3};
-use super::sphere::{Nearest, Rays, Spheres, near_root, nearest_root};
-use crate::kernel::{BOX_MARGIN, BOX_WIDENING, COUNT_MASK, LEAST_COMPONENT, Node, Real, STACK_SIZE};
+use super::sphere::{Nearest, Rays, signed_root};
+use crate::kernel::{BOX_MARGIN, BOX_WIDENING, COUNT_MASK, LEAST_COMPONENT, Node, STACK_SIZE};
 use crate::prepared::hierarchy::Hierarchy;
 
 /// Nodes still to be visited, at most one per level. The stack outlives each traversal, because clearing it every time
@@ -44,9 +44,9 @@ fn inverse_of<L: Lanes>(l: L, d: L::F) -> L::F {
     (l.constant(1.0) / size).copysign(d)
 }
 
-/// Returns the lanes whose ray meets the box before distance `limit`.
+/// Returns the lanes whose ray does not meet the box before distance `limit`.
 #[inline(always)]
-pub fn meets_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit: L::F) -> L::M {
+pub fn misses_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit: L::F) -> L::M {
     let (low, high) = (splat3(l, node.low), splat3(l, node.high));
     let at = |corner: L::F, inverse: L::F, origin: L::F| corner.mul_add(inverse, -origin);
     let (x0, x1) = (at(low.x, slabs.inverse.x, slabs.low.x), at(high.x, slabs.inverse.x, slabs.high.x));
@@ -55,7 +55,7 @@ pub fn meets_box<L: Lanes>(l: L, slabs: &Slabs<L>, node: &Node<L::Real>, limit: 
     let enter = x0.min(x1).max(y0.min(y1)).max(z0.min(z1).max(l.constant(0.0)));
     let leave = x0.max(x1).min(y0.max(y1)).min(z0.max(z1).min(limit));
     // The factor covers the rounding of the distances themselves.
-    !(leave * l.constant(BOX_WIDENING)).lt(enter)
+    (leave * l.constant(BOX_WIDENING)).lt(enter)
 }
 
 /// Updates `nearest` with the nearest hits among the spheres of a hierarchy. Results matter only for `active` lanes.
@@ -72,11 +72,16 @@ pub fn traverse<L: Lanes>(
     let slabs = slabs_of(l, rays, hierarchy.extent);
     let forward = [rays.direction.x, rays.direction.y, rays.direction.z]
         .map(|d| 2 * (l.constant(0.0).lt(d) & active).bits().count_ones() >= active.bits().count_ones());
-    let mut limit = nearest.distance();
+    let active_bits = active.bits();
+    // The distance of a hit limits the search one box later than it could, so that the next box need not wait for the
+    // square roots before it.
+    let (mut limit, mut next_limit) = (l.constant(f64::INFINITY), nearest.distance());
     let (mut index, mut depth) = (0, 0);
     loop {
         let node = &hierarchy.nodes[index as usize];
-        if (meets_box(l, &slabs, node, limit) & active).bits() != 0 {
+        let missed = misses_box(l, &slabs, node, limit);
+        limit = next_limit;
+        if missed.bits() & active_bits != active_bits {
             let count = node.count & COUNT_MASK;
             if count == 0 {
                 let ascending = node.count & (1 << 29) == 0;
@@ -87,18 +92,12 @@ pub fn traverse<L: Lanes>(
                 continue;
             }
             let first = node.first as usize;
-            for (offset, &[x, y, z, radius2]) in spheres[first..first + count as usize].iter().enumerate() {
+            for (offset, sphere) in spheres[first..first + count as usize].iter().enumerate() {
                 let number = (first + offset) as u32;
-                let sphere = |radius2| Spheres::splat(l, [x, y, z, radius2], l.splat_u(number));
-                // Of two spheres at the same place, a ray that leaves one must not meet the far side of the other.
-                let key = if radius2 < L::Real::default() {
-                    near_root(l, rays, &sphere(radius2.negated()))
-                } else {
-                    nearest_root(l, rays, &sphere(radius2))
-                };
+                let key = signed_root(l, rays, sphere, l.splat_u(number));
                 nearest.take_in_any_order(l, key, number, &hierarchy.ranks, active);
             }
-            limit = nearest.distance();
+            next_limit = nearest.distance();
         }
         if depth == 0 {
             return;

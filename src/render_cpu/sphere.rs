@@ -146,16 +146,40 @@ fn chord<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> (L::F, L::F) {
 /// Distance to a sphere that no ray is inside of.
 #[inline(always)]
 pub fn near_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
-    let (h, s) = chord(l, rays, sphere);
-    l.key_unless(rays.left.eq(sphere.number), h + s)
+    near_end(l, rays, sphere.number, chord(l, rays, sphere))
 }
 
 /// Distance to a sphere from inside or outside.
 #[inline(always)]
 pub fn nearest_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &Spheres<L>) -> L::Key {
-    let (h, s) = chord(l, rays, sphere);
-    let leaves = rays.left.eq(sphere.number);
-    let enters = rays.inside.eq(sphere.number);
+    nearest_end(l, rays, sphere.number, chord(l, rays, sphere))
+}
+
+/// Distance to a sphere of a hierarchy, given as centre and squared radius, which is negative if only the nearer root
+/// counts. Of two spheres at the same place, a ray that leaves one must not meet the far side of the other.
+#[inline(always)]
+pub fn signed_root<L: Lanes>(l: L, rays: &Rays<L>, sphere: &[L::Real; 4], number: L::U) -> L::Key {
+    let signed = Spheres::splat(l, *sphere, number);
+    // What both kinds share comes before the jump, so that the broadcasts are memory operands.
+    let chord = chord(l, rays, &Spheres { radius2: signed.radius2.abs(), ..signed });
+    if sphere[3] < L::Real::default() {
+        near_end(l, rays, number, chord)
+    } else {
+        nearest_end(l, rays, number, chord)
+    }
+}
+
+/// Distance to the nearer end of a [`chord`].
+#[inline(always)]
+fn near_end<L: Lanes>(l: L, rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> L::Key {
+    l.key_unless(rays.left.eq(number), h + s)
+}
+
+/// Distance to the nearest end of a [`chord`] in front of the ray.
+#[inline(always)]
+fn nearest_end<L: Lanes>(l: L, rays: &Rays<L>, number: L::U, (h, s): (L::F, L::F)) -> L::Key {
+    let leaves = rays.left.eq(number);
+    let enters = rays.inside.eq(number);
     let near = l.key_unless(enters, h + s);
     // A ray that enters the sphere from its surface travels the chord 2h. The negation comes last, so that a chord of
     // length 0 is a hit at -0.

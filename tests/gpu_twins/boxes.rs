@@ -4,7 +4,7 @@ use super::gpu_common::gpu;
 use super::{L, Words, float, list, rays, run, uniform, unit_vector, vector, words};
 use glam::DVec3;
 use weekender::kernel::{BOX_WIDENING, MISS_KEY, NONE, Node};
-use weekender::render_cpu::bvh::{meets_box, slabs_of};
+use weekender::render_cpu::bvh::{misses_box, slabs_of};
 use weekender::render_cpu::lanes::Single;
 use weekender::render_gpu::GpuOptions;
 use weekender::render_gpu::shader_source::Probe;
@@ -75,7 +75,7 @@ fn boxes_are_met_alike() {
         let (low, high) = (list(vector(&input, 8)), list(vector(&input, 11)));
         let (limit, extent) = (float(&input, 14), float(&input, 15));
         let node = Node { low, first: 0, high, count: 1 };
-        let on_cpu = meets_box(L, &slabs_of(L, &rays(&input), extent), &node, Single(limit));
+        let on_cpu = !misses_box(L, &slabs_of(L, &rays(&input), extent), &node, Single(limit));
         let on_gpu = output[0] != MISS_KEY;
         let rays = rays(&input);
         let [enter, leave] = slab(list(rays.origin), list(rays.direction), low, high, limit);

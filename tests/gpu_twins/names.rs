@@ -35,17 +35,13 @@ const PAIRS: &[Pair] = &[
     Pair {
         shader: "sphere.wgsl",
         twins: &["sphere.rs"],
-        shader_alone: &[
-            ("smaller_key", "`Lanes::min_key`"),
-            (
-                "signed_root",
-                "a thread would wait for both of `near_root` and `nearest_root`, a packet takes one",
-            ),
-        ],
+        shader_alone: &[("smaller_key", "`Lanes::min_key`")],
         twin_alone: &[
             ("splat", "a sphere for all lanes"),
             ("load", "a sphere for all lanes"),
             ("new", "a sphere for all lanes"),
+            ("near_end", "a packet jumps to one of two ends, a thread computes both in `signed_root`"),
+            ("nearest_end", "a packet jumps to one of two ends, a thread computes both in `signed_root`"),
             ("settle", "a tie of some lanes, in `take_in_any_order`"),
             ("distance", "of a key, a bitcast"),
         ],
@@ -53,8 +49,8 @@ const PAIRS: &[Pair] = &[
     Pair {
         shader: "bvh.wgsl",
         twins: &["bvh.rs"],
-        shader_alone: &[("box_key", "`meets_box` with the distance, by which a thread orders the children")],
-        twin_alone: &[("meets_box", "`box_key` without the distance: a packet has an order of its own")],
+        shader_alone: &[("box_key", "`misses_box` with the distance, by which a thread orders the children")],
+        twin_alone: &[("misses_box", "`box_key` without the distance: a packet has an order of its own")],
     },
     Pair {
         shader: "rng.wgsl",

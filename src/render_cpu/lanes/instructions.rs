@@ -40,6 +40,15 @@ pub trait Instructions: Simd {
         [0, 1, 2, 3].map(|i| low[i].combine(high[i]))
     }
 
+    /// Transposes four 4 by 4 blocks: one in each quarter of the rows.
+    #[inline(always)]
+    fn transpose_16(self, records: [f32x16<Self>; 4]) -> [f32x16<Self>; 4] {
+        let [a, b, c, d] = records.map(|row| row.split());
+        let low = self.transpose_8([a.0, b.0, c.0, d.0]);
+        let high = self.transpose_8([a.1, b.1, c.1, d.1]);
+        [0, 1, 2, 3].map(|i| low[i].combine(high[i]))
+    }
+
     /// Rounds to the nearest integer, ties to even; the result must fit.
     #[inline(always)]
     fn to_nearest_4(self, x: f32x4<Self>) -> i32x4<Self> {

@@ -195,10 +195,26 @@ pub trait Lanes: Copy + Send + Sync + 'static {
     fn permute(self, column: &Wide<Self::Real>, _indices: Self::U) -> Self::F {
         self.splat(column.0[0])
     }
-    /// Loads the columns from `4 * group` on of the rows that the first [`Lanes::WIDTH`] `indices` name.
-    fn gather(self, records: &[RecordColumns<Self::Real>], indices: &WideU, group: usize) -> [Self::F; 4];
+    /// Loads the columns from `4 * group` on of the rows of the first [`Lanes::WIDTH`] lanes.
+    fn gather(self, rows: &Rows<'_, Self::Real>, group: usize) -> [Self::F; 4];
     /// Sine and cosine of an angle in turns, `0 <= u < 1`.
     fn sin_cos_turns(self, u: Self::F) -> (Self::F, Self::F);
+}
+
+/// A record for each lane. A packet uses as many as it has lanes, from the front.
+pub type Rows<'a, R> = [&'a RecordColumns<R>; MAX_LANES];
+
+/// The records that `numbers` name.
+///
+/// # Panics
+/// If a number is not below the number of records.
+#[inline(always)]
+pub fn rows_of<'a, R>(records: &'a [RecordColumns<R>], numbers: &WideU) -> Rows<'a, R> {
+    let mut rows = [&records[0]; MAX_LANES];
+    for (row, number) in rows.iter_mut().zip(&numbers.0) {
+        *row = &records[*number as usize];
+    }
+    rows
 }
 
 /// A row of numbers in memory. A packet uses as many as it has lanes, from the front.

@@ -1,7 +1,8 @@
 //! One lane: scalar code in the packets' precision, and the `f64` reference.
 
-use super::{Float, Key, Lanes, MAX_LANES, Mask, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns};
-use crate::kernel::RecordColumns;
+use super::{
+    Float, Key, Lanes, MAX_LANES, Mask, Rows, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns,
+};
 use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Shl, Shr, Sub};
 
 /// One lane of `f32`. `FUSED` says whether the level has fused multiply-add; on a level without it, `f32::mul_add`
@@ -237,9 +238,8 @@ macro_rules! scalar_lanes {
             Word(nearest_integer(f64::from(f.0)))
         }
         #[inline(always)]
-        fn gather(self, records: &[RecordColumns<$real>], indices: &WideU, group: usize) -> [Self::F; 4] {
-            let row = &records[indices.0[0] as usize].0;
-            [0, 1, 2, 3].map(|column| $number(row[4 * group + column]))
+        fn gather(self, rows: &Rows<'_, $real>, group: usize) -> [Self::F; 4] {
+            [0, 1, 2, 3].map(|column| $number(rows[0].0[4 * group + column]))
         }
     };
 }

@@ -1,8 +1,9 @@
 //! Packets: rows in one register, or in several where a level's registers are shorter.
 
 use super::instructions::{Instructions, transpose4};
-use super::{Float, Key, Lanes, MAX_LANES, Mask, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns};
-use crate::kernel::RecordColumns;
+use super::{
+    Float, Key, Lanes, MAX_LANES, Mask, Rows, Select, Unsigned, Wide, WideU, polynomial_sin_cos_turns,
+};
 use fearless_simd::prelude::*;
 use fearless_simd::{
     f32x4, f32x8, f32x16, i32x4, i32x8, i32x16, mask32x4, mask32x8, mask32x16, u32x4, u32x8, u32x16,
@@ -94,8 +95,8 @@ macro_rules! simd_lanes {
                 self.0.$permute(self.load(column), indices)
             }
             #[inline(always)]
-            fn gather(self, records: &[RecordColumns<f32>], indices: &WideU, group: usize) -> [$f<S>; 4] {
-                $gather(self.0, records, indices, 0, group)
+            fn gather(self, rows: &Rows<'_, f32>, group: usize) -> [$f<S>; 4] {
+                $gather(self.0, rows, group)
             }
             #[inline(always)]
             fn sin_cos_turns(self, u: $f<S>) -> ($f<S>, $f<S>) {
@@ -241,55 +242,50 @@ simd_lanes!(
     "Sixteen lanes of `f32`."
 );
 
+/// Four columns of a lane's row, from column `4 * group` on.
 #[inline(always)]
-fn gathered_columns<S: Simd>(simd: S, records: &[RecordColumns<f32>], index: u32, group: usize) -> f32x4<S> {
-    f32x4::from_slice(simd, &records[index as usize].0[4 * group..4 * group + 4])
+fn columns<S: Simd>(simd: S, rows: &Rows<'_, f32>, lane: usize, group: usize) -> f32x4<S> {
+    f32x4::from_slice(simd, &rows[lane].0[4 * group..4 * group + 4])
 }
 
-/// Loads four columns of the rows that four indices name.
+/// The columns of two lanes, the second four lanes after the first.
 #[inline(always)]
-fn gather4<S: Simd>(
-    simd: S,
-    records: &[RecordColumns<f32>],
-    indices: &WideU,
-    first: usize,
-    group: usize,
-) -> [f32x4<S>; 4] {
-    let a = gathered_columns(simd, records, indices.0[first], group);
-    let b = gathered_columns(simd, records, indices.0[first + 1], group);
-    let c = gathered_columns(simd, records, indices.0[first + 2], group);
-    let d = gathered_columns(simd, records, indices.0[first + 3], group);
-    transpose4([a, b, c, d])
+fn two_columns<S: Simd>(simd: S, rows: &Rows<'_, f32>, lane: usize, group: usize) -> f32x8<S> {
+    columns(simd, rows, lane, group).combine(columns(simd, rows, lane + 4, group))
+}
+
+/// The columns of four lanes, each four lanes after the one before.
+#[inline(always)]
+fn four_columns<S: Simd>(simd: S, rows: &Rows<'_, f32>, lane: usize, group: usize) -> f32x16<S> {
+    two_columns(simd, rows, lane, group).combine(two_columns(simd, rows, lane + 8, group))
 }
 
 #[inline(always)]
-fn gather8<S: Instructions>(
-    simd: S,
-    records: &[RecordColumns<f32>],
-    indices: &WideU,
-    first: usize,
-    group: usize,
-) -> [f32x8<S>; 4] {
-    let a = gathered_columns(simd, records, indices.0[first], group);
-    let b = gathered_columns(simd, records, indices.0[first + 1], group);
-    let c = gathered_columns(simd, records, indices.0[first + 2], group);
-    let d = gathered_columns(simd, records, indices.0[first + 3], group);
-    let e = gathered_columns(simd, records, indices.0[first + 4], group);
-    let f = gathered_columns(simd, records, indices.0[first + 5], group);
-    let g = gathered_columns(simd, records, indices.0[first + 6], group);
-    let h = gathered_columns(simd, records, indices.0[first + 7], group);
-    simd.transpose_8([a.combine(e), b.combine(f), c.combine(g), d.combine(h)])
+fn gather4<S: Simd>(simd: S, rows: &Rows<'_, f32>, group: usize) -> [f32x4<S>; 4] {
+    transpose4([
+        columns(simd, rows, 0, group),
+        columns(simd, rows, 1, group),
+        columns(simd, rows, 2, group),
+        columns(simd, rows, 3, group),
+    ])
 }
 
 #[inline(always)]
-fn gather16<S: Instructions>(
-    simd: S,
-    records: &[RecordColumns<f32>],
-    indices: &WideU,
-    first: usize,
-    group: usize,
-) -> [f32x16<S>; 4] {
-    let [a0, a1, a2, a3] = gather8(simd, records, indices, first, group);
-    let [b0, b1, b2, b3] = gather8(simd, records, indices, first + 8, group);
-    [a0.combine(b0), a1.combine(b1), a2.combine(b2), a3.combine(b3)]
+fn gather8<S: Instructions>(simd: S, rows: &Rows<'_, f32>, group: usize) -> [f32x8<S>; 4] {
+    simd.transpose_8([
+        two_columns(simd, rows, 0, group),
+        two_columns(simd, rows, 1, group),
+        two_columns(simd, rows, 2, group),
+        two_columns(simd, rows, 3, group),
+    ])
+}
+
+#[inline(always)]
+fn gather16<S: Instructions>(simd: S, rows: &Rows<'_, f32>, group: usize) -> [f32x16<S>; 4] {
+    simd.transpose_16([
+        four_columns(simd, rows, 0, group),
+        four_columns(simd, rows, 1, group),
+        four_columns(simd, rows, 2, group),
+        four_columns(simd, rows, 3, group),
+    ])
 }

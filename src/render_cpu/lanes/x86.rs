@@ -9,7 +9,8 @@ use fearless_simd::{
 use std::arch::x86_64::{
     __m128i, __m256i, _mm_cvtps_epi32, _mm256_castpd_ps, _mm256_castps_pd, _mm256_cvtps_epi32,
     _mm256_permutevar8x32_ps, _mm256_unpackhi_pd, _mm256_unpackhi_ps, _mm256_unpacklo_pd, _mm256_unpacklo_ps,
-    _mm512_cvtps_epi32, _mm512_permutexvar_ps,
+    _mm512_castpd_ps, _mm512_castps_pd, _mm512_cvtps_epi32, _mm512_permutexvar_ps, _mm512_unpackhi_pd,
+    _mm512_unpackhi_ps, _mm512_unpacklo_pd, _mm512_unpacklo_ps,
 };
 
 /// Implements a method with an intrinsic.
@@ -28,6 +29,36 @@ macro_rules! by {
     };
 }
 
+/// Implements a transposition of 4 by 4 blocks with the level's instructions for unpacking within blocks.
+macro_rules! transpose_by {
+    ($level:ident, $method:ident, $f:ident, $low:ident, $high:ident, $low_pairs:ident, $high_pairs:ident, $pairs:ident, $numbers:ident) => {
+        #[inline(always)]
+        fn $method(self, [a, b, c, d]: [$f<Self>; 4]) -> [$f<Self>; 4] {
+            kernel!(
+                #[inline(always)]
+                fn kernel(
+                    token: $level,
+                    a: $f<$level>,
+                    b: $f<$level>,
+                    c: $f<$level>,
+                    d: $f<$level>,
+                ) -> [$f<$level>; 4] {
+                    let (a, b, c, d) = (a.into(), b.into(), c.into(), d.into());
+                    let (ab_low, ab_high) = ($pairs($low(a, b)), $pairs($high(a, b)));
+                    let (cd_low, cd_high) = ($pairs($low(c, d)), $pairs($high(c, d)));
+                    [
+                        $numbers($low_pairs(ab_low, cd_low)).simd_into(token),
+                        $numbers($high_pairs(ab_low, cd_low)).simd_into(token),
+                        $numbers($low_pairs(ab_high, cd_high)).simd_into(token),
+                        $numbers($high_pairs(ab_high, cd_high)).simd_into(token),
+                    ]
+                }
+            );
+            kernel(self, a, b, c, d)
+        }
+    };
+}
+
 impl Instructions for Sse4_2 {
     by!(Sse4_2, to_nearest_4(x: f32x4) -> i32x4, _mm_cvtps_epi32(x.into()));
     // Each lane of a mask is all ones or all zeros.
@@ -38,43 +69,37 @@ impl Instructions for Avx2 {
     const ROWS_8: usize = 8;
 
     by!(Avx2, permute_8(column: f32x8, indices: u32x8) -> f32x8, _mm256_permutevar8x32_ps(column.into(), indices.into()));
-    #[inline(always)]
-    fn transpose_8(self, [a, b, c, d]: [f32x8<Self>; 4]) -> [f32x8<Self>; 4] {
-        let (ab_low, ab_high) = (self.unpack_low(a, b), self.unpack_high(a, b));
-        let (cd_low, cd_high) = (self.unpack_low(c, d), self.unpack_high(c, d));
-        [
-            self.pairs_low(ab_low, cd_low),
-            self.pairs_high(ab_low, cd_low),
-            self.pairs_low(ab_high, cd_high),
-            self.pairs_high(ab_high, cd_high),
-        ]
-    }
+    transpose_by!(
+        Avx2,
+        transpose_8,
+        f32x8,
+        _mm256_unpacklo_ps,
+        _mm256_unpackhi_ps,
+        _mm256_unpacklo_pd,
+        _mm256_unpackhi_pd,
+        _mm256_castps_pd,
+        _mm256_castpd_ps
+    );
     by!(Avx2, to_nearest_4(x: f32x4) -> i32x4, _mm_cvtps_epi32(x.into()));
     by!(Avx2, to_nearest_8(x: f32x8) -> i32x8, _mm256_cvtps_epi32(x.into()));
     by!(Avx2, ones_4(m: mask32x4) -> u32x4, __m128i::from(m));
     by!(Avx2, ones_8(m: mask32x8) -> u32x8, __m256i::from(m));
 }
 
-/// Unpacking within each half of a register.
-trait Unpack: Sized {
-    fn unpack_low(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
-    fn unpack_high(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
-    fn pairs_low(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
-    fn pairs_high(self, a: f32x8<Avx2>, b: f32x8<Avx2>) -> f32x8<Avx2>;
-}
-
-impl Unpack for Avx2 {
-    by!(Avx2, unpack_low(a: f32x8, b: f32x8) -> f32x8, _mm256_unpacklo_ps(a.into(), b.into()));
-    by!(Avx2, unpack_high(a: f32x8, b: f32x8) -> f32x8, _mm256_unpackhi_ps(a.into(), b.into()));
-    by!(Avx2, pairs_low(a: f32x8, b: f32x8) -> f32x8, _mm256_castpd_ps(_mm256_unpacklo_pd(
-        _mm256_castps_pd(a.into()), _mm256_castps_pd(b.into()))));
-    by!(Avx2, pairs_high(a: f32x8, b: f32x8) -> f32x8, _mm256_castpd_ps(_mm256_unpackhi_pd(
-        _mm256_castps_pd(a.into()), _mm256_castps_pd(b.into()))));
-}
-
 impl Instructions for Avx512 {
     const ROWS_16: usize = 16;
 
     by!(Avx512, permute_16(column: f32x16, indices: u32x16) -> f32x16, _mm512_permutexvar_ps(indices.into(), column.into()));
+    transpose_by!(
+        Avx512,
+        transpose_16,
+        f32x16,
+        _mm512_unpacklo_ps,
+        _mm512_unpackhi_ps,
+        _mm512_unpacklo_pd,
+        _mm512_unpackhi_pd,
+        _mm512_castps_pd,
+        _mm512_castpd_ps
+    );
     by!(Avx512, to_nearest_16(x: f32x16) -> i32x16, _mm512_cvtps_epi32(x.into()));
 }

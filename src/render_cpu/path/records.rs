@@ -3,7 +3,7 @@
 use super::{Packet, is_small};
 use crate::kernel::{ANCHORED_GROUP, Columns, GROUP, NONE, RECORD_COLUMNS, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
-use crate::render_cpu::lanes::{Lanes, Unsigned, V3, WideU};
+use crate::render_cpu::lanes::{Lanes, Unsigned, V3, WideU, rows_of};
 
 /// Column groups of a record.
 const GROUPS: usize = RECORD_COLUMNS / GROUP;
@@ -35,10 +35,19 @@ impl<L: Lanes> HitRecords<L> {
         } else {
             let mut numbers = WideU::default();
             L::store_u(l.keep(!hit.eq(l.splat_u(NONE)), hit), &mut numbers);
-            for (group, loaded) in groups.iter_mut().enumerate() {
-                if is_needed(group) {
-                    *loaded = l.gather(&prepared.records, &numbers, group);
-                }
+            let rows = rows_of(&prepared.records, &numbers);
+            // Not a loop, because the compiler would not unroll it.
+            if is_needed(0) {
+                groups[0] = l.gather(&rows, 0);
+            }
+            if is_needed(1) {
+                groups[1] = l.gather(&rows, 1);
+            }
+            if is_needed(2) {
+                groups[2] = l.gather(&rows, 2);
+            }
+            if is_needed(3) {
+                groups[3] = l.gather(&rows, 3);
             }
         }
         HitRecords { groups }
