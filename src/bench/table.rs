@@ -60,7 +60,7 @@ fn row_line(row: &Row) -> String {
             paths(|spread| spread.median),
             paths(|spread| spread.min),
             paths(|spread| spread.max),
-            row.ratio_to_baseline.map_or_else(dash, |ratio| format!("{ratio:.2}")),
+            row.ratio_to_baseline.map_or_else(dash, short),
             row.rays_per_second.map_or_else(dash, |spread| millions(spread.median)),
             row.lanes_in_use.map_or_else(dash, |share| format!("{:.1}", 100.0 * share)),
             row.efficiency.map_or_else(dash, |efficiency| format!("{efficiency:.2e}")),
@@ -69,7 +69,19 @@ fn row_line(row: &Row) -> String {
 }
 
 fn millions(number: f64) -> String {
-    format!("{:.*}", if number < 1e8 { 2 } else { 1 }, number / 1e6)
+    short(number / 1e6)
+}
+
+/// A number with at least three digits, in at most five characters below 100,000.
+fn short(number: f64) -> String {
+    let decimals = if number < 100.0 {
+        2
+    } else if number < 1000.0 {
+        1
+    } else {
+        0
+    };
+    format!("{number:.decimals$}")
 }
 
 fn line(name: &str, cells: &[String; 8]) -> String {
@@ -293,6 +305,12 @@ mod tests {
             efficiency: Some(1234.0),
             skipped: None,
         };
+        let gpu = Row {
+            paths_per_second: spread(12_514e6),
+            rays_per_second: spread(38_866e6),
+            ratio_to_baseline: Some(2696.52),
+            ..row.clone()
+        };
         let none = Row { paths_per_second: None, rays_per_second: None, ..row.clone() };
         let none = Row { lanes_in_use: None, ratio_to_baseline: None, efficiency: None, ..none };
         let scene = SceneFigures {
@@ -302,7 +320,7 @@ mod tests {
             max_depth: 50,
             sampler: "sobol",
             spheres: 485,
-            rows: vec![row, none],
+            rows: vec![row, gpu, none],
         };
         assert_eq!(
             scene_lines(&scene),
@@ -310,6 +328,7 @@ mod tests {
                 "book, 200x113, depth 50, sobol, 485 spheres; 1 run",
                 "                                    spp Mpaths/s     min     max  x C89 Mrays/s lanes % 1/(MSE s)",
                 "avx2, 8 lanes                        64     2.00    1.00    6.00   7.00   250.0    87.5    1.23e3",
+                "avx2, 8 lanes                        64    12514    6257   37542   2697   38866    87.5    1.23e3",
                 "avx2, 8 lanes                        64        -       -       -      -       -       -         -",
             ]
         );
