@@ -317,7 +317,10 @@ impl Mapping for GpuWay {
         staging.unmap();
         let (sums, counters) = bytes.split_at(length as usize);
         let counters: GpuCounters = bytemuck::pod_read_unaligned(counters);
-        anyhow::ensure!(counters.dispatch.unfinished == 0, "some paths were not finished");
+        anyhow::ensure!(
+            counters.dispatch.unfinished == 0,
+            "some paths were not finished, because a thread's loop has at most {TURN_LIMIT} turns; ask for fewer samples"
+        );
         let film = sums.chunks_exact(24).map(|pixel| PixelSum(bytemuck::pod_read_unaligned(pixel))).collect();
         Ok(Traced { seconds, film, in_use: None })
     }
