@@ -49,7 +49,7 @@ impl<T: Send + 'static> Answers<T> {
     }
 }
 
-/// The right to give one answer, which wakes the window.
+/// The right to give an answer, which wakes the window.
 pub struct Answer<T> {
     sender: Sender<T>,
     context: Context,
@@ -61,6 +61,12 @@ impl<T> Answer<T> {
         // If the window was closed, nobody receives it.
         let _ = self.sender.send(value);
         self.wake();
+    }
+
+    /// Gives one of several answers.
+    pub fn give_one(&self, value: T) {
+        let _ = self.sender.send(value);
+        self.context.request_repaint();
     }
 
     /// Wakes the window without giving an answer.

@@ -226,8 +226,11 @@ impl Facts {
             SlotCommand::Keep | SlotCommand::KeepIn(_) if let Some(number) = slots.looked() => Some(format!(
                 "Slot {number} is shown, which is kept already; press Escape to return to the live picture"
             )),
-            SlotCommand::Keep if slots.first_free().is_none() => {
+            SlotCommand::Keep if slots.free().next().is_none() => {
                 no("All nine slots are in use; delete one, or replace one with Shift, Alt and its digit")
+            }
+            SlotCommand::Look(number) | SlotCommand::KeepIn(number) if slots.coming(number).is_some() => {
+                Some(format!("Slot {number} is still being read from disk; try again in a moment"))
             }
             SlotCommand::Look(number) if slots.get(number).is_none() => {
                 Some(format!("Slot {number} is empty; press M to keep the picture in the first free slot"))

@@ -30,6 +30,7 @@ impl Window {
         self.poll(&context);
         self.receive(&context);
         self.receive_recovered();
+        self.receive_slot_files();
         self.go_on_flying(&context);
         self.take_input(&context);
         self.perform_all(&context);
@@ -54,6 +55,7 @@ impl Window {
         context.options_mut(|options| options.input_options.max_click_duration = LONGEST_CLICK);
         self.main.wake(context);
         self.recovery.begin(context);
+        self.read_slots(context);
         if let Some((path, job)) = self.pending_resume.take() {
             self.files.resume(context, path, job, &self.model.document);
         }
@@ -192,6 +194,7 @@ impl Window {
             self.seconds_before = Some(0.0);
             // A change is seen in the live picture.
             self.model.view.look(None);
+            self.recovery.shown_slots = None;
             if let Some(log) = &mut self.frame_log {
                 log.changed();
             }

@@ -18,6 +18,9 @@ use eframe::egui::{self, Rect};
 /// Windows narrower than this many points have no room for two panels beside the picture.
 const NARROW: f32 = 900.0;
 
+/// Height of the titles of a wipe, which take two rows if they are long, points.
+const TITLES: f32 = 64.0;
+
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     pub(super) fn layout(&mut self, ui: &mut egui::Ui) {
@@ -68,7 +71,7 @@ impl Window {
             Place::Menu.begin(ui);
             title_bar::ui(ui, thumbnails, &facts, commands);
             status_bar::ui(ui, &facts);
-            if view.slots.is_used() {
+            if view.slots.is_listed() {
                 Place::Slots.begin(ui);
                 slot_actions.strip.ui(ui, &mut view.slots, &facts, commands);
             }
@@ -183,10 +186,11 @@ impl Window {
         edits.into_iter().chain(touch.edit).for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
             if facts.model.presentation.is_none() {
+                let below = self.below_titles(room);
                 if facts.model.has_recovered {
-                    self.offer_recovered(ui, room);
+                    self.offer_recovered(ui, below);
                 } else {
-                    self.first_steps.ui(ui, room, &facts, &mut self.commands);
+                    self.first_steps.ui(ui, below, &facts, &mut self.commands);
                 }
                 self.sizer.ui(ui, room, &mut self.commands);
             }
@@ -204,6 +208,16 @@ impl Window {
         if facts.model.presentation.is_some_and(|presentation| presentation.is_blank) {
             present::blank(ui.ctx());
         }
+    }
+
+    /// The part of the viewport in which a card covers no title of a wipe.
+    fn below_titles(&self, room: Rect) -> Rect {
+        let view = &self.model.view;
+        let is_titled = view.mode() == Some(Mode::Wipe) && self.second.shown().is_some();
+        let top = self.viewport.placement.rect().top().max(room.top()) + TITLES;
+        // Where hardly anything would be left, the card is worth more.
+        let is_high = room.bottom() - top > 2.0 * TITLES;
+        if is_titled && is_high { Rect { min: egui::pos2(room.left(), top), ..room } } else { room }
     }
 
     /// Shows the pixel under the pointer large: that of the picture which is on top there.

@@ -41,6 +41,8 @@ impl Window {
             self.toasts.good(format!("{}: {}", command.name().trim_end_matches('…'), lower_first(&reason)));
             return;
         }
+        // What the user looks at by now stays.
+        self.recovery.shown_slots = None;
         match command {
             Command::Fresh => self.start_fresh(),
             Command::Open => self.ask_path(Purpose::Open),

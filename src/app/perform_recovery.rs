@@ -17,25 +17,36 @@ use std::path::Path;
 use std::sync::Arc;
 
 impl Window {
-    /// Keeps files in `directory` from now on. Shows again what the last window showed, if `may_restore`.
-    pub(super) fn begin_recovery(&mut self, directory: &Path, may_restore: bool, stop: Option<Stop>) {
+    /// Keeps files in `directory` from now on, of which kept pictures may take `limit` bytes. Shows again what the last
+    /// window showed, if `may_restore`.
+    pub(super) fn begin_recovery(
+        &mut self,
+        directory: &Path,
+        may_restore: bool,
+        (stop, limit): (Option<Stop>, u64),
+    ) {
         let mut files = match RecoveryFiles::claim(directory) {
             Ok(files) => files,
             Err(reason) => {
-                self.toasts.bad(format!("Nothing is autosaved: {reason}"));
+                self.toasts
+                    .bad(format!("Nothing is autosaved, and kept pictures will not come back: {reason}"));
                 return;
             }
         };
         if may_restore && let Err(reason) = self.take_session(&files) {
             self.toasts.bad(format!("What was shown last cannot be shown again: {reason}"));
-            // What cannot be shown is left as it is, to be offered.
-            drop(files);
+            // What cannot be shown is left as it is, to be offered; the kept pictures are not concerned.
             let Ok(others) = RecoveryFiles::claim(directory) else { return };
+            let taken = others.take_slots(&files);
             files = others;
+            if let Err(error) = taken {
+                self.toasts.bad(format!("Kept pictures stay where they are: {error}"));
+            }
         }
         if let Some(stop) = stop {
             self.model.document.stop = stop;
         }
+        self.begin_slots(&files, limit);
         self.recovery.files = Some(files);
     }
 
@@ -46,6 +57,7 @@ impl Window {
         let Some(session) = files.note()? else { return Ok(()) };
         let restored = session.restore()?;
         let document = restored.document.clone();
+        self.recovery.shown_slots = Some(restored.slots);
         self.show_restored(restored);
         self.changes = Changes::new(document.clone());
         if files.has_film() {
@@ -55,7 +67,7 @@ impl Window {
     }
 
     fn show_restored(&mut self, restored: Restored) {
-        let Restored { document, view, framing, is_paused, note } = restored;
+        let Restored { document, view, framing, is_paused, note, .. } = restored;
         self.show_document(document);
         self.show_view(view);
         match framing {
@@ -68,11 +80,13 @@ impl Window {
         }
     }
 
-    /// Shows another view. A film that was loaded to compare with stays loaded.
+    /// Shows another view. A film that was loaded to compare with stays loaded, and kept pictures stay kept.
     fn show_view(&mut self, view: ViewState) {
         let reference = self.model.view.reference.take();
+        let mut slots = std::mem::take(&mut self.model.view.slots);
+        slots.look(None);
         self.model.view = view;
-        self.model.view.reference = reference;
+        (self.model.view.reference, self.model.view.slots) = (reference, slots);
     }
 
     /// Shows the usual first picture.
@@ -190,6 +204,7 @@ impl Window {
     pub(super) fn offer_recovered(&mut self, ui: &Ui, room: Rect) {
         let Recovery { card, left, opening, resuming, .. } = &mut self.recovery;
         match card.ui(ui, room, left, opening.is_some() || resuming.is_some()) {
+            Some(Choice::Open(index, Part::Slots)) => self.take_left_slots(ui.ctx(), index),
             Some(Choice::Open(index, part)) => self.recovery.open(ui.ctx(), index, part),
             Some(Choice::Discard(index, part)) => self.recovery.discard(index, part),
             Some(Choice::Later) => self.recovery.left.clear(),
@@ -198,11 +213,12 @@ impl Window {
         self.model.has_recovered = !self.recovery.left.is_empty();
     }
 
-    /// Has the film and what the window shows written if it is time, also while the window is hidden.
+    /// Has kept pictures, the film and what the window shows written if it is time, also while the window is hidden.
     pub(super) fn write_recovery(&mut self, context: &Context) {
         if self.recovery.interrupt().is_some_and(|interrupt| interrupt.is_set()) {
             context.send_viewport_cmd(ViewportCommand::Close);
         }
+        self.keep_slots(context);
         if !self.recovery.is_time(context) {
             return;
         }
@@ -239,6 +255,7 @@ impl Window {
         let _writing = interrupt.as_ref().map(|interrupt| interrupt.while_writing("the picture"));
         self.recovery.autosave.finish();
         self.recovery.finish_notes();
+        self.finish_slots();
         let document = self.model.document.clone();
         let has_film = match self.recovery.resuming.take() {
             // The film is still being read, so it is as it was.

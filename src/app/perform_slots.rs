@@ -121,10 +121,9 @@ impl Window {
     }
 
     /// Shows a kept picture as the live one, which goes on with its samples.
-    fn go_on_from(&mut self, Reopened { document, film }: Reopened) {
+    fn go_on_from(&mut self, Reopened { document, film, seconds }: Reopened) {
         let held = self.main.status().samples_per_pixel;
-        let is_newer = self.main.is_full(&document)
-            && film.as_ref().is_some_and(|(film, _)| film.sample_count() <= held);
+        let is_newer = self.main.is_full(&document) && film.sample_count() <= held;
         let is_same = self.document().has_same_film(&document);
         self.model.view.look(None);
         self.model.view.end_comparison();
@@ -134,13 +133,11 @@ impl Window {
         }
         let title = document.title();
         self.show_document(document);
-        if let Some((film, seconds)) = film {
-            let samples = counted(film.sample_count(), "sample");
-            self.pending_film = Some(film);
-            self.seconds_before = seconds;
-            self.changes.step_to(&self.model.document);
-            self.toasts.good(format!("Going on from {title} with {samples} per pixel; Undo returns"));
-        }
+        let samples = counted(film.sample_count(), "sample");
+        self.pending_film = Some(film);
+        self.seconds_before = seconds;
+        self.changes.step_to(&self.model.document);
+        self.toasts.good(format!("Going on from {title} with {samples} per pixel; Undo returns"));
     }
 
     /// Asks whether the picture on the screen and a slot differ only by noise. A slot that is shown itself is compared with

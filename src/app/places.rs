@@ -52,7 +52,7 @@ impl Place {
                     Place::Plot => remembered.has_plot,
                     Place::Code => remembered.has_code,
                     Place::Packet => remembered.has_packet,
-                    Place::Slots => model.view.slots.is_used(),
+                    Place::Slots => model.view.slots.is_listed(),
                 }
     }
 

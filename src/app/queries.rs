@@ -52,6 +52,11 @@ impl Window {
         self.model.view.slots.get(number).map(|slot| (slot.name.as_str(), slot.kept.samples()))
     }
 
+    /// Whether a slot waits for a picture that is still being read.
+    pub fn is_coming(&self, number: SlotNumber) -> bool {
+        self.model.view.slots.coming(number).is_some()
+    }
+
     /// Whether the last two pictures that were compared differ only by noise: the verdict in a few words, and the text of
     /// `weekender compare`. `None` while it is awaited.
     pub fn only_noise(&self) -> Option<Result<(&str, &str), &str>> {

@@ -19,6 +19,7 @@ impl Window {
     /// Writes the film where the next window looks for it, otherwise wherever there is room.
     fn rescue(&mut self) {
         self.recovery.autosave.finish();
+        self.write_slots();
         let document = self.document().clone();
         if !self.main.has_samples(&document) {
             return;

@@ -29,6 +29,7 @@ use super::recovery::Recovery;
 use super::second::Second;
 use super::sight::Sighted;
 use super::sizer::Sizer;
+use super::slot_files::DISK_LIMIT;
 use super::slots::SlotActions;
 use super::speed::Speed;
 use super::spheres::Spheres;
@@ -215,7 +216,8 @@ impl Window {
         };
         if let Some(directory) = &options.state_directory {
             let may_restore = !options.is_picture_given && !options.is_fresh;
-            window.begin_recovery(directory, may_restore, options.stop);
+            let limit = options.kept_limit.unwrap_or(DISK_LIMIT);
+            window.begin_recovery(directory, may_restore, (options.stop, limit));
         }
         Ok(window)
     }

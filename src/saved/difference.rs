@@ -2,6 +2,7 @@
 
 use crate::recipe::file;
 use crate::render::{RenderJob, RenderSettings};
+use glam::DVec3;
 
 /// Checks whether two recipes, given as text, describe the same samples.
 ///
@@ -20,25 +21,50 @@ fn job(text: &str) -> Result<RenderJob, String> {
 
 /// The first difference between two jobs, in words that a user can act on; `None` if their samples are the same.
 pub fn difference(first: &RenderJob, other: &RenderJob) -> Option<String> {
-    let (a, b) = (first.settings(), other.settings());
-    let size = ("size", format!("{}x{}", a.width, a.height), format!("{}x{}", b.width, b.height));
-    let settings = RenderSettings::NAMED
-        .iter()
-        .map(|named| (named.flag, (named.value)(a).to_string(), (named.value)(b).to_string()));
-    let others = [
-        ("camera", format!("{:?}", first.camera()), format!("{:?}", other.camera())),
-        ("rules of the stage", format!("{:?}", first.rules()), format!("{:?}", other.rules())),
-        (
-            "number of spheres",
-            first.scene().spheres.len().to_string(),
-            other.scene().spheres.len().to_string(),
-        ),
-    ];
-    let mut values = std::iter::once(size).chain(settings).chain(others);
-    if let Some((what, mine, theirs)) = values.find(|(_, mine, theirs)| mine != theirs) {
-        return Some(format!("{what} is {mine} here, {theirs} there"));
+    if first == other {
+        return None;
     }
-    (first != other).then(|| "the spheres, materials or sky differ".to_owned())
+    let [mine, theirs] = [first, other].map(named_values);
+    let differing = mine.into_iter().zip(theirs).find(|((_, mine), (_, theirs))| mine != theirs);
+    Some(differing.map_or_else(
+        || "the spheres, materials or sky differ".to_owned(),
+        |((what, mine), (_, theirs))| format!("{what} is {mine} here, {theirs} there"),
+    ))
+}
+
+/// What a user chooses of a job, with the names of the flags and as these accept it; then the rules of the stage.
+fn named_values(job: &RenderJob) -> Vec<(String, String)> {
+    let (settings, camera) = (job.settings(), job.camera());
+    let mut values = vec![("size".to_owned(), format!("{}x{}", settings.width, settings.height))];
+    values.extend(
+        RenderSettings::NAMED
+            .iter()
+            .map(|named| (named.flag.to_owned(), (named.value)(settings).to_string())),
+    );
+    let vector = |v: DVec3| format!("{},{},{}", v.x, v.y, v.z);
+    let distance = camera.focus_distance.map_or("that to the point looked at".to_owned(), |d| d.to_string());
+    let of_camera = [
+        ("look-from", vector(camera.look_from)),
+        ("look-at", vector(camera.look_at)),
+        ("vup", vector(camera.vup)),
+        ("vfov", format!("{} degrees", camera.vfov_degrees)),
+        ("defocus-angle", format!("{} degrees", camera.defocus_angle_degrees)),
+        ("focus-distance", distance),
+    ];
+    values.extend(of_camera.map(|(flag, value)| (flag.to_owned(), value)));
+    // Their names in scene files.
+    if let Ok(serde_json::Value::Object(rules)) = serde_json::to_value(job.rules()) {
+        values.extend(
+            rules.into_iter().map(|(name, value)| (format!("the stage's rule {name}"), plain(&value))),
+        );
+    }
+    values.push(("number of spheres".to_owned(), job.scene().spheres.len().to_string()));
+    values
+}
+
+/// A value without quotation marks.
+fn plain(value: &serde_json::Value) -> String {
+    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
 
 #[cfg(test)]
@@ -59,10 +85,32 @@ mod tests {
         assert_eq!(told(|_| {}), None);
         assert_eq!(told(|recipe| recipe.settings.width = 7).unwrap(), "size is 800x450 here, 7x450 there");
         assert_eq!(told(|recipe| recipe.settings.seed = 5).unwrap(), "seed is 0 here, 5 there");
-        let camera = told(|recipe| recipe.camera.vfov_degrees = 20.0).unwrap();
-        assert!(camera.starts_with("camera is ") && camera.contains("vfov_degrees: 20.0"), "{camera}");
-        let rules = told(|recipe| recipe.rules.transfer = Transfer::Linear).unwrap();
-        assert!(rules.starts_with("rules of the stage is ") && rules.contains("Linear"), "{rules}");
+        for (change, expected) in [
+            (
+                (|recipe| recipe.camera.vfov_degrees = 20.0) as fn(&mut Recipe),
+                "vfov is 90 degrees here, 20 degrees there",
+            ),
+            (
+                |recipe| recipe.camera.look_from = DVec3::new(13.0, -2.5, 1e-3),
+                "look-from is 0,0,0 here, 13,-2.5,0.001 there",
+            ),
+            (
+                |recipe| recipe.camera.focus_distance = Some(3.4),
+                "focus-distance is that to the point looked at here, 3.4 there",
+            ),
+            (
+                |recipe| recipe.rules.transfer = Transfer::Linear,
+                "the stage's rule transfer is gamma2 here, linear there",
+            ),
+            (
+                |recipe| recipe.rules.antialiasing = false,
+                "the stage's rule antialiasing is true here, false there",
+            ),
+            // Equal numbers are no difference, whatever their signs.
+            (|recipe| recipe.camera.look_from.x = -0.0, ""),
+        ] {
+            assert_eq!(told(change).unwrap_or_default(), expected);
+        }
         let fewer = told(|recipe| Arc::make_mut(&mut recipe.scene).spheres.truncate(4)).unwrap();
         assert_eq!(fewer, "number of spheres is 5 here, 4 there");
         let moved = told(|recipe| Arc::make_mut(&mut recipe.scene).spheres[0].radius *= 0.5).unwrap();

@@ -50,7 +50,8 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("panels", &["model", "command", "facts", "tips", "widgets", "spheres"]),
     ("info", &["model", "command", "facts", "tips", "widgets", "menu"]),
     ("corner_card", &["places", "theme"]),
-    ("recovery", &["model", "answers", "tracer", "corner_card", "theme", "places"]),
+    ("slot_files", &["model", "answers"]),
+    ("recovery", &["model", "answers", "tracer", "slot_files", "corner_card", "theme", "places"]),
     ("first_steps", &["model", "command", "corner_card", "facts", "places", "theme"]),
     ("present", &["command", "facts", "theme", "widgets", "status_bar"]),
     (
@@ -82,6 +83,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "toasts",
             "first_steps",
             "recovery",
+            "slot_files",
             "flight",
             "changes",
             "tracer",
@@ -117,6 +119,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("perform_flights", &["model", "command", "flight", "window"]),
     ("receive", &["model", "command", "files", "window"]),
     ("perform_recovery", &["model", "recovery", "changes", "window"]),
+    ("perform_slot_files", &["model", "recovery", "slot_files", "window"]),
     ("rescue", &["model", "recovery", "window"]),
     ("queries", &["model", "command", "tracer", "window"]),
     (
@@ -150,6 +153,7 @@ pub const TOP: &[&str] = &[
     "queries",
     "perform",
     "perform_slots",
+    "perform_slot_files",
     "perform_present",
     "perform_sight",
     "perform_spheres",

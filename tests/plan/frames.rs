@@ -104,7 +104,7 @@ fn keyframes_are_in_the_plan_and_wrong_frames_are_named() {
             "part 0: frame-0003.png is missing",
             "part 0: ",
             "frame-0005.png",
-            "frame-0008.png is of another picture: camera is",
+            "frame-0008.png is of another picture: look-from is",
             "3 of 6 frames are whole",
             "--array=0,1 in Slurm",
             "--part 0",

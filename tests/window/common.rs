@@ -106,6 +106,18 @@ pub fn copied(harness: &mut Harness<'_, Window>, patience: Duration) -> Option<e
     None
 }
 
+/// The command that "Copy as command" puts into the clipboard.
+pub fn copied_command(harness: &mut Harness<'_, Window>) -> String {
+    harness.state_mut().send(Command::CopyCommand);
+    harness.step();
+    let mut commands = harness.output().platform_output.commands.iter();
+    let copied = commands.find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    copied.unwrap()
+}
+
 /// Whether the screen shows the document's picture at full size with at least this many samples per pixel.
 pub fn has_samples(at_least: u64) -> impl Fn(&Window) -> bool {
     move |window| {

@@ -1,6 +1,6 @@
 //! Saving, opening, dropping and copying.
 
-use crate::common::{SMALL, has_samples, name_file, open, painted, save, send, until};
+use crate::common::{SMALL, copied_command, has_samples, name_file, open, painted, save, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
@@ -160,13 +160,7 @@ fn a_picture_of_another_program_is_checked() {
 fn the_command_is_copied() {
     let mut harness = open(SMALL);
     until(&mut harness, "a picture", has_samples(1));
-    harness.state_mut().send(Command::CopyCommand);
-    harness.step();
-    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
-        egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
-    let copied = copied.unwrap();
+    let copied = copied_command(&mut harness);
     assert!(
         copied.starts_with("weekender --batch --stage=glass-schlick --size=32x18 --samples="),
         "{copied}"

@@ -1,6 +1,7 @@
 //! Tests the window through its real state, as a person would use it: every command, key and control.
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
+mod cards;
 mod commands;
 mod common;
 mod crop;
@@ -30,6 +31,7 @@ mod session;
 mod sights;
 mod size;
 mod sizes;
+mod slot_files;
 mod slots;
 mod snapshots;
 mod stages;

@@ -1,6 +1,6 @@
 //! While something moves, coarse previews are shown; they are never saved or reported.
 
-use crate::common::{has_samples, hold, open, send, until};
+use crate::common::{copied_command, has_samples, hold, open, send, until};
 use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -114,13 +114,7 @@ fn a_command_copied_during_a_move_renders_the_picture_and_not_the_preview() {
         }
     }
     change(harness.state_mut());
-    harness.state_mut().send(Command::CopyCommand);
-    harness.step();
-    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
-        egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
-    let copied = copied.unwrap();
+    let copied = copied_command(&mut harness);
     assert!(copied.contains(" --samples=4000 "), "{copied}");
     hold(&mut harness, at, false);
 }

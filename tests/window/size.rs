@@ -1,8 +1,8 @@
 //! The size of the picture: that of the viewport, the book's, or its own.
 
 use crate::common::{
-    SMALL, control, has_samples, name_file, open, opened, save, send, until, until_seen, window,
-    window_of_new_user,
+    SMALL, control, copied_command, has_samples, name_file, open, opened, save, send, until, until_seen,
+    window, window_of_new_user,
 };
 use eframe::egui::{self, Key};
 use egui_kittest::Harness;
@@ -235,13 +235,7 @@ fn what_is_saved_says_which_size_it_has() {
         assert!(said.contains(words) && said.contains(&format!("{width}x{height}")), "{said}");
         harness.key_press(Key::Escape);
         harness.run_steps(2);
-        harness.state_mut().send(Command::CopyCommand);
-        harness.step();
-        let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
-            egui::OutputCommand::CopyText(text) => Some(text.clone()),
-            _ => None,
-        });
-        let copied = copied.unwrap();
+        let copied = copied_command(&mut harness);
         assert!(copied.contains(&format!("--size={width}x{height}")), "{copied}");
     }
 }

@@ -5,6 +5,7 @@ use crate::film::{Film, to_byte};
 use crate::progressive::{FilmIdentity, ReferenceMeans, Status};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
+use std::time::SystemTime;
 
 /// A small copy of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -67,6 +68,8 @@ pub struct Kept {
     pub seconds_before: Option<f64>,
     /// A small copy.
     pub thumbnail: Thumbnail,
+    /// The name of its files. No other picture of any window ever has it.
+    pub id: String,
     number: u64,
     means: OnceLock<Arc<ReferenceMeans>>,
 }
@@ -78,7 +81,14 @@ impl Kept {
         let thumbnail = Thumbnail::of(&film, &document);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let (film, means) = (Arc::new(film), OnceLock::new());
-        Kept { document, film, status, seconds_before, thumbnail, number, means }
+        let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_millis();
+        let id = format!("{now:012x}-{}-{number}", std::process::id());
+        Kept { document, film, status, seconds_before, thumbnail, id, number, means }
+    }
+
+    /// The same picture under the name that its files have already.
+    pub fn with_id(self, id: String) -> Self {
+        Kept { id, ..self }
     }
 
     /// A number that no other kept picture has.

@@ -19,6 +19,7 @@ pub mod remembered;
 pub mod session;
 pub mod show;
 pub mod sizing;
+pub mod slot_number;
 pub mod slots;
 pub mod tone;
 pub mod view;

@@ -3,7 +3,7 @@
 use super::checked::CheckedScene;
 use super::document::Document;
 use super::framing::Framing;
-use super::kept_view::KeptView;
+use super::kept_view::{KeptView, ShownSlots};
 use super::origin::{Origin, Source};
 use super::view::ViewState;
 use crate::describe::SOFTWARE;
@@ -78,6 +78,8 @@ pub struct Restored {
     pub document: Document,
     /// How it is shown.
     pub view: ViewState,
+    /// The slots that were shown, once their pictures are there.
+    pub slots: ShownSlots,
     /// Zoom and pan, unless the whole picture was shown.
     pub framing: Option<Framing>,
     /// Whether tracing was paused.
@@ -164,9 +166,28 @@ impl Session {
         }
         document.job(1).map_err(|error| error.to_string())?;
         let view: KeptView = serde_json::from_value(self.view.clone()).unwrap_or_default();
+        let slots = view.slots();
         let view = view.view(document.size());
         let framing = self.framing.filter(|framing| framing.is_of(document.size()));
-        Ok(Restored { document, view, framing, is_paused: self.is_paused, note })
+        Ok(Restored { document, view, slots, framing, is_paused: self.is_paused, note })
+    }
+
+    /// The document of a film that was kept with this, whose file has `recipe` and `stage`. What is noted here counts as far
+    /// as it is of the same samples: a scene file may have been changed since.
+    pub fn document_of_film(&self, recipe: &Recipe, stage: Option<&'static Stage>) -> Document {
+        let is_of_film = |document: &Document| match (document.job(1), recipe.job()) {
+            (Ok(mine), Ok(theirs)) => mine == theirs,
+            _ => false,
+        };
+        if let Some(document) = self.restore().ok().map(|found| found.document).filter(is_of_film) {
+            return document;
+        }
+        let stop = Stop { samples: self.samples, seconds: self.seconds, noise: self.noise };
+        let document = Document::of_film(recipe, stage);
+        if self.software.is_empty() {
+            return document;
+        }
+        Document { stop, has_own_size: self.has_own_size, ..document }
     }
 }
 

@@ -1,42 +1,15 @@
 //! Slots: places for pictures that are kept, to look at them again and to compare with them.
 
+pub use super::slot_number::SlotNumber;
+
 use super::kept::Kept;
+use crate::film::Film;
 use crate::memory::words;
-use std::fmt;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// What the pictures of all slots may take together, bytes.
 pub const BYTES_LIMIT: u64 = 4_000_000_000;
-
-/// The number of a slot, 1 to 9.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SlotNumber(u8);
-
-impl SlotNumber {
-    /// All numbers.
-    pub const ALL: [SlotNumber; 9] = [
-        SlotNumber(1),
-        SlotNumber(2),
-        SlotNumber(3),
-        SlotNumber(4),
-        SlotNumber(5),
-        SlotNumber(6),
-        SlotNumber(7),
-        SlotNumber(8),
-        SlotNumber(9),
-    ];
-
-    /// Its place in [`SlotNumber::ALL`].
-    pub fn index(self) -> usize {
-        usize::from(self.0) - 1
-    }
-}
-
-impl fmt::Display for SlotNumber {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(formatter)
-    }
-}
 
 /// A slot in use.
 #[derive(Clone, Debug)]
@@ -47,16 +20,49 @@ pub struct Slot {
     pub kept: Arc<Kept>,
 }
 
+/// A kept picture that another window has left and that is still being read, as far as it is known before.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Coming {
+    /// The name of the slot.
+    pub name: String,
+    /// [`Kept::id`].
+    pub id: String,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Samples per pixel.
+    pub samples: u64,
+    /// The size is the picture's own: [`super::document::Document::has_own_size`].
+    pub has_own_size: bool,
+}
+
+impl Coming {
+    /// The most bytes that its film takes in memory.
+    pub fn bytes(&self) -> u64 {
+        Film::bytes(self.size[0], self.size[1], 2)
+    }
+}
+
+/// Which slots are shown and meant by commands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Places {
+    /// The slot in place of the live picture.
+    pub looked: Option<SlotNumber>,
+    /// What was looked at before: a slot, or the live picture.
+    pub before: Option<SlotNumber>,
+    /// The slot that commands without a number are for.
+    pub chosen: Option<SlotNumber>,
+}
+
 /// The slots, and which of them is looked at.
 #[derive(Clone, Debug, Default)]
 pub struct Slots {
     slots: [Option<Slot>; 9],
-    /// The slot in place of the live picture.
-    looked: Option<SlotNumber>,
-    /// What was looked at before: a slot, or the live picture.
-    before: Option<SlotNumber>,
-    /// The slot that commands without a number are for.
-    chosen: Option<SlotNumber>,
+    /// Pictures on their way. Their slots are neither free nor in use.
+    coming: [Option<Coming>; 9],
+    places: Places,
+    /// The pictures that the next window will not have: [`Kept::id`].
+    passing: Vec<String>,
     /// The picture that was deleted or replaced last.
     gone: Option<(SlotNumber, Slot)>,
 }
@@ -88,49 +94,112 @@ impl Slots {
         self.used().next().is_some()
     }
 
-    /// The first slot that is not in use.
-    pub fn first_free(&self) -> Option<SlotNumber> {
-        SlotNumber::ALL.into_iter().find(|number| self.get(*number).is_none())
+    /// Whether there is something to list: a slot in use, or a picture on its way.
+    pub fn is_listed(&self) -> bool {
+        self.is_used() || self.awaited().next().is_some()
+    }
+
+    /// The slots that are not in use and not waiting for a picture.
+    pub fn free(&self) -> impl Iterator<Item = SlotNumber> {
+        let is_free = |number: &SlotNumber| self.get(*number).is_none() && self.coming(*number).is_none();
+        SlotNumber::ALL.into_iter().filter(is_free)
+    }
+
+    /// The picture that is on its way to a slot.
+    pub fn coming(&self, number: SlotNumber) -> Option<&Coming> {
+        self.coming[number.index()].as_ref()
+    }
+
+    /// The slots that wait for a picture, in order.
+    pub fn awaited(&self) -> impl Iterator<Item = (SlotNumber, &Coming)> {
+        SlotNumber::ALL.into_iter().filter_map(|number| Some((number, self.coming(number)?)))
+    }
+
+    /// Notes that a picture is on its way to a slot, which must be free.
+    pub fn expect(&mut self, number: SlotNumber, coming: Coming) {
+        debug_assert!(self.get(number).is_none());
+        self.coming[number.index()] = Some(coming);
+    }
+
+    /// Ends the wait for a picture, which is put into its slot if it could be read. What is looked at, or meant by
+    /// commands, stays. Returns its number and what was known of it, if it was awaited.
+    pub fn arrive(&mut self, id: &str, kept: Option<Arc<Kept>>) -> Option<(SlotNumber, Coming)> {
+        let (number, _) = self.awaited().find(|(_, coming)| coming.id == id)?;
+        let coming = self.coming[number.index()].take()?;
+        if let Some(kept) = kept {
+            self.slots[number.index()] = Some(Slot { name: coming.name.clone(), kept });
+            self.places.chosen = self.places.chosen.or(Some(number));
+        }
+        Some((number, coming))
+    }
+
+    /// Notes whether the next window will have this picture.
+    pub fn note_lasting(&mut self, id: &str, is_lasting: bool) {
+        self.passing.retain(|other| other != id);
+        if !is_lasting {
+            self.passing.push(id.to_owned());
+        }
+    }
+
+    /// Whether it is known that the next window will not have this picture.
+    pub fn is_passing(&self, kept: &Kept) -> bool {
+        self.passing.contains(&kept.id)
+    }
+
+    /// Which slots are shown and meant.
+    pub fn places(&self) -> Places {
+        self.places
+    }
+
+    /// Makes these the slots that are shown and meant, as far as they are in use.
+    pub fn set_places(&mut self, places: Places) {
+        let in_use = |place: Option<SlotNumber>| place.filter(|number| self.get(*number).is_some());
+        let Places { looked, before, chosen } = places;
+        let chosen = in_use(chosen).or(self.places.chosen);
+        self.places = Places { looked: in_use(looked), before: in_use(before), chosen };
     }
 
     /// The slot that is looked at, instead of the live picture.
     pub fn looked(&self) -> Option<SlotNumber> {
-        self.looked
+        self.places.looked
     }
 
     /// The picture that is looked at, instead of the live one.
     pub fn shown(&self) -> Option<&Arc<Kept>> {
-        self.looked.and_then(|number| self.get(number)).map(|slot| &slot.kept)
+        self.places.looked.and_then(|number| self.get(number)).map(|slot| &slot.kept)
     }
 
     /// The room in which pictures get the size of the chosen picture, or else of the first one. Only pictures count that had
     /// no size of their own.
     pub fn room(&self) -> Option<[u32; 2]> {
-        let has_room = |slot: &&Slot| !slot.kept.document.has_own_size;
-        let chosen = self.chosen.and_then(|number| self.get(number)).filter(has_room);
-        let slot = chosen.or_else(|| self.used().map(|(_, slot)| slot).find(has_room))?;
-        let [width, height] = slot.kept.size();
+        let of_slot = |number| match (self.get(number), self.coming(number)) {
+            (Some(slot), _) => (!slot.kept.document.has_own_size).then(|| slot.kept.size()),
+            // The picture would change its size once it is there.
+            (None, coming) => coming.filter(|coming| !coming.has_own_size).map(|coming| coming.size),
+        };
+        let chosen = self.places.chosen.and_then(of_slot);
+        let [width, height] = chosen.or_else(|| SlotNumber::ALL.into_iter().find_map(of_slot))?;
         // The height was rounded; with a row less, the width would be smaller.
         Some([width, height + 1])
     }
 
     /// The slot that commands without a number are for: the one that was looked at, kept or clicked last.
     pub fn chosen(&self) -> Option<SlotNumber> {
-        self.chosen
+        self.places.chosen
     }
 
     /// Makes commands without a number be for this slot.
     pub fn choose(&mut self, number: SlotNumber) {
         if self.get(number).is_some() {
-            self.chosen = Some(number);
+            self.places.chosen = Some(number);
         }
     }
 
     /// Looks at a slot in use, or at the live picture.
     pub fn look(&mut self, at: Option<SlotNumber>) {
-        if at != self.looked && at.is_none_or(|number| self.get(number).is_some()) {
-            self.before = self.looked;
-            self.looked = at;
+        if at != self.places.looked && at.is_none_or(|number| self.get(number).is_some()) {
+            self.places.before = self.places.looked;
+            self.places.looked = at;
         }
         if let Some(number) = at {
             self.choose(number);
@@ -139,7 +208,11 @@ impl Slots {
 
     /// What [`Slots::swap`] would look at.
     pub fn other(&self) -> Option<SlotNumber> {
-        if self.looked.is_some() { self.before } else { self.before.or(self.chosen) }
+        if self.places.looked.is_some() {
+            self.places.before
+        } else {
+            self.places.before.or(self.places.chosen)
+        }
     }
 
     /// Looks at what was looked at before.
@@ -156,9 +229,9 @@ impl Slots {
         if self.bytes() > BYTES_LIMIT {
             self.gone = None;
         }
-        self.chosen = Some(number);
-        if self.looked.is_none() {
-            self.before = Some(number);
+        self.places.chosen = Some(number);
+        if self.places.looked.is_none() {
+            self.places.before = Some(number);
         }
     }
 
@@ -166,10 +239,11 @@ impl Slots {
     pub fn delete(&mut self, number: SlotNumber) {
         let Some(slot) = self.slots[number.index()].take() else { return };
         self.gone = Some((number, slot));
-        for place in [&mut self.looked, &mut self.before, &mut self.chosen] {
+        let Places { looked, before, chosen } = &mut self.places;
+        for place in [looked, before, chosen] {
             *place = place.filter(|other| *other != number);
         }
-        self.chosen = self.chosen.or_else(|| self.used().last().map(|(other, _)| other));
+        self.places.chosen = self.places.chosen.or_else(|| self.used().last().map(|(other, _)| other));
     }
 
     /// The slot whose picture was deleted or replaced last.
@@ -184,10 +258,11 @@ impl Slots {
         }
     }
 
-    /// Bytes that all pictures take.
+    /// Bytes that all pictures take, with those on their way.
     pub fn bytes(&self) -> u64 {
         let gone = self.gone.iter().map(|(_, slot)| slot.kept.bytes());
-        self.used().map(|(_, slot)| slot.kept.bytes()).chain(gone).sum()
+        let coming = self.awaited().map(|(_, coming)| coming.bytes());
+        self.used().map(|(_, slot)| slot.kept.bytes()).chain(gone).chain(coming).sum()
     }
 
     /// Makes room for `bytes` more in slot `number`, by forgetting the picture that could be brought back.
@@ -219,11 +294,11 @@ mod tests {
     use crate::app::model::document::Document;
     use crate::app::model::origin::Origin;
     use crate::app::model::sizing::Sizing;
-    use crate::film::{Film, PixelSum};
+    use crate::film::PixelSum;
     use crate::stages::Stage;
 
-    const ONE: SlotNumber = SlotNumber(1);
-    const TWO: SlotNumber = SlotNumber(2);
+    const ONE: SlotNumber = SlotNumber::ALL[0];
+    const TWO: SlotNumber = SlotNumber::ALL[1];
 
     fn film(width: u32, height: u32, value: u64) -> Film {
         let mut film = Film::new(width, height, 1);
@@ -255,7 +330,7 @@ mod tests {
         slots.look(Some(TWO));
         let seen: Vec<_> = (0..3).map(|_| (slots.swap(), slots.looked()).1).collect();
         assert_eq!(seen, [Some(ONE), Some(TWO), Some(ONE)], "between two slots");
-        slots.look(Some(SlotNumber(7)));
+        slots.look(Some(SlotNumber::ALL[6]));
         assert_eq!(slots.looked(), Some(ONE), "an empty slot has nothing to look at");
         slots.delete(ONE);
         assert_eq!((slots.looked(), slots.chosen()), (None, Some(TWO)));
@@ -270,10 +345,10 @@ mod tests {
         slots.bring_back();
         assert!(Arc::ptr_eq(&first, &slots.get(ONE).unwrap().kept));
         slots.delete(ONE);
-        assert_eq!((slots.is_used(), slots.gone(), slots.first_free()), (false, Some(ONE), Some(ONE)));
+        assert_eq!((slots.is_used(), slots.gone(), slots.free().next()), (false, Some(ONE), Some(ONE)));
         slots.bring_back();
         assert!(Arc::ptr_eq(&first, &slots.get(ONE).unwrap().kept));
-        assert_eq!((slots.gone(), slots.first_free()), (None, Some(TWO)));
+        assert_eq!((slots.gone(), slots.free().next()), (None, Some(TWO)));
     }
 
     #[test]
@@ -293,7 +368,7 @@ mod tests {
         // 8 pixels of 24 bytes.
         let mut slots = with(&[ONE, TWO]);
         assert_eq!(slots.bytes(), 384);
-        let three = SlotNumber(3);
+        let three = SlotNumber::ALL[2];
         assert!(slots.make_room(three, 192, 576).is_ok());
         let refused = slots.make_room(three, 193, 576).unwrap_err();
         assert!(refused.contains("takes 193 bytes") && refused.contains("take 384 bytes"), "{refused}");

@@ -1,12 +1,14 @@
 //! The files that a window keeps for the next one.
 //!
-//! A running window has a film (`NAME.exr`), a note of what it shows (`NAME.json`) and a lock (`NAME.lock`), which the
-//! system releases when the program ends for any reason. A window that is closed in order leaves film and note under
-//! the name `session`, and the next window makes them its own. Files under other names, whose lock nobody holds, were
-//! left by a window that did not end in order.
+//! A running window has a film (`NAME.exr`), a note of what it shows (`NAME.json`), a folder with its kept pictures
+//! (`NAME.slots`) and a lock (`NAME.lock`), which the system releases when the program ends for any reason. A window that
+//! is closed in order leaves film, note and folder under the name `session`, and the next window makes them its own.
+//! Files under other names, whose lock nobody holds, were left by a window that did not end in order.
 
+use super::paths::{PREFIX, Paths};
 use super::turn::turn;
 use crate::app::model::session::Session;
+use crate::app::slot_files::Folder;
 use crate::files::{check_writable, read, write_text};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
@@ -16,48 +18,11 @@ use std::time::{Duration, SystemTime};
 /// The name of the files that a window leaves when it is closed in order.
 const SESSION: &str = "session";
 
-/// How all other names begin.
-const PREFIX: &str = "window-";
-
 /// On file systems without locks, files that have not changed for this long are nobody's.
 const OLD: Duration = Duration::from_secs(24 * 3600);
 
-/// The most names that are tried.
-const NAME_LIMIT: u32 = 1000;
-
 /// The longest note that is read, in bytes.
 const NOTE_LIMIT: u64 = 256 << 20;
-
-/// Film, note and lock of one name.
-#[derive(Debug)]
-struct Paths {
-    film: PathBuf,
-    note: PathBuf,
-    lock: PathBuf,
-}
-
-impl Paths {
-    fn of(directory: &Path, name: &str) -> Paths {
-        let [film, note, lock] =
-            ["exr", "json", "lock"].map(|ending| directory.join(format!("{name}.{ending}")));
-        Paths { film, note, lock }
-    }
-
-    /// Names that may be free, in order.
-    fn new(directory: &Path) -> impl Iterator<Item = Paths> {
-        let process = std::process::id();
-        (1..NAME_LIMIT).map(move |number| Paths::of(directory, &format!("{PREFIX}{process}-{number}")))
-    }
-
-    fn is_empty(&self) -> bool {
-        !self.film.exists() && !self.note.exists()
-    }
-
-    /// When film or note were written last.
-    fn changed(&self) -> Option<SystemTime> {
-        [&self.film, &self.note].into_iter().filter_map(|path| fs::metadata(path).ok()?.modified().ok()).max()
-    }
-}
 
 /// Files that belong to this window for as long as this exists.
 #[derive(Debug)]
@@ -72,6 +37,7 @@ impl Drop for RecoveryFiles {
         if self.paths.is_empty() {
             // If it cannot be removed, it is an empty file that the next window removes.
             let _ = fs::remove_file(&self.paths.lock);
+            let _ = fs::remove_dir(self.paths.slots.path());
         }
     }
 }
@@ -110,7 +76,7 @@ impl RecoveryFiles {
                 let path = entry.path();
                 let is_kept = path
                     .extension()
-                    .is_some_and(|ending| ["exr", "json", "lock"].iter().any(|e| ending == *e));
+                    .is_some_and(|ending| ["exr", "json", "slots", "lock"].iter().any(|e| ending == *e));
                 path.file_stem()?
                     .to_str()
                     .filter(|stem| is_kept && stem.starts_with(PREFIX))
@@ -132,7 +98,7 @@ impl RecoveryFiles {
         if !is_ours(&file, &paths, false) {
             return None;
         }
-        // Without film and note, dropping it removes the lock.
+        // If there is nothing else, dropping it removes the lock.
         Some(RecoveryFiles { directory: directory.to_owned(), paths, _lock: file })
             .filter(|files| !files.paths.is_empty())
     }
@@ -147,7 +113,30 @@ impl RecoveryFiles {
         self.paths.film.exists()
     }
 
-    /// When film or note were written last.
+    /// The folder with the kept pictures, whether or not it exists.
+    pub fn slots(&self) -> &Folder {
+        &self.paths.slots
+    }
+
+    /// Makes the kept pictures of other files this window's, which must have none.
+    ///
+    /// # Errors
+    /// Errors of the file system.
+    pub fn take_slots(&self, other: &RecoveryFiles) -> io::Result<()> {
+        other.paths.move_slots(&self.paths)
+    }
+
+    /// Moves a kept film that cannot be read where a later window offers it. Returns its new name.
+    ///
+    /// # Errors
+    /// Errors of the file system.
+    pub fn set_slot_aside(&self, id: &str) -> io::Result<PathBuf> {
+        let free = free(&self.directory)?;
+        self.paths.slots.move_film(id, &free.film)?;
+        Ok(free.film)
+    }
+
+    /// When something was written last.
     pub fn changed(&self) -> Option<SystemTime> {
         self.paths.changed()
     }
@@ -209,13 +198,14 @@ impl RecoveryFiles {
         Ok(free.film)
     }
 
-    /// Makes what the last window left in order this window's. Returns whether there was something.
+    /// Makes what the last window left in order this window's. Returns whether there was a note.
     ///
     /// # Errors
     /// Errors of the file system.
     pub fn take_session(&self) -> io::Result<bool> {
         let _turn = turn(&self.directory);
         let session = Paths::of(&self.directory, SESSION);
+        session.move_slots(&self.paths)?;
         match fs::rename(&session.note, &self.paths.note) {
             Ok(()) => {}
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(false),
@@ -227,7 +217,7 @@ impl RecoveryFiles {
         }
     }
 
-    /// Leaves film and note to the next window. What another window has left before, and no window has taken since, is
+    /// Leaves film, note and kept pictures to the next window. What another window has left before, and no window has taken since, is
     /// kept under another name if something would be lost with it.
     ///
     /// # Errors
@@ -239,14 +229,16 @@ impl RecoveryFiles {
             let bytes = read(&session.note, "a note of a window", NOTE_LIMIT).ok()?;
             Some(serde_json::from_slice::<Session>(&bytes).ok()?.is_changed)
         };
-        if session.film.exists() || is_changed().unwrap_or(false) {
+        if session.film.exists() || session.slots.exists() || is_changed().unwrap_or(false) {
             let free = free(&self.directory)?;
+            session.move_slots(&free)?;
             for (from, to) in [(&session.film, &free.film), (&session.note, &free.note)] {
                 if from.exists() {
                     fs::rename(from, to)?;
                 }
             }
         }
+        self.paths.move_slots(&session)?;
         if self.has_film() {
             fs::rename(&self.paths.film, &session.film)?;
         }

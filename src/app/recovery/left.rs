@@ -2,6 +2,7 @@
 
 use super::files::RecoveryFiles;
 use crate::app::model::session::Session;
+use crate::app::slot_files::Entry;
 use crate::describe::counted;
 use crate::film::{checkpoint, key};
 use crate::stages::Stage;
@@ -15,6 +16,8 @@ pub enum Part {
     Film,
     /// A changed picture without samples.
     Picture,
+    /// The kept pictures.
+    Slots,
 }
 
 /// A part in words.
@@ -55,6 +58,7 @@ pub struct Left {
     pub files: RecoveryFiles,
     session: Option<Result<Session, String>>,
     film: Option<Result<FilmWords, String>>,
+    kept: Vec<Entry>,
     changed: Option<SystemTime>,
 }
 
@@ -71,13 +75,18 @@ impl Left {
         Left {
             session: files.note().transpose(),
             film: files.has_film().then(|| FilmWords::read(files.film())),
+            kept: files.slots().entries().0,
             changed: files.changed(),
             files,
         }
     }
 
-    /// Deletes a note that says nothing more than the film, or that names an unchanged picture.
+    /// Deletes a note that says nothing more than the film, or that names an unchanged picture, and a list of kept pictures
+    /// that are not there.
     fn tidy(&self) {
+        if self.kept.is_empty() {
+            self.files.slots().clear();
+        }
         if self.rows().next().is_none() {
             self.files.delete_note();
         }
@@ -86,7 +95,24 @@ impl Left {
     /// The note that belongs to this part.
     pub fn session(&self, part: Part) -> Option<&Session> {
         let session = self.session.as_ref()?.as_ref().ok()?;
-        (part == Part::Picture || session.has_film).then_some(session)
+        match part {
+            Part::Film => session.has_film.then_some(session),
+            Part::Picture => Some(session),
+            Part::Slots => None,
+        }
+    }
+
+    /// The kept pictures.
+    pub fn kept(&self) -> &[Entry] {
+        &self.kept
+    }
+
+    /// Looks anew which kept pictures there are.
+    pub fn count_kept(&mut self) {
+        self.kept = self.files.slots().entries().0;
+        if self.kept.is_empty() {
+            self.settle(Part::Slots);
+        }
     }
 
     /// The file of a part.
@@ -94,6 +120,7 @@ impl Left {
         match part {
             Part::Film => self.files.film().to_owned(),
             Part::Picture => self.files.film().with_extension("json"),
+            Part::Slots => self.files.slots().path().to_owned(),
         }
     }
 
@@ -102,6 +129,8 @@ impl Left {
         match part {
             Part::Film => self.film = Some(Err(fault)),
             Part::Picture => self.session = Some(Err(fault)),
+            // Each is read by itself.
+            Part::Slots => {}
         }
     }
 
@@ -122,7 +151,11 @@ impl Left {
             self.files.delete_film();
             self.film = None;
         }
-        if part == Part::Picture || self.session(Part::Film).is_some() {
+        if part == Part::Slots {
+            self.files.slots().clear();
+            self.kept.clear();
+        }
+        if part == Part::Picture || (part == Part::Film && self.session(Part::Film).is_some()) {
             self.files.delete_note();
             self.session = None;
         }
@@ -154,7 +187,11 @@ impl Left {
             Some(Err(fault)) => Some(row(Part::Picture, "A picture", "", Some(fault.clone()))),
             _ => None,
         };
-        film.into_iter().chain(picture)
+        let kept = (!self.kept.is_empty()).then(|| {
+            let names: Vec<&str> = self.kept.iter().map(|entry| entry.name.as_str()).collect();
+            row(Part::Slots, &counted(names.len() as u64, "kept picture"), &names.join("; "), None)
+        });
+        film.into_iter().chain(picture).chain(kept)
     }
 }
 

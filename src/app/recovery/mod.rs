@@ -4,6 +4,7 @@ mod autosave;
 mod card;
 mod files;
 mod left;
+mod paths;
 mod turn;
 
 pub use autosave::{Autosave, Saved, write_film};
@@ -14,8 +15,10 @@ pub use left::{Left, Part};
 use super::answers::Answers;
 use super::model::document::Document;
 use super::model::framing::Framing;
+use super::model::kept_view::ShownSlots;
 use super::model::session::{Restored, Session};
 use super::model::view::ViewState;
+use super::slot_files::{Keeper, SlotReader};
 use crate::interrupt::Interrupt;
 use crate::saved::{self, Opened, SavedFilm};
 use eframe::egui::Context;
@@ -53,6 +56,12 @@ pub struct Recovery {
     pub resuming: Option<Document>,
     /// Parts that were left and have been read.
     pub arrivals: Answers<Arrival>,
+    /// Writes the pictures in the slots, if the window can have files.
+    pub keeper: Option<Keeper>,
+    /// Reads kept pictures.
+    pub reader: SlotReader,
+    /// The slots to show once their pictures are there.
+    pub shown_slots: Option<ShownSlots>,
     /// The window's own film.
     pub resumed: Answers<Result<SavedFilm, String>>,
     found: Answers<Vec<Left>>,
@@ -78,6 +87,9 @@ impl Recovery {
             opening: None,
             resuming: None,
             arrivals: Answers::default(),
+            keeper: None,
+            reader: SlotReader::default(),
+            shown_slots: None,
             resumed: Answers::default(),
             found: Answers::default(),
             notes: Answers::default(),

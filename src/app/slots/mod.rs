@@ -28,8 +28,10 @@ pub struct Copied {
 pub struct Reopened {
     /// What it shows.
     pub document: Document,
-    /// A copy of its film, and the tracing time of its samples, if known. `None` if the live film has more samples.
-    pub film: Option<(Film, Option<f64>)>,
+    /// A copy of its film.
+    pub film: Film,
+    /// Tracing time of its samples, if known.
+    pub seconds: Option<f64>,
 }
 
 /// Requests about slots, and their answers.
@@ -67,6 +69,11 @@ impl SlotActions {
         self.wanted.contains(&number) || self.awaited.iter().any(is_it)
     }
 
+    /// Whether the render thread is making a copy.
+    pub fn is_copying(&self) -> bool {
+        self.awaited.iter().any(|(_, request)| request.strong_count() > 0)
+    }
+
     /// Takes the slots that wait for a picture.
     pub fn take_wanted(&mut self) -> Vec<SlotNumber> {
         std::mem::take(&mut self.wanted)
@@ -102,7 +109,7 @@ impl SlotActions {
             let seconds = kept.seconds_before.map(|before| before + kept.status.trace.as_secs_f64());
             let document = kept.document.clone();
             let copy = kept.film.try_copy().map_err(|error| error.to_string());
-            answer.give(copy.map(|film| Reopened { document, film: Some((film, seconds)) }));
+            answer.give(copy.map(|film| Reopened { document, film, seconds }));
         });
     }
 }

@@ -3,7 +3,7 @@
 use crate::app::command::{Command, SlotCommand};
 use crate::app::facts::Facts;
 use crate::app::menu::item;
-use crate::app::model::slots::{Slot, SlotNumber, Slots};
+use crate::app::model::slots::{Coming, Slot, SlotNumber, Slots};
 use crate::app::texture::Texture;
 use crate::app::theme;
 use crate::app::tips::{self, Side};
@@ -31,7 +31,7 @@ pub struct Strip {
 }
 
 impl Strip {
-    /// Draws the strip, if a slot is in use.
+    /// Draws the strip of all slots.
     pub fn ui(&mut self, ui: &mut Ui, slots: &mut Slots, facts: &Facts, commands: &mut Vec<Command>) {
         let frame = theme::panel(egui::Margin::symmetric(10, 5));
         egui::Panel::bottom("slots").frame(frame).show(ui, |ui| {
@@ -40,8 +40,12 @@ impl Strip {
                     ui.spacing_mut().item_spacing.x = 6.0;
                     live(ui, facts, commands);
                     for number in SlotNumber::ALL {
-                        if slots.get(number).is_some() {
-                            self.card(ui, number, slots, facts, commands);
+                        // What is done to a card must reach it even if there is another one before it by then.
+                        let id = number.to_string();
+                        if let Some(coming) = slots.coming(number) {
+                            ui.push_id(id, |ui| coming_card(ui, number, coming));
+                        } else if slots.get(number).is_some() {
+                            ui.push_id(id, |ui| self.card(ui, number, slots, facts, commands));
                         }
                     }
                 });
@@ -82,12 +86,16 @@ impl Strip {
                         let response = response.accessible_name(format!("Name of slot {number}"));
                         is_touched |= response.gained_focus();
                     }
-                    let [width, height] = slot.kept.size();
-                    let about = format!("{width}x{height}, {} samples", slot.kept.samples());
-                    let about = RichText::new(about).small().color(ui.visuals().weak_text_color());
                     ui.horizontal(|ui| {
-                        let label = ui.label(about);
+                        let label = ui.label(about(ui, slot.kept.size(), slot.kept.samples()));
                         tips::explain(ui, label, Side::Above, &memory_words(&slot, slots), None);
+                        if slots.is_passing(&slot.kept) {
+                            let words = RichText::new("this window only").small();
+                            let label = ui.label(words.color(ui.visuals().warn_fg_color));
+                            let help =
+                                "Its film could not be written, so it will not come back in the next window";
+                            tips::explain(ui, label, Side::Above, help, None);
+                        }
                         is_touched |= size_button(ui, number, facts, commands);
                     });
                     ui.horizontal(|ui| {
@@ -140,6 +148,31 @@ impl Strip {
         let help = format!("Look at this picture, or return to the live one ({keys}; J flips)");
         tips::explain(ui, response, Side::Above, &help, None).clicked()
     }
+}
+
+/// The size and the samples of a picture.
+fn about(ui: &Ui, [width, height]: [u32; 2], samples: u64) -> RichText {
+    let words = format!("{width}x{height}, {samples} samples");
+    RichText::new(words).small().color(ui.visuals().weak_text_color())
+}
+
+/// A slot whose picture is still being read.
+fn coming_card(ui: &mut Ui, number: SlotNumber, coming: &Coming) {
+    let framed = egui::Frame::new().inner_margin(egui::Margin::same(4)).show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            let (rect, _) = ui.allocate_exact_size(vec2(THUMBNAIL, HEIGHT - 8.0), Sense::hover());
+            ui.put(Rect::from_center_size(rect.center(), vec2(24.0, 24.0)), egui::Spinner::new());
+            ui.vertical(|ui| {
+                ui.set_width(NAME);
+                ui.spacing_mut().item_spacing.y = 2.0;
+                ui.add(egui::Label::new(format!("{number}  {}", coming.name)).truncate());
+                ui.label(about(ui, coming.size, coming.samples));
+                ui.label(RichText::new("Reading it from disk").small());
+            });
+        });
+    });
+    let (rect, colour) = (framed.response.rect, ui.visuals().window_stroke.color);
+    ui.painter().rect_stroke(rect, CornerRadius::same(6), Stroke::new(1.0, colour), StrokeKind::Inside);
 }
 
 /// The live picture, and a button to keep it.

@@ -1,0 +1,16 @@
+//! Kept pictures on disk, so that the next window has them in its slots again.
+
+mod bounded;
+mod folder;
+mod keeper;
+mod note;
+mod reader;
+#[cfg(test)]
+mod tests;
+
+pub use folder::{Entry, Folder};
+pub use keeper::{Keeper, News};
+pub use reader::{Arrival, SlotReader};
+
+/// What the kept pictures of all windows may take on disk together, bytes: about nine films of 1920x1080 pixels.
+pub const DISK_LIMIT: u64 = 1_000_000_000;

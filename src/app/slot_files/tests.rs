@@ -1,0 +1,205 @@
+//! Tests of the files of kept pictures.
+
+use super::folder::{Entry, Folder, WriteFault};
+use crate::app::model::checked::CheckedScene;
+use crate::app::model::document::Document;
+use crate::app::model::kept::Kept;
+use crate::app::model::origin::{Origin, Source};
+use crate::app::model::slots::SlotNumber;
+use crate::film::{Film, PixelSum};
+use crate::progressive::{Contribution, Status, Stop};
+use crate::recipe::{Recipe, file};
+use crate::render::BackendInfo;
+use crate::stages::Stage;
+use std::sync::Arc;
+use std::time::Duration;
+
+fn folder(directory: &tempfile::TempDir) -> Folder {
+    Folder::of(directory.path(), "window-1-1")
+}
+
+/// A kept picture whose every field differs from what it is by default.
+fn kept(mut document: Document, halves: usize) -> Kept {
+    (document.settings.width, document.settings.height) = (5, 3);
+    document.settings.estimate_error = halves == 2;
+    let mut film = Film::new(5, 3, halves);
+    for (place, sum) in film.halves_mut().iter_mut().flatten().enumerate() {
+        *sum = PixelSum([0, 1, 2].map(|channel| (place as u64 * 7919 + channel * 104_729) * 331));
+    }
+    film.record(3..9, 2).unwrap();
+    film.record(11..12, 0).unwrap();
+    let info = |name, lanes| BackendInfo { name, device: "some \"device\"".to_owned(), lanes, threads: 3 };
+    let part = |backend, samples_per_pixel| Contribution { backend, samples_per_pixel };
+    let status = Status {
+        backend: Some(info("gpu", 64)),
+        samples_per_pixel: 7,
+        trace: Duration::new(3, 141_592_653),
+        contributions: vec![part(info("cpu", 8), 4), part(info("gpu", 64), 2)],
+        ..Status::default()
+    };
+    Kept::new(document, film, status.into(), Some(0.1 + 0.2))
+}
+
+fn of_stage(id: &str) -> Document {
+    let mut document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
+    (document.camera.vfov_degrees, document.settings.seed) = (33.3, 7);
+    (document.has_own_size, document.stop) = (true, Stop::at_samples(77));
+    document
+}
+
+fn assert_same(found: &Kept, kept: &Kept) {
+    assert!(found.film == kept.film);
+    assert_eq!(found.document.job(1).unwrap(), kept.document.job(1).unwrap());
+    let facts = |kept: &Kept| {
+        let Document { camera, settings, has_own_size, stop, origin, .. } = kept.document.clone();
+        let titles = (kept.document.title(), kept.document.name(), origin.source.clone());
+        (camera, settings, has_own_size, stop, titles, kept.status.clone())
+    };
+    assert_eq!(facts(found), facts(kept));
+    assert_eq!(found.seconds_before.map(f64::to_bits), kept.seconds_before.map(f64::to_bits));
+    assert_eq!((&found.thumbnail, &found.id), (&kept.thumbnail, &kept.id));
+    assert_eq!((found.samples(), found.bytes()), (kept.samples(), kept.bytes()));
+}
+
+fn written(folder: &Folder, kept: &Kept) {
+    folder.write(kept, u64::MAX).unwrap();
+}
+
+#[test]
+fn all_of_a_kept_picture_comes_back_to_the_bit() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = folder(&directory);
+    let of_scene = Recipe { name: "mine".to_owned(), ..Stage::find("metal").unwrap().recipe() };
+    for (document, halves) in [
+        (of_stage("glass-schlick"), 2),
+        (of_stage("normals"), 1),
+        (Document::new(Origin::new(of_scene, Source::Embedded)), 2),
+    ] {
+        let kept = kept(document, halves);
+        let bytes = folder.write(&kept, u64::MAX).unwrap();
+        assert_same(&folder.read(&kept.id, &[]).unwrap(), &kept);
+        assert_eq!(folder.bytes_of_all(), bytes);
+        folder.delete(&kept.id);
+        assert_eq!(folder.bytes_of_all(), 0);
+    }
+}
+
+#[test]
+fn a_scene_file_that_was_changed_meanwhile_does_not_change_the_kept_picture() {
+    let directory = tempfile::tempdir().unwrap();
+    let (folder, path) = (folder(&directory), directory.path().join("mine.toml"));
+    let recipe = Stage::find("metal").unwrap().recipe();
+    std::fs::write(&path, file::to_toml(&recipe)).unwrap();
+    let mut document = Document::new(Origin::new(file::load(&path).unwrap(), Source::File(path.clone())));
+    (document.stop, document.has_own_size) = (Stop::at_samples(77), false);
+    let kept = kept(document, 2);
+    written(&folder, &kept);
+    assert_same(&folder.read(&kept.id, &[]).unwrap(), &kept);
+    let other = Recipe { scene: Stage::find("metal-fuzzy").unwrap().recipe().scene, ..recipe };
+    std::fs::write(&path, file::to_toml(&other)).unwrap();
+    for _ in 0..2 {
+        let found = folder.read(&kept.id, &[]).unwrap();
+        assert!(found.film == kept.film && found.document.stop == kept.document.stop);
+        assert_eq!(found.document.job(1).unwrap(), kept.document.job(1).unwrap());
+        assert!(!found.document.has_own_size);
+        let _ = std::fs::remove_file(&path);
+    }
+}
+
+#[test]
+fn equal_scenes_are_in_memory_once() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = folder(&directory);
+    let live = of_stage("metal");
+    let mut moved = live.scene().clone();
+    moved.spheres[0].center.x += 0.5;
+    let moved = CheckedScene::new(Arc::new(moved), *live.rules());
+    let changed = Document { checked: Arc::new(moved), ..live.clone() };
+    for (mine, other) in [(&live, &live), (&changed, &changed), (&changed, &live)] {
+        let kept = kept(mine.clone(), 2);
+        written(&folder, &kept);
+        let found = folder.read(&kept.id, std::slice::from_ref(other)).unwrap().document;
+        assert!(Arc::ptr_eq(&found.origin, &other.origin));
+        assert_eq!(found.has_same_film(&kept.document), std::ptr::eq(mine, other));
+        assert_eq!(found.job(1).unwrap(), kept.document.job(1).unwrap());
+    }
+}
+
+#[test]
+fn no_film_meets_the_description_of_another_wherever_writing_ends() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = folder(&directory);
+    let (first, second) = (kept(of_stage("metal"), 2), kept(of_stage("glass-schlick"), 2));
+    let entry = |kept: &Kept| Entry {
+        number: Some(SlotNumber::ALL[2]),
+        id: kept.id.clone(),
+        name: format!("mine {}", kept.id),
+        size: kept.size(),
+        samples: kept.samples(),
+        has_own_size: true,
+    };
+    written(&folder, &first);
+    folder.write_list(&[entry(&first)]).unwrap();
+    // The program ends after the note, before the film.
+    std::fs::write(folder.note(&second.id), "{}").unwrap();
+    assert_eq!(folder.entries(), (vec![entry(&first)], vec![]));
+    assert!(!folder.note(&second.id).exists());
+    // After the film, before the list.
+    written(&folder, &second);
+    let (found, faults) = folder.entries();
+    assert_eq!((found.len(), faults.len(), &found[0]), (2, 0, &entry(&first)));
+    assert_eq!((&found[1].id, found[1].number, found[1].samples), (&second.id, None, 7));
+    assert_same(&folder.read(&found[1].id, &[]).unwrap(), &second);
+    // After the list, before the film that was replaced is deleted.
+    folder.write_list(&[entry(&second)]).unwrap();
+    let (found, _) = folder.entries();
+    assert_eq!([&found[0].id, &found[1].id], [&second.id, &first.id]);
+    // After the film was deleted, before its note is.
+    std::fs::remove_file(folder.film(&first.id)).unwrap();
+    assert_eq!(folder.entries(), (vec![entry(&second)], vec![]));
+    // Unfinished files of a program that is gone.
+    let part = folder.path().join(".weekender-a1b2c3.part");
+    std::fs::write(&part, "x").unwrap();
+    folder.entries();
+    assert!(!part.exists());
+    // A film that has disappeared is named, and so is a list that cannot be read.
+    folder.delete(&second.id);
+    let (found, faults) = folder.entries();
+    assert!(
+        found.is_empty() && faults[0].contains("of slot 3") && faults[0].contains(&second.id),
+        "{faults:?}"
+    );
+    written(&folder, &first);
+    std::fs::write(folder.list(), "{").unwrap();
+    let (found, faults) = folder.entries();
+    assert_eq!((found.len(), &found[0].id), (1, &first.id));
+    assert!(faults[0].contains("slots.json cannot be understood"), "{faults:?}");
+    folder.clear();
+    assert!(!folder.exists());
+}
+
+#[test]
+fn what_does_not_fit_leaves_nothing() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = folder(&directory);
+    let kept = kept(of_stage("metal"), 2);
+    let bytes = folder.write(&kept, u64::MAX).unwrap();
+    folder.delete(&kept.id);
+    let refused = folder.write(&kept, bytes - 1);
+    assert!(matches!(refused, Err(WriteFault::TooLarge(needed)) if needed == bytes), "{refused:?}");
+    assert_eq!(folder.bytes_of_all(), 0);
+    assert_eq!(folder.write(&kept, bytes).unwrap(), bytes);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_named_and_leaves_no_note() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = folder(&directory);
+    let kept = kept(of_stage("metal"), 2);
+    std::fs::create_dir(folder.path()).unwrap();
+    std::os::unix::fs::symlink("/dev/full", folder.film(&kept.id)).unwrap();
+    let Err(WriteFault::Failed(reason)) = folder.write(&kept, u64::MAX) else { panic!("written") };
+    assert!(reason.contains(&kept.id) && reason.contains("free some space"), "{reason}");
+    assert!(!folder.note(&kept.id).exists());
+}

@@ -1,0 +1,56 @@
+//! Cards: those in a corner of the picture, and those of the slots.
+
+use crate::common::{has_samples, open, opened, send, until, window};
+use eframe::egui::Shape;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use weekender::app::{Command, SlotCommand, SlotNumber, Window};
+
+/// The lower edge of a text that is drawn over the picture, and the right one.
+fn corner_of(harness: &Harness<'_, Window>, begin: &str) -> [f32; 2] {
+    let mut texts = harness.output().shapes.iter().filter_map(|clipped| match &clipped.shape {
+        Shape::Text(text) if text.galley.text().starts_with(begin) => {
+            Some([text.pos.y + text.galley.size().y, text.pos.x + text.galley.size().x])
+        }
+        _ => None,
+    });
+    texts.next().unwrap_or_else(|| panic!("no {begin}"))
+}
+
+#[test]
+fn the_first_steps_cover_no_title_of_a_wipe() {
+    let mut window = window("");
+    window.document_mut().give_size([640, 360]);
+    let mut harness = opened(window);
+    until(&mut harness, "a picture", has_samples(1));
+    let before = harness.get_by_label("First steps").rect();
+    send(&mut harness, Command::Wipe);
+    until(&mut harness, "two pictures", Window::has_other_picture);
+    harness.run_steps(3);
+    let stage = harness.state().document().stage().unwrap();
+    let [bottom, right] = corner_of(&harness, stage.section);
+    let card = harness.get_by_label("First steps").rect();
+    assert!(right > card.left() - 16.0, "the title reaches under the place of the card: {right} {card}");
+    assert!(bottom < card.top() - 12.0, "{bottom} {card}");
+    send(&mut harness, Command::Wipe);
+    harness.run_steps(3);
+    assert_eq!(harness.get_by_label("First steps").rect(), before);
+}
+
+/// Assistive technology names the control that it saw, which must be the same one in the next frame.
+#[test]
+fn a_click_reaches_its_slot_although_another_one_goes() {
+    let mut harness = open("--stage glass-schlick --size 32x18 --samples 4");
+    until(&mut harness, "the end", |window| has_samples(4)(window) && window.status().phase.is_over());
+    for number in &SlotNumber::ALL[..3] {
+        send(&mut harness, Command::Slot(SlotCommand::KeepIn(*number)));
+        until(&mut harness, "a kept picture", |window| window.slot(*number).is_some());
+    }
+    send(&mut harness, Command::Slot(SlotCommand::Look(SlotNumber::ALL[0])));
+    harness.run_steps(3);
+    harness.get_by_label("More about slot 3").click();
+    harness.state_mut().send(Command::Slot(SlotCommand::Delete));
+    harness.run_steps(5);
+    assert!(harness.state().slot(SlotNumber::ALL[0]).is_none());
+    assert!(harness.query_by_label_contains("Go on from the slot").is_some());
+}
