@@ -186,7 +186,7 @@ impl Window {
         edits.into_iter().chain(touch.edit).for_each(|edit| self.edit(edit));
         if let Some(room) = touch.room {
             if facts.model.presentation.is_none() {
-                let below = self.below_titles(room);
+                let below = self.below_titles(room, &facts);
                 if facts.model.has_recovered {
                     self.offer_recovered(ui, below);
                 } else {
@@ -210,10 +210,10 @@ impl Window {
         }
     }
 
-    /// The part of the viewport in which a card covers no title of a wipe.
-    fn below_titles(&self, room: Rect) -> Rect {
-        let view = &self.model.view;
-        let is_titled = view.mode() == Some(Mode::Wipe) && self.second.shown().is_some();
+    /// The part of the viewport in which a card covers neither the titles of a wipe nor the one of a slot.
+    fn below_titles(&self, room: Rect, facts: &Facts) -> Rect {
+        let is_wipe = self.model.view.mode() == Some(Mode::Wipe) && self.second.shown().is_some();
+        let is_titled = is_wipe || slot_notice(facts).is_some();
         let top = self.viewport.placement.rect().top().max(room.top()) + TITLES;
         // Where hardly anything would be left, the card is worth more.
         let is_high = room.bottom() - top > 2.0 * TITLES;

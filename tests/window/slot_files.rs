@@ -126,7 +126,7 @@ fn kept_pictures_come_back_with_all_that_they_hold() {
     assert_eq!(next.state().looked(), Some(THREE), "it was shown last");
     for (number, name, film) in &mine {
         assert_eq!(next.state().slot(*number), Some((name.as_str(), 4)));
-        let found = saved(&mut next, *number, &at("again.exr"));
+        let found = saved(&mut next, *number, &at(&format!("again-{number}.exr")));
         assert!(found.film == film.film, "{number}");
         assert_eq!(found.description, film.description, "{number}");
     }

@@ -12,5 +12,6 @@ pub use folder::{Entry, Folder};
 pub use keeper::{Keeper, News};
 pub use reader::{Arrival, SlotReader};
 
-/// What the kept pictures of all windows may take on disk together, bytes: about nine films of 1920x1080 pixels.
+/// What the kept pictures of all windows may take on disk together, bytes. Nine films of 1920x1080 pixels take about half
+/// of it.
 pub const DISK_LIMIT: u64 = 1_000_000_000;

@@ -11,7 +11,7 @@ use crate::memory::words;
 use crate::output::OutputFormat;
 use eframe::egui::{
     self, Align2, Button, Color32, CornerRadius, Pos2, Rect, RichText, Sense, Stroke, StrokeKind, TextEdit,
-    TextStyle, TextureOptions, Ui, pos2, vec2,
+    TextStyle, TextureOptions, Ui, UiBuilder, pos2, vec2,
 };
 
 /// Height of a card in points.
@@ -41,11 +41,11 @@ impl Strip {
                     live(ui, facts, commands);
                     for number in SlotNumber::ALL {
                         // What is done to a card must reach it even if there is another one before it by then.
-                        let id = number.to_string();
+                        let own = UiBuilder::new().scope_id(egui::Id::unique(("slot", number.index())));
                         if let Some(coming) = slots.coming(number) {
-                            ui.push_id(id, |ui| coming_card(ui, number, coming));
+                            ui.scope_builder(own, |ui| coming_card(ui, number, coming));
                         } else if slots.get(number).is_some() {
-                            ui.push_id(id, |ui| self.card(ui, number, slots, facts, commands));
+                            ui.scope_builder(own, |ui| self.card(ui, number, slots, facts, commands));
                         }
                     }
                 });
@@ -160,10 +160,15 @@ fn about(ui: &Ui, [width, height]: [u32; 2], samples: u64) -> RichText {
 fn coming_card(ui: &mut Ui, number: SlotNumber, coming: &Coming) {
     let framed = egui::Frame::new().inner_margin(egui::Margin::same(4)).show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            let (rect, _) = ui.allocate_exact_size(vec2(THUMBNAIL, HEIGHT - 8.0), Sense::hover());
+            let [width, height] = coming.size.map(|length| length.max(1) as f32);
+            let scale = ((HEIGHT - 8.0) / height).min(THUMBNAIL / width);
+            let size = vec2((width * scale).max(40.0), HEIGHT - 8.0);
+            let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
             ui.put(Rect::from_center_size(rect.center(), vec2(24.0, 24.0)), egui::Spinner::new());
             ui.vertical(|ui| {
-                ui.set_width(NAME);
+                // As large as the slot will be, so that nothing moves when it is there.
+                ui.set_min_size(vec2(NAME + 8.0, HEIGHT + 2.0));
+                ui.set_max_width(NAME + 8.0);
                 ui.spacing_mut().item_spacing.y = 2.0;
                 ui.add(egui::Label::new(format!("{number}  {}", coming.name)).truncate());
                 ui.label(about(ui, coming.size, coming.samples));
