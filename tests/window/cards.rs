@@ -54,7 +54,7 @@ fn a_click_reaches_its_slot_although_another_one_goes() {
     }
     send(&mut harness, Command::Slot(SlotCommand::Look(SlotNumber::ALL[0])));
     harness.run_steps(3);
-    harness.get_by_label("More about slot 3").click();
+    harness.get_by_label("More about slot 3").click_accesskit();
     harness.state_mut().send(Command::Slot(SlotCommand::Delete));
     harness.run_steps(5);
     assert!(harness.state().slot(SlotNumber::ALL[0]).is_none());
