@@ -21,6 +21,9 @@ const NARROW: f32 = 900.0;
 /// Height of the titles of a wipe, which take two rows if they are long, points.
 const TITLES: f32 = 64.0;
 
+/// About the height of a card in a corner of the picture, points.
+const CARD: f32 = 240.0;
+
 impl Window {
     /// Draws everything. Each panel gets the state that it may change, the facts, and the list of commands to add to.
     pub(super) fn layout(&mut self, ui: &mut egui::Ui) {
@@ -214,10 +217,11 @@ impl Window {
     fn below_titles(&self, room: Rect, facts: &Facts) -> Rect {
         let is_wipe = self.model.view.mode() == Some(Mode::Wipe) && self.second.shown().is_some();
         let is_titled = is_wipe || slot_notice(facts).is_some();
-        let top = self.viewport.placement.rect().top().max(room.top()) + TITLES;
-        // Where hardly anything would be left, the card is worth more.
-        let is_high = room.bottom() - top > 2.0 * TITLES;
-        if is_titled && is_high { Rect { min: egui::pos2(room.left(), top), ..room } } else { room }
+        let titles = self.viewport.placement.rect().top().max(room.top());
+        let top = titles + TITLES;
+        // A card above the titles stays there. Where hardly anything would be left for it, it is worth more than they are.
+        let is_near = titles < room.top() + CARD && room.bottom() - top > 2.0 * TITLES;
+        if is_titled && is_near { Rect { min: egui::pos2(room.left(), top), ..room } } else { room }
     }
 
     /// Shows the pixel under the pointer large: that of the picture which is on top there.

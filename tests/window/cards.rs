@@ -1,6 +1,6 @@
 //! Cards: those in a corner of the picture, and those of the slots.
 
-use crate::common::{has_samples, open, opened, send, until, window};
+use crate::common::{has_samples, open, open_sized, send, until};
 use eframe::egui::{Rect, Role, Shape};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -25,16 +25,16 @@ fn heading(harness: &Harness<'_, Window>) -> Rect {
 
 #[test]
 fn the_first_steps_cover_no_title_of_a_wipe() {
-    let mut window = window("");
-    window.document_mut().give_size([640, 360]);
-    let mut harness = opened(window);
+    let mut harness = open_sized("", [1280.0, 800.0]);
+    harness.state_mut().document_mut().give_size([640, 360]);
+    harness.run_steps(3);
     until(&mut harness, "a picture", has_samples(1));
     let before = heading(&harness);
     send(&mut harness, Command::Wipe);
     until(&mut harness, "two pictures", Window::has_other_picture);
     harness.run_steps(3);
-    let stage = harness.state().document().stage().unwrap();
-    let [bottom, right] = corner_of(&harness, stage.section);
+    let title = harness.state().document().title();
+    let [bottom, right] = corner_of(&harness, &title);
     let card = heading(&harness);
     assert!(right > card.left() - 16.0, "the title reaches under the place of the card: {right} {card}");
     assert!(bottom < card.top() - 12.0, "{bottom} {card}");

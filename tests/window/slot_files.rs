@@ -241,7 +241,10 @@ fn only_what_changes_is_written_and_what_is_gone_is_deleted() {
 #[test]
 fn a_window_that_is_closed_at_once_keeps_what_was_kept_last() {
     let state = tempfile::tempdir().unwrap();
-    let mut harness = finished(state.path());
+    // Copies wait for the end of a pass.
+    let mut harness =
+        window(state.path(), "--stage glass-schlick --size 320x180 --samples 4000000000 --device cpu");
+    until(&mut harness, "samples", has_samples(1));
     for number in SlotNumber::ALL {
         harness.state_mut().send(Command::Slot(SlotCommand::KeepIn(number)));
     }
