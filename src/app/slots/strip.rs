@@ -164,7 +164,7 @@ fn coming_card(ui: &mut Ui, number: SlotNumber, coming: &Coming) {
             let scale = ((HEIGHT - 8.0) / height).min(THUMBNAIL / width);
             let size = vec2((width * scale).max(40.0), HEIGHT - 8.0);
             let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
-            ui.put(Rect::from_center_size(rect.center(), vec2(24.0, 24.0)), egui::Spinner::new());
+            egui::Spinner::new().paint_at(ui, Rect::from_center_size(rect.center(), vec2(24.0, 24.0)));
             ui.vertical(|ui| {
                 // As large as the slot will be, so that nothing moves when it is there.
                 ui.set_min_size(vec2(NAME + 8.0, HEIGHT + 2.0));
