@@ -260,12 +260,11 @@ const COMMANDS: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "stress",
+        "stress --isa portable",
         &[
             "--filter copies",
             "--search 3",
             "--seed 4",
-            "--isa portable",
             "--adapter some",
             "--out d",
             "--json j.json",

@@ -24,7 +24,6 @@ const SESSIONS: &[(&str, &[&str])] = &[
             "info m.exr",
             "--batch --isa portable --threads 1 --size 16x9 --sample-range 8..16 --scene book --out b.png --checkpoint b.exr",
             "info b.exr",
-            "--batch --isa portable --threads 1 --size 16x9 --noise-target 1 --scene two-spheres --out t.png",
             "--save-scene s.toml --scene close-up --seed 4 --vfov 33 --sampler independent",
             "cat s.toml",
             "info s.toml",
@@ -112,7 +111,7 @@ const SESSIONS: &[(&str, &[&str])] = &[
             "check red.png --stage normals",
             "check red.png --stage sky --out seen",
             "ls seen",
-            "stress --filter indices --isa portable",
+            "stress --filter index --isa portable",
         ],
     ),
 ];
