@@ -111,7 +111,6 @@ const SESSIONS: &[(&str, &[&str])] = &[
             "check red.png --stage normals",
             "check red.png --stage sky --out seen",
             "ls seen",
-            "stress --filter index --isa portable",
         ],
     ),
 ];
