@@ -60,7 +60,7 @@ pub fn settled(text: &str, directory: &Path) -> String {
 fn settled_line(line: &str) -> String {
     let starts = |parts: &[&str]| parts.iter().any(|part| line.trim_start().starts_with(part));
     let is_time = starts(&["time  ", "speed  "])
-        || ["_seconds\":", "_per_second\":", "seconds_"].iter().any(|key| line.contains(key))
+        || ["_seconds\":", "_per_second\":", "seconds_", "\"bytes\":"].iter().any(|key| line.contains(key))
         || line.contains(" s of tracing")
         || line.contains("Mpaths/s");
     let is_size = starts(&["film  ", "picture  "]) && line.contains(" bytes");
