@@ -59,7 +59,7 @@ const CHANGES: &[Change] = &[
 fn digest_of_film(film: &Film) -> String {
     let sums = film.halves().iter().flatten().flat_map(|sum| sum.0);
     let ranges = film.samples().iter().flat_map(|range| [range.start, range.end]);
-    digest(sums.map(|sum| sum as u64).chain(ranges).chain([film.rejected()]))
+    digest(sums.chain(ranges).chain([film.rejected()]))
 }
 
 fn film(recipe: &Recipe, backend: &BackendChoice) -> String {
