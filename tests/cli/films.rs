@@ -81,7 +81,7 @@ fn films_of_other_pictures_are_not_resumed() {
             (&["--size", "16x9"][..], &["16x9", "32x18"][..]),
             (&["--seed", "5"], &["seed is 5"]),
             (&["--depth", "3"], &["depth is 3"]),
-            (&["--vfov", "30"], &["camera"]),
+            (&["--vfov", "30"], &["vfov is 30 degrees here, 90 degrees there"]),
             (&["--sampler", "independent"], &["independent", "sobol"]),
             (&["--estimate-error", "off"], &["estimate-error is off"]),
             (&["--scene", "book", "--size", "32x18"], &["another picture"]),
