@@ -242,9 +242,7 @@ fn hit_records<L: Lanes<Real = f32>>(l: L, scene: &BroadcastScene<f32>, hit: L::
             *number = l.permute(&scene.columns[column], hit);
         }
     } else {
-        let mut indices = WideU::default();
-        L::store_u(l.keep(!hit.eq(l.splat_u(NONE)), hit), &mut indices);
-        let rows = rows_of(&scene.prepared.records, &indices);
+        let rows = rows_of::<L>(&scene.prepared.records, l.keep(!hit.eq(l.splat_u(NONE)), hit));
         for (group, columns) in columns.iter_mut().enumerate() {
             *columns = l.gather(&rows, group);
         }

@@ -204,15 +204,17 @@ pub trait Lanes: Copy + Send + Sync + 'static {
 /// A record for each lane. A packet uses as many as it has lanes, from the front.
 pub type Rows<'a, R> = [&'a RecordColumns<R>; MAX_LANES];
 
-/// The records that `numbers` name.
+/// The records that `numbers` name, for each of the lanes.
 ///
 /// # Panics
 /// If a number is not below the number of records.
 #[inline(always)]
-pub fn rows_of<'a, R>(records: &'a [RecordColumns<R>], numbers: &WideU) -> Rows<'a, R> {
+pub fn rows_of<L: Lanes>(records: &[RecordColumns<L::Real>], numbers: L::U) -> Rows<'_, L::Real> {
+    let mut wide = WideU::default();
+    L::store_u(numbers, &mut wide);
     let mut rows = [&records[0]; MAX_LANES];
-    for (row, number) in rows.iter_mut().zip(&numbers.0) {
-        *row = &records[*number as usize];
+    for (row, number) in rows.iter_mut().zip(wide.0).take(L::WIDTH) {
+        *row = &records[number as usize];
     }
     rows
 }

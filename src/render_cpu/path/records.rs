@@ -3,7 +3,7 @@
 use super::{Packet, is_small};
 use crate::kernel::{ANCHORED_GROUP, Columns, GROUP, NONE, RECORD_COLUMNS, parts};
 use crate::render_cpu::broadcast::BroadcastScene;
-use crate::render_cpu::lanes::{Lanes, Unsigned, V3, WideU, rows_of};
+use crate::render_cpu::lanes::{Lanes, Unsigned, V3, rows_of};
 
 /// Column groups of a record.
 const GROUPS: usize = RECORD_COLUMNS / GROUP;
@@ -33,9 +33,7 @@ impl<L: Lanes> HitRecords<L> {
                 }
             }
         } else {
-            let mut numbers = WideU::default();
-            L::store_u(l.keep(!hit.eq(l.splat_u(NONE)), hit), &mut numbers);
-            let rows = rows_of(&prepared.records, &numbers);
+            let rows = rows_of::<L>(&prepared.records, l.keep(!hit.eq(l.splat_u(NONE)), hit));
             // Not a loop, because the compiler would not unroll it.
             if is_needed(0) {
                 groups[0] = l.gather(&rows, 0);
