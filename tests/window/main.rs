@@ -15,6 +15,7 @@ mod flights;
 mod framing;
 mod kept;
 mod moving;
+mod nets;
 mod numbers;
 mod objects;
 mod palette;
