@@ -16,6 +16,8 @@ pub mod kept_view;
 pub mod origin;
 pub mod presentation;
 pub mod remembered;
+#[cfg(test)]
+mod saved_fields;
 pub mod session;
 pub mod show;
 pub mod sizing;
