@@ -3,9 +3,7 @@
 use fearless_simd::Level;
 use weekender::kernel::RecordColumns;
 use weekender::render_cpu::Isa;
-use weekender::render_cpu::lanes::{
-    Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3, Wide,
-};
+use weekender::render_cpu::lanes::{Instructions, Lanes, Lanes4, Lanes8, Lanes16, MAX_LANES, Scalar, V3};
 use weekender::render_cpu::sphere::{NONE, Rays};
 
 /// Rays, directions or draws that a body goes through: few enough for the first cache.
@@ -90,11 +88,11 @@ impl Vectors {
     /// Those from `first` on, and their numbers.
     #[inline(always)]
     pub fn load<L: Lanes<Real = f32>>(&self, l: L, first: usize) -> (V3<L::F>, L::F) {
-        let mut indices = Wide([0; MAX_LANES]);
-        for (lane, index) in indices.0.iter_mut().enumerate().take(L::WIDTH) {
-            *index = (first + lane) as u32;
+        let mut rows = [&self.0[first]; MAX_LANES];
+        for (lane, row) in rows.iter_mut().enumerate().take(L::WIDTH) {
+            *row = &self.0[first + lane];
         }
-        let [x, y, z, number] = l.gather(&self.0, &indices, 0);
+        let [x, y, z, number] = l.gather(&rows, 0);
         (V3 { x, y, z }, number)
     }
 }

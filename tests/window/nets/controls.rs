@@ -47,6 +47,7 @@ fn title((name, role, place): &(String, Role, usize)) -> String {
 }
 
 #[test]
+#[ignore = "for an idle machine: it waits until the window is at rest"]
 fn controls_change_what_is_stored() {
     let mut golden = Golden::open("controls.txt");
     let before = without_divider(&known(&mut busy()));
@@ -83,6 +84,7 @@ fn tip(harness: &Harnessed) -> String {
 }
 
 #[test]
+#[ignore = "for an idle machine: it waits until the window is at rest"]
 fn tips_say_what_is_stored() {
     let mut golden = Golden::open("tips.txt");
     for (state, mut harness) in [("busy", busy()), ("no rays", finished("ppm-tiny"))] {

@@ -13,6 +13,7 @@ fn remembered(window: &mut Window) -> (Option<&Path>, Option<&Path>) {
 }
 
 #[test]
+#[ignore = "for an idle machine: it waits until the window is at rest"]
 fn files_and_their_directories_are_remembered() {
     let directory = tempfile::tempdir().unwrap();
     let at = |folder: &str, name: &str| {

@@ -33,6 +33,7 @@ fn shown(harness: &mut Harnessed) -> String {
 const LIMIT: usize = 44;
 
 #[test]
+#[ignore = "for an idle machine: it waits until the window is at rest"]
 fn screens_are_as_stored() {
     let mut golden = Golden::open("screens.txt");
     let mut harness = finished("glass-schlick");
@@ -85,6 +86,7 @@ fn screens_are_as_stored() {
 }
 
 #[test]
+#[ignore = "for an idle machine: it waits until the window is at rest"]
 fn what_is_drawn_is_as_stored() {
     let mut golden = Golden::open("drawn.txt");
     let mut harness = finished("defocus");
@@ -120,6 +122,7 @@ fn what_is_drawn_is_as_stored() {
 
 /// States that several actions lead to.
 #[test]
+#[ignore = "for an idle machine: it waits until the window is at rest"]
 fn further_screens_are_as_stored() {
     let mut golden = Golden::open("further_screens.txt");
     let usual = shown(&mut finished("defocus"));
