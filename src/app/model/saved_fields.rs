@@ -7,13 +7,16 @@ use super::device::Device;
 use super::document::Document;
 use super::first_steps::{FirstSteps, Step};
 use super::framing::Framing;
+use super::kept::Kept;
 use super::origin::Origin;
 use super::remembered::{Bookmark, Remembered, Theme};
 use super::session::Session;
 use super::show::Show;
 use super::sizing::Sizing;
+use super::slots::{Slot, SlotNumber};
 use super::tone::Tone;
 use super::view::{Mode, ViewState, With};
+use crate::film::Film;
 use crate::progressive::Stop;
 use crate::render::{RenderSettings, SamplerKind};
 use crate::scene::Camera;
@@ -78,8 +81,16 @@ fn document() -> Document {
     document
 }
 
-/// A view with everything set, once by views and once by a comparison.
-fn views() -> [ViewState; 2] {
+/// A picture of one sample.
+fn slot(name: &str) -> Slot {
+    let mut film = Film::new(SETTINGS.width, SETTINGS.height, 1);
+    film.record(0..1, 0).unwrap();
+    let kept = Kept::new(document(), film, Arc::default(), None);
+    Slot { name: name.to_owned(), kept: Arc::new(kept) }
+}
+
+/// A view with everything set, by views, by a comparison and by slots.
+fn views() -> [ViewState; 3] {
     let mut shown = ViewState::default();
     shown.choose(Show::Luminance);
     shown.tone = Tone { exposure: 1.5, range: [-3.0, 2.5] };
@@ -88,7 +99,15 @@ fn views() -> [ViewState; 2] {
     let mut compared = shown.clone();
     compared.toggle(Mode::Wipe, With::Book);
     (compared.divider, compared.is_divider_unplaced) = (0.25, false);
-    [shown, compared]
+    let mut slots = shown.clone();
+    let [one, two, ..] = SlotNumber::ALL;
+    slots.slots.put(one, slot("one"));
+    slots.slots.put(two, slot("two"));
+    slots.look(Some(one));
+    slots.look(Some(two));
+    slots.toggle(Mode::Wipe, With::Slot(one));
+    (slots.divider, slots.is_divider_unplaced) = (0.25, false);
+    [shown, compared, slots]
 }
 
 #[test]
@@ -104,7 +123,10 @@ fn every_field_of_a_session_comes_back() {
         let text = serde_json::to_string(&session).unwrap();
         let read: Session = serde_json::from_str(&text).unwrap();
         assert_eq!(leaves(&read), leaves(&session));
-        let found = read.restore().unwrap();
+        let mut found = read.restore().unwrap();
+        // The pictures of slots come later.
+        view.slots.used().for_each(|(number, slot)| found.view.slots.put(number, slot.clone()));
+        found.slots.show_in(&mut found.view);
         assert_eq!(
             leaves(&noted(&found.document, &found.view, found.is_paused, found.framing)),
             leaves(&session)
