@@ -8,7 +8,6 @@ use super::tracer::Shown;
 use super::window::Window;
 use crate::progressive::Status;
 use eframe::egui;
-use std::fmt;
 
 impl Window {
     /// The status of the render.
@@ -182,29 +181,5 @@ impl Window {
     /// Why a command is disabled, in words; `None` if it is enabled.
     pub fn disabled_reason(&self, command: Command) -> Option<String> {
         self.facts().disabled_reason(command)
-    }
-}
-
-impl fmt::Debug for Window {
-    /// What the user has chosen and done, and what waits to be done.
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter
-            .debug_struct("Window")
-            .field("model", &self.model)
-            .field("zoom", &self.viewport.placement.zoom())
-            .field("picture", &self.viewport.placement.rect())
-            .field("camera_of_flight", &self.flight.as_ref().map(|flight| *flight.camera()))
-            .field("hovered", &self.inspector.hovered())
-            .field("listed_paths", &self.paths.len())
-            .field("explained_ray", &self.paths.position())
-            .field("panel", &self.panel)
-            .field("has_dialog", &self.dialogs.is_open())
-            .field("has_sight", &self.sight.is_some())
-            .field("pending_save", &self.pending_save)
-            .field("pending_crop", &self.pending_crop)
-            .field("pending_copy", &self.pending_copy)
-            .field("seconds_before", &self.seconds_before)
-            .field("invalid", &self.invalid)
-            .finish_non_exhaustive()
     }
 }

@@ -15,7 +15,6 @@ mod flights;
 mod framing;
 mod kept;
 mod moving;
-mod nets;
 mod numbers;
 mod objects;
 mod palette;

@@ -3,7 +3,6 @@
 use super::document::Document;
 use crate::film::{Film, to_byte};
 use crate::progressive::{FilmIdentity, ReferenceMeans, Status};
-use std::fmt;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::SystemTime;
@@ -57,6 +56,7 @@ impl Thumbnail {
 }
 
 /// A picture that was kept. It never changes.
+#[derive(Debug)]
 pub struct Kept {
     /// What it shows.
     pub document: Document,
@@ -72,20 +72,6 @@ pub struct Kept {
     pub id: String,
     number: u64,
     means: OnceLock<Arc<ReferenceMeans>>,
-}
-
-impl fmt::Debug for Kept {
-    /// Without the film's numbers.
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter
-            .debug_struct("Kept")
-            .field("title", &self.document.title())
-            .field("camera", &self.document.camera)
-            .field("settings", &self.document.settings)
-            .field("stop", &self.document.stop)
-            .field("samples", &self.samples())
-            .finish_non_exhaustive()
-    }
 }
 
 impl Kept {
