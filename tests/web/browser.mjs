@@ -181,6 +181,8 @@ for (const id of [glass, first, second]) {
 await shot("lost");
 await button(first, "Live").click();
 await finished(first);
+// The text follows the picture after a moment.
+await until("the last count", async () => (await bar(first)).includes("16 of 16"));
 seen.afterLoss = await bar(first);
 
 for (const [name, width, colorScheme] of [["narrow-dark", 400, "dark"], ["middle-light", 800, "light"]]) {
