@@ -213,6 +213,14 @@ fn a_report_goes_on_with_what_is_there() {
 }
 
 #[test]
+fn a_report_that_cannot_start_leaves_nothing() {
+    let at = TempDir::new().unwrap();
+    let (code, _, errors) = report(&[&SMALL[..], &["--reference", "missing.exr"]].concat(), at.path());
+    assert!(code != 0 && errors.contains("cannot read missing.exr"), "{errors}");
+    assert_eq!(fs::read_dir(at.path()).unwrap().count(), 0);
+}
+
+#[test]
 fn a_scene_that_became_another_is_measured_again() {
     let at = TempDir::new().unwrap();
     let at = at.path();

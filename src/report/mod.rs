@@ -75,17 +75,17 @@ struct Report<'a> {
 impl<'a> Report<'a> {
     /// Checks for everything that could fail later, and reads existing results.
     fn open(options: &'a ReportOptions) -> Result<Self> {
-        let out = &options.out;
-        std::fs::create_dir_all(out).with_context(|| {
-            format!("cannot create the directory {}; choose another with --out", out.display())
-        })?;
-        check_writable(&out.join("report.json"))?;
         let candidates = candidates(options)?;
         if let ReferenceChoice::File(path) = &options.reference {
             for recipe in &options.scenes {
                 reference::read(path, recipe)?;
             }
         }
+        let out = &options.out;
+        std::fs::create_dir_all(out).with_context(|| {
+            format!("cannot create the directory {}; choose another with --out", out.display())
+        })?;
+        check_writable(&out.join("report.json"))?;
         let settings = settings(options);
         let data = resumed(&out.join("report.json"), &settings).unwrap_or_else(|| Data {
             schema: SCHEMA,
