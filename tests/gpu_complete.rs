@@ -5,8 +5,8 @@
 mod gpu_common;
 
 use glam::DVec3;
-use gpu_common::{cpu, gpu, job_of};
-use std::sync::atomic::{AtomicBool, Ordering};
+use gpu_common::{cpu, go_on, gpu, job_of, rendered};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 use weekender::film::Film;
 use weekender::render::{RenderError, RenderJob, Renderer, SamplerKind};
@@ -14,17 +14,6 @@ use weekender::render_gpu::{Fault, FaultInjection, GpuOptions, HierarchyKind, In
 use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book};
 use weekender::scene::{Camera, Material, Scene, Sky};
 use weekender::stages::{Rules, SurfaceRule};
-
-fn go_on() -> AtomicBool {
-    AtomicBool::new(false)
-}
-
-fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Film {
-    let mut film = job.new_film();
-    renderer.accumulate(job, 0..samples, &mut film, &go_on()).unwrap();
-    assert_eq!(film.sample_count(), samples);
-    film
-}
 
 fn picture_mean(film: &Film) -> f64 {
     let means = film.means();

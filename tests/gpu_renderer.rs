@@ -4,7 +4,7 @@
 mod gpu_common;
 
 use glam::DVec3;
-use gpu_common::{cpu, gpu, job_of};
+use gpu_common::{cpu, go_on, gpu, job_of, rendered};
 use std::sync::atomic::AtomicBool;
 use weekender::film::Film;
 use weekender::prepared::PreparedScene;
@@ -16,21 +16,9 @@ use weekender::scene::builtin::{BOOK_CAMERA, BuiltinScene, book, field};
 use weekender::scene::{Camera, Material, Scene, Sky, Sphere};
 use weekender::stages::{Rules, Stage, Transfer};
 
-fn go_on() -> AtomicBool {
-    AtomicBool::new(false)
-}
-
 fn three_spheres(size: [u32; 2], max_depth: u32, estimate_error: bool) -> RenderJob {
     let (scene, camera) = (BuiltinScene::ALL[0].build)();
     job_of(&scene, camera, size, max_depth, SamplerKind::Sobol, estimate_error)
-}
-
-fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Film {
-    let mut film = job.new_film();
-    let stats = renderer.accumulate(job, 0..samples, &mut film, &go_on()).unwrap();
-    assert_eq!(stats.rejected, 0);
-    assert_eq!(film.sample_count(), samples);
-    film
 }
 
 #[test]

@@ -3,9 +3,11 @@
 
 use std::cell::RefCell;
 use std::io::Write;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use weekender::film::Film;
 use weekender::recipe::Recipe;
-use weekender::render::{RenderJob, RenderSettings, SamplerKind};
+use weekender::render::{RenderJob, RenderSettings, Renderer, SamplerKind};
 use weekender::render_cpu::{CpuOptions, CpuRenderer};
 use weekender::render_gpu::{GpuError, GpuOptions, GpuRenderer};
 use weekender::scene::builtin::BuiltinScene;
@@ -46,6 +48,20 @@ pub fn say_loudly(text: &str) {
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
     let line = format!("\nNOT TESTED: {test}: {text}\n");
     std::io::stderr().write_all(line.as_bytes()).unwrap();
+}
+
+/// A flag that cancels nothing.
+pub fn go_on() -> AtomicBool {
+    AtomicBool::new(false)
+}
+
+/// The film of so many samples, none of them rejected.
+pub fn rendered(renderer: &mut dyn Renderer, job: &RenderJob, samples: u64) -> Film {
+    let mut film = job.new_film();
+    let stats = renderer.accumulate(job, 0..samples, &mut film, &go_on()).unwrap();
+    assert_eq!(stats.rejected, 0);
+    assert_eq!(film.sample_count(), samples);
+    film
 }
 
 /// The CPU renderer to compare with.
