@@ -152,7 +152,6 @@ impl Left {
             self.film = None;
         }
         if part == Part::Slots {
-            self.files.slots().clear();
             self.kept.clear();
         }
         if part == Part::Picture || (part == Part::Film && self.session(Part::Film).is_some()) {
