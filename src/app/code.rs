@@ -64,3 +64,19 @@ fn excerpt_ui(ui: &mut Ui, excerpt: &Excerpt) {
     ui.add(egui::Label::new(code).wrap_mode(egui::TextWrapMode::Extend));
     ui.add_space(10.0);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn an_excerpt_tells_where_it_is() {
+        let (file, text) = ("src/a.rs".to_owned(), "fn a() {}\n".to_owned());
+        let excerpt = Excerpt { file, first: 12, last: 12, text };
+        let harness = Harness::new_ui(|ui| excerpt_ui(ui, &excerpt));
+        assert!(harness.query_by_label("src/a.rs, line 12").is_some());
+        assert!(harness.query_by_label("fn a() {}").is_some());
+    }
+}

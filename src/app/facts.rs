@@ -334,3 +334,66 @@ pub fn neighbour(document: &Document, is_next: bool) -> Option<&'static Stage> {
         None => Stage::ALL.first().filter(|_| is_next),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::device::DeviceOptions;
+    use crate::app::model::kept::Kept;
+    use crate::app::model::origin::Origin;
+    use crate::app::model::remembered::Remembered;
+    use crate::app::model::slots::Slot;
+    use crate::app::model::view::ViewState;
+    use crate::film::Film;
+
+    /// A window with this view in which nothing has been traced yet.
+    fn early(document: Document, view: ViewState) -> Facts {
+        let model = Model {
+            document,
+            selected: None,
+            view,
+            remembered: Remembered::default(),
+            devices: DeviceOptions::default(),
+            is_paused: false,
+            is_full_screen: false,
+            has_first_steps: false,
+            presentation: None,
+            has_recovered: false,
+        };
+        Facts {
+            model,
+            status: Arc::default(),
+            speed: None,
+            can_undo: false,
+            can_redo: false,
+            has_pixel: false,
+            has_paths: false,
+            has_sight: false,
+            invalid: None,
+        }
+    }
+
+    #[test]
+    fn two_kept_pictures_are_compared_before_anything_is_traced() {
+        let [one, two] = [SlotNumber::ALL[0], SlotNumber::ALL[1]];
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.give_size([4, 2]);
+        let mut view = ViewState::default();
+        for number in [one, two] {
+            let mut film = Film::new(4, 2, 1);
+            film.record(0..1, 0).unwrap();
+            let kept = Kept::new(document.clone(), film, Arc::default(), None);
+            view.slots.put(number, Slot { name: String::new(), kept: Arc::new(kept) });
+        }
+        let mut facts = early(document, view);
+        let reason = |facts: &Facts| facts.disabled_reason(Command::Slot(SlotCommand::OnlyNoise));
+        assert!(reason(&facts).unwrap().starts_with("Nothing has been traced yet"));
+        facts.model.view.slots.look(Some(one));
+        assert!(
+            reason(&facts).unwrap().starts_with("Nothing has been traced yet"),
+            "it is the live one again"
+        );
+        facts.model.view.slots.choose(two);
+        assert_eq!(reason(&facts), None);
+    }
+}

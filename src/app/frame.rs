@@ -302,7 +302,43 @@ impl eframe::App for Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tests::{until, window};
+    use crate::interrupt::Interrupt;
     use egui::vec2;
+    use std::sync::Arc;
+    use std::sync::atomic::Ordering;
+
+    #[test]
+    fn a_signal_closes_a_window_that_is_hidden() {
+        let mut window = window("weekender --stage normals --size 16x9 --samples 1");
+        let interrupt = Arc::new(Interrupt::unheard());
+        window.heed(Arc::clone(&interrupt));
+        let context = egui::Context::default();
+        let mut closes = || {
+            let output = context.run_ui(egui::RawInput::default(), |ui| {
+                eframe::App::logic(&mut window, ui.ctx(), &mut eframe::Frame::_new_kittest());
+            });
+            output.viewport_output[&egui::ViewportId::ROOT].commands.contains(&egui::ViewportCommand::Close)
+        };
+        assert!(!closes());
+        interrupt.flag().store(true, Ordering::Relaxed);
+        assert!(closes());
+    }
+
+    #[test]
+    fn a_picture_that_has_taken_long_keeps_its_size() {
+        let mut window = window("weekender --stage normals --device cpu");
+        let context = egui::Context::default();
+        until(&mut window, &context, "a picture", |window| window.main.has_samples(window.document()));
+        // With the time since then, it is more than that of a picture that would be given up.
+        window.seconds_before = Some(10.0);
+        let size = window.document().size();
+        window.model.remembered.has_panels = false;
+        let has_decided =
+            |window: &Window| window.sizer.offer().is_some() || window.document().size() != size;
+        until(&mut window, &context, "another room", has_decided);
+        assert_eq!(window.document().size(), size);
+    }
 
     #[test]
     fn a_window_with_its_frame_fits_on_the_screen() {

@@ -94,3 +94,62 @@ impl Drop for FrameLog {
         let _ = self.file.flush();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The fields of the lines that `write` logs, without the time since the start.
+    fn logged(write: impl FnOnce(&mut FrameLog)) -> Vec<Vec<String>> {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("log.csv");
+        let mut log = FrameLog::create(&path).unwrap();
+        write(&mut log);
+        drop(log);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let fields = |line: &str| {
+            let mut fields: Vec<String> = line.split(',').map(str::to_owned).collect();
+            assert!(fields.remove(1).parse::<f64>().unwrap() >= 0.0, "{line}");
+            fields
+        };
+        text.lines().map(fields).collect()
+    }
+
+    #[test]
+    fn each_frame_is_logged_with_its_times_when_the_next_one_begins() {
+        let [cpu, ui, picture] = [250, 16, 1].map(Duration::from_millis);
+        let times = FrameTimes { cpu, ui, picture };
+        let lines = logged(|log| (0..3).for_each(|_| log.frame(times)));
+        assert_eq!(lines.len(), 2, "{lines:?}");
+        for line in &lines {
+            assert!(line[0] == "frame" && line[1].parse::<f64>().unwrap() >= 0.0, "{line:?}");
+            assert_eq!(line[2..], ["250.000", "16.000", "1.000"]);
+        }
+    }
+
+    #[test]
+    fn a_backend_is_logged_once_for_each_render() {
+        let lines = logged(|log| {
+            log.command("Pause or go on");
+            for (run, backend) in [(1, "cpu"), (1, "cpu"), (1, "gpu"), (2, "gpu"), (2, "gpu")] {
+                log.tracing(run, backend);
+            }
+        });
+        let words: Vec<String> = lines.iter().map(|line| line.join(" ")).collect();
+        assert_eq!(words, ["command Pause or go on", "tracing 1 cpu", "tracing 1 gpu", "tracing 2 gpu"]);
+    }
+
+    #[test]
+    fn the_latency_is_that_of_the_first_picture_after_each_change() {
+        let lines = logged(|log| {
+            log.changed();
+            let begun = log.changes[0];
+            log.changes.push(begun + Duration::from_secs(1));
+            log.pictured(begun);
+            assert_eq!(log.changes.len(), 1, "the second change is not to be seen yet");
+            log.pictured(begun);
+        });
+        let [line] = &lines[..] else { panic!("{lines:?}") };
+        assert!(line[0] == "latency" && line[1].parse::<f64>().unwrap() >= 0.0, "{line:?}");
+    }
+}

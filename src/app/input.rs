@@ -191,3 +191,53 @@ fn by_modifiers() -> Vec<Command> {
     });
     commands
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::slots::SlotNumber;
+
+    const KEYBOARD: Keyboard = Keyboard {
+        had_focus: false,
+        is_other_view: false,
+        is_cropping: false,
+        is_at_slot: false,
+        has_selection: false,
+        is_full_screen: false,
+        has_first_steps: false,
+        has_sight: false,
+        is_presenting: false,
+    };
+
+    /// The commands of a key that types `key` and is at the place of `physical_key` on the keyboard.
+    fn commands(key: Key, physical_key: Option<Key>, modifiers: Modifiers) -> Vec<Command> {
+        let pressed = egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers };
+        let input = egui::RawInput { events: vec![pressed], ..egui::RawInput::default() };
+        let mut commands = Vec::new();
+        let _ = egui::Context::default().run_ui(input, |ui| {
+            take_keys(ui.ctx(), &KEYBOARD, &mut commands);
+        });
+        commands
+    }
+
+    #[test]
+    fn some_commands_have_a_second_key() {
+        for (key, modifiers, command) in [
+            (Key::Questionmark, Modifiers::SHIFT, Command::Help),
+            (Key::Y, Modifiers::COMMAND, Command::Redo),
+            (Key::Backspace, Modifiers::NONE, Command::DeleteSphere),
+        ] {
+            assert_eq!(commands(key, None, modifiers), [command]);
+        }
+    }
+
+    #[test]
+    fn a_digit_with_alt_is_known_by_its_place() {
+        let place = Some(Key::Num1);
+        let of_first = |command: fn(SlotNumber) -> SlotCommand| [Command::Slot(command(SlotNumber::ALL[0]))];
+        let shift_alt = Modifiers::SHIFT | Modifiers::ALT;
+        assert_eq!(commands(Key::Exclamationmark, place, shift_alt), of_first(SlotCommand::KeepIn));
+        assert_eq!(commands(Key::Exclamationmark, place, Modifiers::ALT), of_first(SlotCommand::Look));
+        assert!(commands(Key::Exclamationmark, place, Modifiers::SHIFT).is_empty());
+    }
+}

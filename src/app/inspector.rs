@@ -256,4 +256,22 @@ mod tests {
             );
         }
     }
+
+    #[test]
+    fn a_view_tells_its_value_at_the_pixel() {
+        let document = Document::new(Origin::new(Recipe::builtin("three-spheres").unwrap(), Source::Builtin));
+        let pixel = Pixel { at: [0, 0], mean: [0.5; 3], error: None, bytes: [0; 3], samples: 1 };
+        for (layer, value, told) in [
+            (Layer::Normals, [0.5, 1.0, 0.25], ["normal", "0.0000", "1.0000", "-0.5000"].as_slice()),
+            (Layer::Albedo, [0.125, 0.75, 1.0], ["albedo", "0.12500", "0.75000", "1.00000"].as_slice()),
+            (Layer::RaysPerPath, [2.5; 3], ["rays/path", "2.50"].as_slice()),
+        ] {
+            let harness = Harness::new_ui(|ui| pixel_ui(&document, &pixel, Some((layer, value)), None, ui));
+            let labels = harness.get_all_by_role(egui::accesskit::Role::Label);
+            let texts: Vec<String> = labels.filter_map(|node| node.value()).collect();
+            for text in told {
+                assert!(texts.iter().any(|found| found == text), "{layer:?}: no {text} in {texts:?}");
+            }
+        }
+    }
 }

@@ -242,7 +242,26 @@ fn coloured(layer: Layer, image: &LayerImage, transfer: Transfer) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::origin::Origin;
     use crate::recipe::Recipe;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn of_many_orders_the_last_one_is_traced() {
+        let (mut layers, context) = (Layers::default(), Context::default());
+        let mut document = Document::new(Origin::usual());
+        (document.settings.width, document.settings.height) = (32, 18);
+        for step in 0..20 {
+            document.camera.vfov_degrees = 30.0 + f64::from(step);
+            layers.follow(&context, Some(Layer::Normals), &document, false);
+        }
+        let begin = Instant::now();
+        while layers.samples(Layer::Normals) < SAMPLES {
+            assert!(begin.elapsed() < Duration::from_secs(60), "the last one never came");
+            std::thread::sleep(Duration::from_millis(1));
+            layers.follow(&context, Some(Layer::Normals), &document, false);
+        }
+    }
 
     #[test]
     fn a_coarse_layer_is_the_picture_made_smaller() {

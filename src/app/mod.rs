@@ -195,23 +195,58 @@ fn display() -> String {
 mod tests {
     use super::*;
     use crate::cli::{Request, parse};
+    use std::time::{Duration, Instant};
+
+    /// The window of a command line, without a display.
+    pub(super) fn window(words: &str) -> Window {
+        Window::new(options(words), None).unwrap()
+    }
+
+    fn options(words: &str) -> WindowOptions {
+        match parse(words.split_whitespace().map(Into::into)).unwrap() {
+            Request::Window(options) => *options,
+            other => panic!("{words}: {other:?}"),
+        }
+    }
+
+    fn input() -> egui::RawInput {
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0));
+        egui::RawInput { screen_rect: Some(screen), ..egui::RawInput::default() }
+    }
+
+    /// Draws frames until the condition holds.
+    pub(super) fn until(
+        window: &mut Window,
+        context: &egui::Context,
+        what: &str,
+        is_so: impl Fn(&Window) -> bool,
+    ) {
+        let begin = Instant::now();
+        while !is_so(window) {
+            assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}; {:?}", window.messages());
+            std::thread::sleep(Duration::from_millis(2));
+            let _ = context.run_ui(input(), |ui| window.ui_in(ui));
+        }
+    }
+
+    #[test]
+    fn the_window_is_drawn_by_what_is_wished_and_else_by_a_gpu_if_there_is_one() {
+        use eframe::Renderer::{Glow, Wgpu};
+        assert_eq!([DrawWith::Wgpu, DrawWith::Gl].map(renderers), [&[Wgpu], &[Glow]]);
+        let has_gpu = model::device::adapter().is_ok_and(|adapter| !adapter.is_software);
+        let expected = if has_gpu { [Wgpu, Glow] } else { [Glow, Wgpu] };
+        assert_eq!(renderers(DrawWith::Auto), expected);
+    }
 
     #[test]
     fn the_first_frame_has_the_style_of_those_that_follow() {
         let context = egui::Context::default();
         let own = context.global_style();
-        let words = "weekender --stage normals --size 16x9 --samples 1";
-        let Request::Window(options) = parse(words.split_whitespace().map(Into::into)).unwrap() else {
-            panic!("{words}");
-        };
-        let mut window = create(*options, &context, None).unwrap();
+        let options = options("weekender --stage normals --size 16x9 --samples 1");
+        let mut window = create(options, &context, None).unwrap();
         let mut styles = Vec::new();
         for _ in 0..3 {
-            let input = egui::RawInput {
-                screen_rect: Some(egui::Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(1280.0, 800.0))),
-                ..egui::RawInput::default()
-            };
-            let _ = context.run_ui(input, |ui| {
+            let _ = context.run_ui(input(), |ui| {
                 styles.push(ui.style().as_ref().clone());
                 window.ui_in(ui);
             });

@@ -191,6 +191,18 @@ mod tests {
         assert_eq!(upright(&CAMERA, DVec3::ZERO, DVec3::Y), CAMERA);
     }
 
+    #[test]
+    fn a_pivot_behind_the_eye_of_a_view_from_above_is_turned_about_too() {
+        let camera = Camera { look_from: DVec3::new(0.0, 4.0, 0.4), ..CAMERA };
+        let pivot = camera.look_from + 5.0 * camera.direction_through([0.4, 0.9], 1.5);
+        assert!(pivot.z > camera.look_from.z, "the view goes along -z: {pivot}");
+        for [right, up] in [[0.3, -0.1], [0.3, 0.05], [-1.0, -0.3]] {
+            let orbited = orbit(&camera, pivot, right, up);
+            let found = orbited_to(&camera, pivot, orbited.look_from);
+            assert!(found.look_at.distance(orbited.look_at) < 1e-9, "{right} {up}: {}", found.look_at);
+        }
+    }
+
     proptest! {
         #[test]
         fn turning_keeps_distances_and_never_turns_over(right in -9.0..9.0f64, up in -9.0..9.0f64) {

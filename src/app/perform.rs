@@ -4,6 +4,7 @@ use super::command::Command;
 use super::dialogs::{Dialog, Palette, PathBox, Purpose};
 use super::facts::neighbour;
 use super::model::Model;
+use super::model::companion;
 use super::model::device::{self, Device};
 use super::model::first_steps::Step;
 use super::model::origin::{Origin, Source};
@@ -16,9 +17,7 @@ use super::plot;
 use super::theme;
 use super::title_bar;
 use super::window::Window;
-use crate::gallery::Figure;
 use crate::output::OutputFormat;
-use crate::stages::Stage;
 use eframe::egui::{self, ViewportCommand};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -155,7 +154,9 @@ impl Window {
             }
             Command::Restart => {
                 self.seconds_before = Some(0.0);
-                self.model.is_paused = false;
+                if std::mem::take(&mut self.model.is_paused) {
+                    self.second.resume();
+                }
                 self.main.restart();
                 self.recovery.autosave.holds(None);
             }
@@ -185,8 +186,7 @@ impl Window {
             Command::Extreme(case) => self.show_origin(Origin::of_case(case)),
             Command::Book => {
                 let url = self.document().stage().map_or_else(|| crate::stages::BOOK_URL.into(), |s| s.url());
-                self.toasts.good(format!("Opening {url}"));
-                context.open_url(egui::OpenUrl::new_tab(url));
+                self.open_page(context, url);
             }
             Command::Companion => self.open_companion(context),
             Command::Stages => {
@@ -218,22 +218,16 @@ impl Window {
     /// Opens the companion at the stage's figure, if the page has been written.
     fn open_companion(&mut self, context: &egui::Context) {
         let page = std::path::absolute("companion/index.html").unwrap_or_default();
-        if !page.is_file() {
+        if page.is_file() {
+            self.open_page(context, companion::url(&page, self.document().stage()));
+        } else {
             let message =
                 "There is no companion/index.html here; write it with: weekender companion --out companion";
             self.toasts.bad(message.to_owned());
-            return;
         }
-        // Characters that end or change a path in a URL.
-        let path = page.display().to_string().replace('%', "%25").replace('#', "%23").replace('?', "%3F");
-        let path = path.replace(' ', "%20").replace('\\', "/");
-        let shows = |stage: &Stage| {
-            let has_stage = |figure: &&Figure| figure.panels.iter().any(|panel| panel.stage == stage);
-            Figure::ALL.iter().find(has_stage)
-        };
-        let figure = self.document().stage().and_then(shows);
-        let anchor = figure.map_or_else(String::new, |figure| format!("#figure-{}", figure.id));
-        let url = format!("file:///{}{anchor}", path.trim_start_matches('/'));
+    }
+
+    fn open_page(&mut self, context: &egui::Context, url: String) {
         self.toasts.good(format!("Opening {url}"));
         context.open_url(egui::OpenUrl::new_tab(url));
     }

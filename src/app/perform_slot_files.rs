@@ -191,3 +191,82 @@ impl Window {
         self.read_in_order(context, ids);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::kept::Kept;
+    use crate::app::recovery::Left;
+    use crate::app::tests::window;
+    use crate::film::Film;
+    use std::path::Path;
+
+    const STAGE: &str = "weekender --stage normals --size 16x9 --samples 1";
+
+    fn entry(number: Option<SlotNumber>, id: &str, size: [u32; 2]) -> Entry {
+        let (id, name) = (id.to_owned(), format!("picture {id}"));
+        Entry { number, id, name, size, samples: 1, has_own_size: true }
+    }
+
+    /// Files in the directory with these kept pictures.
+    fn holding(directory: &Path, entries: &[Entry]) -> RecoveryFiles {
+        let files = RecoveryFiles::claim(directory).unwrap();
+        files.slots().write_list(entries).unwrap();
+        for entry in entries {
+            std::fs::write(files.slots().film(&entry.id), "a film").unwrap();
+        }
+        files
+    }
+
+    #[test]
+    fn a_tenth_picture_stays_on_disk_under_its_name() {
+        let directory = tempfile::tempdir().unwrap();
+        let of_slot = |number: SlotNumber| entry(Some(number), &number.to_string(), [4, 2]);
+        let mut entries: Vec<Entry> = SlotNumber::ALL.into_iter().map(of_slot).collect();
+        entries.push(entry(None, "tenth", [4, 2]));
+        let files = holding(directory.path(), &entries);
+        let mut window = window(STAGE);
+        window.begin_slots(&files, u64::MAX);
+        assert_eq!(window.messages(), ["picture tenth stays on disk: all nine slots are in use"]);
+        window.finish_slots();
+        assert_eq!(files.slots().entries(), (entries, vec![]), "the next window may have room for it");
+    }
+
+    #[test]
+    fn a_picture_that_could_not_be_written_lasts_once_it_is() {
+        let mut window = window(STAGE);
+        let mut film = Film::new(4, 2, 1);
+        film.record(0..1, 0).unwrap();
+        let kept = Arc::new(Kept::new(window.document().clone(), film, Arc::default(), None));
+        let mut is_passing_after = |news| {
+            window.take_news(news);
+            window.model.view.slots.is_passing(&kept)
+        };
+        let id = || kept.id.clone();
+        assert!(is_passing_after(News::NotWritten { id: Some(id()), words: None }));
+        assert!(!is_passing_after(News::Written(id())));
+    }
+
+    #[test]
+    fn what_another_window_left_stays_there_if_there_is_no_room() {
+        for (free, size, reason) in [
+            (0, [4, 2], "all nine slots are in use; delete one and open them again"),
+            (1, [20_000, 10_000], "the picture takes "),
+        ] {
+            let directory = tempfile::tempdir().unwrap();
+            drop(holding(directory.path(), &[entry(None, "left", size)]));
+            let mut window = window(STAGE);
+            window.recovery.files = Some(RecoveryFiles::claim(directory.path()).unwrap());
+            window.recovery.left = Left::all_in(directory.path());
+            for number in &SlotNumber::ALL[free..] {
+                let coming = entry(Some(*number), &number.to_string(), [4, 2]).coming();
+                window.model.view.slots.expect(*number, coming);
+            }
+            window.take_left_slots(&Context::default(), 0);
+            let [told] = window.messages().try_into().unwrap();
+            assert!(told.starts_with(&format!("Not opened: 1 kept picture: {reason}")), "{told}");
+            assert_eq!(window.recovery.left[0].kept().len(), 1);
+            assert_eq!(window.model.view.slots.free().count(), free);
+        }
+    }
+}

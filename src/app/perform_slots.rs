@@ -164,3 +164,25 @@ impl Window {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::slots::Coming;
+    use crate::app::tests::{until, window};
+
+    #[test]
+    fn a_picture_that_no_slot_has_room_for_is_not_kept() {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
+        let context = egui::Context::default();
+        until(&mut window, &context, "samples", |window| window.main.has_samples(window.document()));
+        let [one, two, ..] = SlotNumber::ALL;
+        let (name, id, size) = ("large".to_owned(), "1".to_owned(), [20_000, 10_000]);
+        window.model.view.slots.expect(one, Coming { name, id, size, samples: 1, has_own_size: true });
+        window.perform_on_slots(&context, SlotCommand::KeepIn(two));
+        window.keep_wanted(&context);
+        let told = window.messages();
+        assert!(told.iter().any(|text| text.starts_with("Not kept: the picture takes ")), "{told:?}");
+        assert!(!window.slot_actions.is_wanted(two));
+    }
+}

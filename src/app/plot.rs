@@ -354,4 +354,38 @@ mod tests {
     fn a_target_that_is_dragged_has_two_digits() {
         assert_eq!([0.002_134, 0.0999, 1.0].map(two_digits), [0.0021, 0.1, 1.0]);
     }
+
+    /// The texts that are drawn, with the lower left corner of each.
+    fn texts(draw: impl FnMut(&mut Ui)) -> Vec<(String, egui::Pos2)> {
+        let harness = egui_kittest::Harness::builder().with_size([600.0, 300.0]).build_ui(draw);
+        let mut texts = Vec::new();
+        for clipped in &harness.output().shapes {
+            if let egui::Shape::Text(text) = &clipped.shape {
+                let corner = text.pos + egui::vec2(0.0, text.galley.size().y);
+                texts.push((text.galley.text().to_owned(), corner));
+            }
+        }
+        texts
+    }
+
+    #[test]
+    fn several_curves_are_named_above_their_middles() {
+        let history = vec![point("cpu", 4, 1.0), point("cpu", 16, 4.0)];
+        let mut status = Status { history, ..Status::default() };
+        let named = |status: &Status| {
+            let texts = texts(|ui| plot(ui, &mut None, status));
+            ["cpu", "gpu"].map(|name| texts.iter().any(|(text, _)| text == name))
+        };
+        assert_eq!(named(&status), [false; 2], "one curve needs no name");
+        status.history.push(point("gpu", 64, 8.0));
+        assert_eq!(named(&status), [true; 2]);
+        let mut middle = egui::Pos2::ZERO;
+        let texts = texts(|ui| {
+            let ends = [[1.0, -1.0], [3.0, -4.0]];
+            let shown = Plot::new("named").show(ui, |plot| name_curve(plot, "cpu", &ends, Color32::RED));
+            middle = shown.transform.position_from_point(&PlotPoint::new(2.0, -2.5));
+        });
+        let (_, corner) = texts.iter().find(|(text, _)| text == "cpu").unwrap();
+        assert!(corner.distance(middle) < 1.0, "{corner} {middle}");
+    }
 }

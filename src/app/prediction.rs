@@ -93,7 +93,11 @@ mod tests {
         assert!(prediction_words(&found).starts_with("in about 30 s ("), "{}", prediction_words(&found));
         assert_eq!(prediction(&status, Some(0.01)), None);
         assert_eq!(prediction(&status, None), None);
-        status.samples_per_pixel = 2;
-        assert_eq!(prediction(&status, Some(0.002)), None);
+        for (samples, is_predicted) in
+            [(NOISE_TARGET_FIRST_SAMPLES - 1, false), (NOISE_TARGET_FIRST_SAMPLES, true)]
+        {
+            status.samples_per_pixel = samples;
+            assert_eq!(prediction(&status, Some(0.002)).is_some(), is_predicted, "{samples}");
+        }
     }
 }

@@ -129,13 +129,10 @@ impl Window {
     /// Shows the render thread's messages.
     fn tell_messages(&mut self) {
         let status = self.main.status().clone();
-        let (run, told) = self.told_messages;
-        let told = if run == status.run { told } else { 0 };
-        self.told_messages = (status.run, status.messages.len());
-        let news: Vec<String> = status.messages.iter().skip(told).cloned().collect();
-        for message in news {
+        for message in untold(self.told_messages, &status) {
             self.toasts.bad(message);
         }
+        self.told_messages = (status.run, status.messages.len());
         self.follow_failures();
     }
 
@@ -148,6 +145,12 @@ impl Window {
         self.model.remembered.device = device;
         self.known_failures = (status.run, known);
     }
+}
+
+/// The messages of a status without those that were told: so many of a run.
+fn untold((run, told): (u64, usize), status: &Status) -> &[String] {
+    let told = if run == status.run { told } else { 0 };
+    status.messages.get(told..).unwrap_or_default()
 }
 
 /// The device to choose after the failures that are not among the `known` first ones, and the failures that are known
@@ -167,7 +170,36 @@ fn device_after(chosen: Device, known: usize, status: &Status) -> (Device, usize
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tests::window;
+    use crate::film::Film;
     use crate::render::BackendInfo;
+    use crate::saved::SavedFilm;
+
+    #[test]
+    fn a_film_is_not_resumed_after_the_picture_was_changed() {
+        let mut window = window("weekender --stage normals --size 16x9 --samples 1");
+        let resumed = |begun: &Document| Resumed {
+            path: PathBuf::from("/of/mine.exr"),
+            begun: begun.clone(),
+            film: SavedFilm { film: Film::new(16, 9, 1), seconds: None, backend: None },
+        };
+        window.go_on(resumed(&Document::new(Origin::usual())));
+        let told = window.messages();
+        let reason = "Not resumed: the picture was changed before /of/mine.exr had been read";
+        assert!(told[0].starts_with(reason) && window.pending_film.is_none(), "{told:?}");
+        let mine = window.document().clone();
+        window.go_on(resumed(&mine));
+        assert!(window.pending_film.is_some());
+    }
+
+    #[test]
+    fn each_message_of_a_run_is_told_once() {
+        let messages = ["a", "b"].map(str::to_owned).to_vec();
+        let status = Status { run: 2, messages, ..Status::default() };
+        assert_eq!(untold((1, 1), &status), ["a", "b"], "those of another run");
+        assert_eq!(untold((2, 1), &status), ["b"]);
+        assert!(untold((2, 2), &status).is_empty());
+    }
 
     #[test]
     fn only_a_failure_of_the_chosen_device_changes_the_choice() {

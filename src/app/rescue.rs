@@ -48,3 +48,74 @@ impl Window {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::kept::Kept;
+    use crate::app::model::slots::{Slot, SlotNumber};
+    use crate::app::recovery::RecoveryFiles;
+    use crate::app::tests::{until, window};
+    use crate::film::{Film, checkpoint};
+    use crate::recipe::{Recipe, file};
+    use eframe::egui::Context;
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    use std::path::Path;
+
+    /// A window of this scene file that has traced some of its samples.
+    fn traced(scene: &Path) -> Window {
+        std::fs::write(scene, file::to_toml(&Recipe::builtin("three-spheres").unwrap())).unwrap();
+        let words =
+            format!("weekender --scene {} --size 16x9 --samples 4000000000 --device cpu", scene.display());
+        let mut window = window(&words);
+        let has_some = |window: &Window| window.status().samples_per_pixel >= 4;
+        until(&mut window, &Context::default(), "the samples", has_some);
+        window
+    }
+
+    fn panic_with(window: Window) {
+        let outcome: std::thread::Result<()> = catch_unwind(AssertUnwindSafe(move || {
+            let _window = window;
+            panic!("injected fault");
+        }));
+        assert!(outcome.is_err());
+    }
+
+    #[test]
+    fn a_panic_leaves_the_film_and_the_kept_pictures_to_the_next_window() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut window = traced(&directory.path().join("mine.toml"));
+        let files = RecoveryFiles::claim(directory.path()).unwrap();
+        window.begin_slots(&files, u64::MAX);
+        window.recovery.files = Some(files);
+        let mut film = Film::new(16, 9, 2);
+        film.record(0..2, 0).unwrap();
+        let kept = Kept::new(window.document().clone(), film, Default::default(), None);
+        let (number, id) = (SlotNumber::ALL[4], kept.id.clone());
+        window.model.view.slots.put(number, Slot { name: "my picture".to_owned(), kept: kept.into() });
+        panic_with(window);
+
+        let [left] = RecoveryFiles::left_in(directory.path()).try_into().unwrap();
+        let read = checkpoint::load(left.film()).unwrap();
+        assert!(read.film.sample_count() >= 4 && read.film.width() == 16);
+        assert!(left.note().unwrap().unwrap().has_film);
+        let (entries, faults) = left.slots().entries();
+        let [entry] = &entries[..] else { panic!("{entries:?}") };
+        assert_eq!((entry.number, &entry.id, entry.name.as_str()), (Some(number), &id, "my picture"));
+        assert_eq!(faults, <[String; 0]>::default());
+    }
+
+    #[test]
+    fn a_panic_of_a_window_without_files_of_its_own_keeps_the_film() {
+        let directory = tempfile::tempdir().unwrap();
+        // Its name finds the film again among all temporary files.
+        let name = directory.path().file_name().unwrap().to_str().unwrap().replace('.', "");
+        panic_with(traced(&directory.path().join(format!("{name}.toml"))));
+        let path = std::env::temp_dir().join(format!("weekender-{name}-{}.exr", std::process::id()));
+        let read = checkpoint::load(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let recipe = file::parse(read.description.recipe(), "kept").unwrap();
+        assert_eq!((recipe.samples_per_pixel, recipe.settings.width), (read.film.sample_count(), 16));
+        assert!(read.film.sample_count() >= 4);
+    }
+}

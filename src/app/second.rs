@@ -203,8 +203,84 @@ fn camera_of(mine: &Camera, base: &Camera, theirs: &Camera) -> Camera {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::command::Command;
+    use crate::app::model::view::With;
+    use crate::app::tests::{until, window};
+    use crate::app::window::Window;
+    use crate::backends::BackendChoice;
+    use crate::progressive::{Phase, Stop, View};
+    use crate::render_cpu::CpuOptions;
     use crate::stages::{Stage, SurfaceRule};
     use crate::stress::shown_cases;
+    use std::time::{Duration, Instant};
+
+    #[test]
+    fn a_film_is_taken_only_for_the_picture_that_is_compared() {
+        let (mut second, context) = (Second::default(), Context::default());
+        let stage = &Stage::ALL[0];
+        let [mine, other] = [(); 2].map(|()| Arc::new(Origin::of_stage(stage)));
+        let film = || ReferenceMeans { width: 1, height: 1, means: vec![[0.5; 3]], identity: None };
+        let answer = |second: &mut Second, origin: &Arc<Origin>| {
+            second.films.answer(&context).give((Arc::clone(origin), film()));
+            second.receive();
+            second.film().is_some()
+        };
+        assert!(!answer(&mut second, &mine), "the comparison is over");
+        second.of = Some((Other::Stage(stage), Arc::clone(&mine)));
+        assert!(!answer(&mut second, &other), "another picture is compared by now");
+        assert!(answer(&mut second, &mine));
+    }
+
+    #[test]
+    fn the_second_picture_waits_and_goes_on_with_the_first() {
+        let (mut second, context, mut view) = (Second::default(), Context::default(), ViewState::default());
+        let mut document = Document::new(Origin::of_stage(Stage::find("glass-schlick").unwrap()));
+        document.give_size([16, 9]);
+        document.stop = Stop::at_samples(4_000_000_000);
+        view.toggle(Mode::Wipe, With::Stage);
+        let want = Want {
+            document: &document,
+            backend: &BackendChoice::Cpu(CpuOptions::default()),
+            stop: document.stop,
+            view: View::Picture,
+            is_moving: false,
+            is_paused: false,
+        };
+        let until = |second: &mut Second, what: &str, is_so: &dyn Fn(&Tracer) -> bool| {
+            let begin = Instant::now();
+            while !second.tracer.as_ref().is_some_and(is_so) {
+                assert!(begin.elapsed() < Duration::from_secs(60), "never: {what}");
+                std::thread::sleep(Duration::from_millis(1));
+                assert!(second.follow(&context, &view, &want));
+            }
+        };
+        until(&mut second, "samples", &|tracer: &Tracer| tracer.newest_status().samples_per_pixel > 0);
+        second.pause();
+        until(&mut second, "a pause", &|tracer: &Tracer| tracer.newest_status().phase == Phase::Paused);
+        let samples = second.tracer.as_ref().unwrap().newest_status().samples_per_pixel;
+        second.resume();
+        until(&mut second, "more samples", &|tracer: &Tracer| {
+            tracer.newest_status().samples_per_pixel > samples
+        });
+    }
+
+    #[test]
+    fn a_paused_comparison_goes_on_if_the_picture_is_started_anew() {
+        let context = Context::default();
+        let mut window =
+            window("weekender --stage glass-schlick --size 16x9 --samples 4000000000 --device cpu");
+        let is_in = |wanted: Phase| {
+            move |window: &Window| {
+                window.second.tracer.as_ref().is_some_and(|tracer| tracer.newest_status().phase == wanted)
+            }
+        };
+        window.perform(&context, Command::Wipe);
+        until(&mut window, &context, "a second picture", is_in(Phase::Tracing));
+        window.perform(&context, Command::Pause);
+        until(&mut window, &context, "a pause", is_in(Phase::Paused));
+        window.perform(&context, Command::Restart);
+        until(&mut window, &context, "the second picture again", is_in(Phase::Tracing));
+    }
 
     #[test]
     fn the_others_camera_moves_along_but_keeps_its_own() {

@@ -370,4 +370,18 @@ mod tests {
         assert_eq!(grouped(0), "0");
         assert_eq!(grouped(1234567), "1\u{a0}234\u{a0}567");
     }
+
+    #[test]
+    fn rejected_samples_stand_out() {
+        let colour = |rejected_samples| {
+            let status = Status { rejected_samples, ..Status::default() };
+            let harness = Harness::new_ui(|ui| rejected(ui, &status));
+            let colour = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) => text.galley.job.sections.first().map(|part| part.format.color),
+                _ => None,
+            });
+            colour.unwrap()
+        };
+        assert_ne!(colour(0), colour(1));
+    }
 }

@@ -41,7 +41,6 @@ impl Facts {
             Command::Theme(theme) => remembered.theme == theme,
             Command::Device(device) => remembered.device == device,
             Command::Size(sizing) => !document.has_own_size && remembered.sizing == sizing,
-            Command::Stage(stage) => document.stage() == Some(stage),
             Command::Extreme(case) => document.case() == Some(case),
             _ => false,
         }

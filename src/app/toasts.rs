@@ -104,3 +104,23 @@ impl Toasts {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn each_message_is_closed_by_its_own_button() {
+        let mut toasts = Toasts::default();
+        for text in ["first", "second", "third"] {
+            toasts.add(text.to_owned(), Tone::Bad);
+        }
+        let draw = |ui: &mut egui::Ui, toasts: &mut Toasts| toasts.ui(ui, ui.ctx().content_rect());
+        let mut harness = Harness::builder().with_size([600.0, 400.0]).build_ui_state(draw, toasts);
+        harness.get_all_by_label("×").nth(1).unwrap().click();
+        harness.run_steps(2);
+        assert_eq!(harness.state().texts().collect::<Vec<_>>(), ["first", "third"]);
+    }
+}

@@ -101,10 +101,7 @@ fn exposure_ui(ui: &mut Ui, tone: &mut Tone) {
          It changes only what you see; files are saved without it",
     );
     let ranges = (Tone::EXPOSURES, Tone::EXPOSURES);
-    let response = slider(ui, about, &mut tone.exposure, ranges, "", |slider| slider.step_by(0.1));
-    if response.double_clicked() {
-        tone.exposure = 0.0;
-    }
+    slider(ui, about, &mut tone.exposure, ranges, "", |slider| slider.step_by(0.1));
 }
 
 fn range_ui(ui: &mut Ui, tone: &mut Tone) {
@@ -167,4 +164,33 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
          What is right of the dashed line is shown as white";
     tips::beside(ui, response, help);
     ui.add(egui::Label::new(RichText::new(words).small().color(ui.visuals().weak_text_color())).wrap());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::Film;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn each_channel_has_a_curve_over_the_whole_width() {
+        let mut film = Film::new(2, 1, 1);
+        film.record(0..1, 0).unwrap();
+        let histogram = Histogram::of(&film, 1.0);
+        let harness = Harness::builder().with_size([300.0, 200.0]).build_ui(|ui| paint(ui, &histogram, 0.0));
+        let place = harness.get_by_label_contains("Histogram:").rect();
+        let mut curves = 0;
+        for clipped in &harness.output().shapes {
+            if let Shape::Path(path) = &clipped.shape
+                && path.points.len() > 20
+            {
+                let curve = Rect::from_points(&path.points);
+                let (left, right) = (curve.left() - place.left(), curve.right() - place.right());
+                assert!(left.abs() < 0.1 && right.abs() < 0.1, "{curve} in {place}");
+                curves += 1;
+            }
+        }
+        assert_eq!(curves, 3);
+    }
 }

@@ -60,3 +60,17 @@ fn a_click_reaches_its_slot_although_another_one_goes() {
     assert!(harness.state().slot(SlotNumber::ALL[0]).is_none());
     assert!(harness.query_by_label_contains("Go on from the slot").is_some());
 }
+
+#[test]
+fn a_button_of_a_slot_gives_the_picture_the_slots_size() {
+    let mut harness = open("--stage glass-schlick --size 32x18 --samples 4");
+    until(&mut harness, "the end", |window| has_samples(4)(window) && window.status().phase.is_over());
+    let one = SlotNumber::ALL[0];
+    send(&mut harness, Command::Slot(SlotCommand::KeepIn(one)));
+    until(&mut harness, "a kept picture", |window| window.slot(one).is_some());
+    harness.state_mut().document_mut().give_size([40, 18]);
+    harness.run_steps(3);
+    harness.get_by_label("Set the picture to the size of slot 1").click_accesskit();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().size(), [32, 18]);
+}

@@ -5,6 +5,7 @@ use eframe::egui::{self, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Device, SlotCommand, Window};
+use weekender::stages::Stage;
 
 #[test]
 fn every_command_is_carried_out_or_says_why_not() {
@@ -190,6 +191,20 @@ fn every_command_does_what_it_says() {
         harness.step();
         assert!(is_done(command, &before, &mut harness), "{command:?}");
     }
+}
+
+#[test]
+fn the_book_is_opened_at_the_section_of_the_stage() {
+    let mut harness = open(SMALL);
+    harness.state_mut().send(Command::Book);
+    harness.step();
+    let opened = harness.output().platform_output.commands.iter().find_map(|output| match output {
+        egui::OutputCommand::OpenUrl(opened) => Some(opened.url.clone()),
+        _ => None,
+    });
+    let url = Stage::find("glass-schlick").unwrap().url();
+    assert!(harness.state().messages().contains(&format!("Opening {url}")));
+    assert_eq!(opened, Some(url));
 }
 
 #[test]

@@ -287,6 +287,8 @@ fn a_changed_scene_is_saved_opened_and_copied_as_a_command() {
             panic!("{line}")
         };
         assert_eq!(options.renders[0].job, harness.state().document().job(1).unwrap(), "{line}");
+        let told = harness.state().messages();
+        assert!(told.iter().all(|text| !text.contains("save the scene file")), "{told:?}");
     }
     // Changed again, it is in no file.
     send(&mut harness, Command::DuplicateSphere);
@@ -327,4 +329,16 @@ fn a_sphere_among_very_many_is_edited() {
         send(&mut harness, Command::Undo);
     }
     assert_eq!(harness.state().document().job(1).unwrap(), before);
+}
+
+#[test]
+fn a_button_brings_the_spheres_of_the_stage_back() {
+    let mut harness = opened();
+    let before = spheres(&harness);
+    send(&mut harness, Command::AddSphere);
+    assert_eq!(spheres(&harness).len(), before.len() + 1);
+    harness.get_by_label("Reset the scene").click_accesskit();
+    harness.run_steps(3);
+    assert_eq!(spheres(&harness), before);
+    assert!(harness.query_by_label("Reset the scene").is_none());
 }

@@ -154,6 +154,9 @@ fn a_picture_of_another_program_is_checked() {
     assert!(words.contains("normals, section 6.1") && words.contains("a mistake: "), "{words}");
     harness.run_steps(3);
     assert!(harness.query_by_label_contains("difference").is_some());
+    harness.get_by_label("Close window").click();
+    harness.run_steps(3);
+    assert!(harness.state().finding().is_none());
 }
 
 #[test]
@@ -195,4 +198,28 @@ fn an_identical_film_is_said_to_be_identical() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     assert!(!painted(&harness, "identical to the bit"));
+}
+
+#[test]
+fn the_box_for_a_files_name_can_be_cancelled() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    send(&mut harness, Command::Save(OutputFormat::Png));
+    harness.run_steps(2);
+    assert!(harness.state().has_dialog());
+    harness.get_by_label("Cancel").click();
+    harness.run_steps(3);
+    assert!(!harness.state().has_dialog());
+}
+
+#[test]
+fn what_a_drop_opens_is_told_while_a_file_is_over_the_window() {
+    let mut harness = open(SMALL);
+    let file = egui::HoveredFile { path: Some("scenes/mine.toml".into()), mime: String::new() };
+    harness.input_mut().hovered_files.push(file);
+    harness.step();
+    assert!(painted(&harness, "Drop to open mine.toml"));
+    harness.input_mut().hovered_files.clear();
+    harness.step();
+    assert!(!painted(&harness, "Drop to open"));
 }

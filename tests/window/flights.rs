@@ -64,6 +64,23 @@ fn a_bookmark_is_flown_to_in_one_undo_step() {
 }
 
 #[test]
+fn a_path_through_what_it_looks_at_is_told_of() {
+    let mut harness = open("--stage view-distant --size 64x36");
+    until(&mut harness, "a picture", has_samples(1));
+    let Camera { look_from, look_at, .. } = camera(&harness);
+    for eye in [look_from, look_at * 2.0 - look_from] {
+        harness.state_mut().document_mut().camera.look_from = eye;
+        harness.run_steps(2);
+        send(&mut harness, Command::AddBookmark);
+    }
+    send(&mut harness, Command::FlyBookmarks);
+    let told = harness.state().messages();
+    let part = "of the path cannot be rendered";
+    let words = told.iter().find(|text| text.contains(part)).unwrap_or_else(|| panic!("{told:?}"));
+    assert!(words.starts_with("Frame 30 ") && words.ends_with("add a bookmark before it"), "{words}");
+}
+
+#[test]
 fn any_input_ends_a_flight_where_it_is() {
     for is_key in [true, false] {
         let mut harness = bookmarked();

@@ -1,8 +1,8 @@
 //! The palette: what it finds first, and what it says about switches.
 
-use crate::common::{SMALL, has_samples, open, send, until};
+use crate::common::{SMALL, has_samples, hold, open, send, until};
 use eframe::egui::accesskit::Toggled;
-use eframe::egui::{Key, Modifiers, Role};
+use eframe::egui::{Key, Modifiers, Rect, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Show, SlotCommand, Theme, Window};
@@ -143,4 +143,71 @@ fn a_switch_whose_effect_is_not_seen_tells_it() {
     send(&mut harness, Command::Panels);
     send(&mut harness, Command::Gizmo);
     assert!(told(&harness, "Axes in the corner on"), "{:?}", harness.state().messages());
+}
+
+/// The rows of the open palette from the top, each with its text.
+fn rows(harness: &Harness<'_, Window>) -> Vec<(String, Rect)> {
+    let wide = harness.get_all_by_role(Role::Button).filter(|node| node.rect().width() > 300.0);
+    let mut rows: Vec<(String, Rect)> =
+        wide.filter_map(|node| Some((node.accesskit_node().label()?, node.rect()))).collect();
+    rows.sort_by(|(_, a), (_, b)| a.top().total_cmp(&b.top()));
+    rows
+}
+
+#[test]
+fn the_arrow_keys_choose_a_row() {
+    let mut harness = opened();
+    let names = found(&mut harness, "theme");
+    let (up, down) = (Key::ArrowUp, Key::ArrowDown);
+    assert_eq!(names.len(), 3, "{names:?}");
+    for (keys, expected) in
+        [(vec![down], 1), (vec![down, down, up], 1), (vec![up], 0), (vec![down, down, down, down], 2)]
+    {
+        type_into_palette(&mut harness, "theme");
+        keys.iter().for_each(|key| harness.key_press(*key));
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        let performed = harness.state().performed().map(Command::name);
+        assert_eq!(performed.as_ref(), Some(&names[expected]), "{keys:?}");
+        assert!(!harness.state().has_dialog());
+    }
+}
+
+#[test]
+fn the_chosen_row_stays_in_sight() {
+    let mut harness = opened();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+    harness.run_steps(3);
+    let edit = harness.get_by_label("Command").rect();
+    let is_seen = |row: &Rect| row.top() > edit.bottom() && row.bottom() < edit.bottom() + 390.0;
+    let rows_at_first = rows(&harness);
+    let (name, row) = &rows_at_first[30];
+    assert!(!is_seen(row), "{name} {row}");
+    for _ in 0..30 {
+        harness.key_press(Key::ArrowDown);
+    }
+    harness.run_steps(90);
+    let rows = rows(&harness);
+    let (_, row) = rows.iter().find(|(other, _)| other == name).unwrap();
+    assert!(is_seen(row), "{name} {row}");
+}
+
+#[test]
+fn a_row_under_the_pointer_is_explained_and_clicked() {
+    let mut harness = opened();
+    type_into_palette(&mut harness, "zoom");
+    let is_explained =
+        |harness: &Harness<'_, Window>| harness.query_by_label(Command::ZoomOut.help()).is_some();
+    assert!(!is_explained(&harness), "another row is chosen");
+    let name = Command::ZoomOut.name();
+    let (_, row) = rows(&harness).into_iter().find(|(text, _)| text.starts_with(&name)).unwrap();
+    harness.hover_at(row.center());
+    harness.run_steps(2);
+    assert!(is_explained(&harness));
+    for pressed in [true, false] {
+        hold(&mut harness, row.center(), pressed);
+    }
+    harness.run_steps(2);
+    assert_eq!(harness.state().performed(), Some(Command::ZoomOut));
+    assert!(!harness.state().has_dialog());
 }

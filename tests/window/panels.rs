@@ -1,6 +1,6 @@
 //! Every control of the panels.
 
-use crate::common::{SMALL, control, has_samples, open, send, until};
+use crate::common::{SMALL, control, has_samples, open, painted, send, until};
 use eframe::egui::{self, Key};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::{Harness, Node};
@@ -266,6 +266,8 @@ fn a_packet_takes_fewer_steps_with_refill() {
     let [plain, refilled] = harness.state().packet_steps().expect("recorded");
     assert!(refilled > 0 && refilled < plain, "{refilled} {plain}");
     assert!(harness.query_by_label_contains(&format!("{refilled} steps")).is_some());
+    let heading = format!("With refill, a lane starts its next path at once: {refilled} steps");
+    assert!(painted(&harness, &heading));
     harness.state_mut().document_mut().settings.max_depth = 1;
     until(&mut harness, "a packet of camera rays", |window| {
         window.packet_steps().is_some_and(|[plain, refilled]| plain == refilled)
@@ -273,4 +275,28 @@ fn a_packet_takes_fewer_steps_with_refill() {
     send(&mut harness, Command::Packet);
     harness.run_steps(2);
     assert!(harness.state().packet_steps().is_none());
+}
+
+#[test]
+fn the_lanes_and_the_code_have_buttons_that_close_them() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    for (command, close) in [(Command::Packet, "Close"), (Command::Code, "Close window")] {
+        send(&mut harness, command);
+        harness.run_steps(5);
+        harness.get_by_label(close).click();
+        harness.run_steps(5);
+        assert!(harness.query_by_label(close).is_none(), "{command:?}");
+        let remembered = harness.state_mut().remembered_mut();
+        assert!(!remembered.has_packet && !remembered.has_code, "{command:?}");
+    }
+}
+
+#[test]
+fn a_button_copies_the_picture_as_a_command() {
+    let mut harness = open(SMALL);
+    until(&mut harness, "a picture", has_samples(1));
+    control(&harness, "Copy as command").click_accesskit();
+    harness.run_steps(3);
+    assert_eq!(harness.state().performed(), Some(Command::CopyCommand));
 }

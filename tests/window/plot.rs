@@ -146,3 +146,16 @@ fn a_render_goes_on_to_the_next_round_error() {
     assert_eq!(harness.state().status().run, run, "the same film");
     assert!(harness.state().status().error.unwrap().rmse <= next);
 }
+
+#[test]
+fn the_buttons_of_the_plot_copy_and_save_its_points() {
+    let mut harness = open("--scene three-spheres --size 64x36 --device cpu --samples 16");
+    send(&mut harness, Command::Plot);
+    until(&mut harness, "the end", |window| window.status().phase.is_over());
+    harness.run_steps(2);
+    for (label, command) in [("Copy data", Command::CopyPlot), ("Save data…", Command::SavePlot)] {
+        harness.get_by_label(label).click_accesskit();
+        harness.run_steps(3);
+        assert_eq!(harness.state().performed(), Some(command));
+    }
+}

@@ -73,6 +73,9 @@ fn captions_are_legible_on_every_screen() {
             harness.run_steps(2);
             let texts = drawn(&harness);
             let screen = Rect::from_min_size(egui::Pos2::ZERO, size.into());
+            for heading in ["What is new", "Look for"] {
+                assert!(texts.iter().any(|(drawn, ..)| drawn == heading), "{} at {size:?}", stage.id);
+            }
             for (text, least) in [
                 (stage.title, 0.045),
                 (stage.section, 0.045),

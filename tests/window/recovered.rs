@@ -1,14 +1,18 @@
 //! What a window does with what others have left: several offers, and what it closes over.
 
 use crate::common::{has_samples, opened, save, send, until};
-use crate::session::{ENDLESS, SOON, close, files, kept_in, options, until_film, until_offered, window};
+use crate::session::{
+    ENDLESS, SOON, close, files, held, kept_in, options, until_film, until_offered, window,
+};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 use weekender::app::{Command, Window};
 use weekender::film::{checkpoint, key};
 use weekender::output::OutputFormat;
+use weekender::recipe::file;
 use weekender::stages::Stage;
 
 const LONG: Duration = Duration::from_secs(3600);
@@ -58,6 +62,111 @@ fn a_changed_picture_is_offered_once_with_its_film() {
     until(&mut next, "its samples", has_samples(1));
     next.run_steps(3);
     assert!(!next.state().has_offer(), "its note is not a second offer");
+}
+
+/// The only film that was left, and its samples per pixel.
+fn left_film(state: &Path) -> (PathBuf, u64) {
+    let [film] = files(state, "exr").try_into().unwrap();
+    let samples = checkpoint::load(&film).unwrap().film.sample_count();
+    (film, samples)
+}
+
+#[test]
+fn a_film_is_opened_without_a_note_of_another_picture() {
+    let state = tempfile::tempdir().unwrap();
+    leave_film(state.path(), ENDLESS);
+    let (film, samples) = left_film(state.path());
+    let note = film.with_extension("json");
+    let text = fs::read_to_string(&note).unwrap().replace("glass-schlick", "metal");
+    fs::write(&note, text.replace("\"is_changed\": false", "\"is_changed\": true")).unwrap();
+    let mut next = kept_in(state.path(), "--stage sky --size 32x18", LONG);
+    until_offered(&mut next);
+    assert!(!has(&next, "changed camera"));
+    next.get_by_label_contains("Open 11.4").click();
+    until(&mut next, "the picture", |window| window.document().stage().unwrap().id == "glass-schlick");
+    until(&mut next, "its film", |window| held(window) == samples);
+    next.run_steps(3);
+    assert!(
+        next.state().has_offer() && has(&next, "changed camera"),
+        "the noted picture can still be opened"
+    );
+}
+
+#[test]
+fn a_film_that_cannot_be_moved_goes_on_and_stays_where_it_is() {
+    let state = tempfile::tempdir().unwrap();
+    leave_film(state.path(), ENDLESS);
+    let (film, samples) = left_film(state.path());
+    let mut next = kept_in(state.path(), "--stage sky --size 32x18", LONG);
+    until_offered(&mut next);
+    let locks = files(state.path(), "lock");
+    let own = locks.iter().find(|lock| **lock != film.with_extension("lock")).unwrap();
+    fs::create_dir_all(own.with_extension("exr").join("full")).unwrap();
+    next.get_by_label_contains("Open 11.4").click();
+    let told = format!("{} stays where it is: ", film.display());
+    until(&mut next, &told, |window| window.messages().iter().any(|text| text.starts_with(&told)));
+    until(&mut next, "its film", |window| held(window) == samples);
+    assert!(film.exists());
+}
+
+#[test]
+fn a_picture_under_the_name_of_a_film_is_not_opened() {
+    let state = tempfile::tempdir().unwrap();
+    leave_film(state.path(), ENDLESS);
+    let (film, _) = left_film(state.path());
+    let mut next = kept_in(state.path(), "--stage sky --size 32x18", LONG);
+    until_offered(&mut next);
+    until(&mut next, "a picture", has_samples(1));
+    let picture = state.path().join("mine.png");
+    save(&mut next, Command::Save(OutputFormat::Png), &picture);
+    fs::copy(&picture, &film).unwrap();
+    next.get_by_label_contains("Open 11.4").click();
+    let told = format!("Not opened: {} holds no picture", film.display());
+    until(&mut next, &told, |window| window.messages().contains(&told));
+    assert_eq!(next.state().document().stage().unwrap().id, "sky");
+}
+
+#[test]
+fn a_scene_whose_file_is_gone_is_shown_as_it_was() {
+    let state = tempfile::tempdir().unwrap();
+    let scene = state.path().join("mine.toml");
+    fs::write(&scene, file::to_toml(&Stage::find("metal").unwrap().recipe())).unwrap();
+    let arguments = format!("--scene {} --size 32x18 --samples 4 --device cpu", scene.display());
+    let first = kept_in(&state.path().join("kept"), &arguments, LONG);
+    let mine = first.state().document().job(1).unwrap();
+    close(first);
+    fs::remove_file(&scene).unwrap();
+    let next = kept_in(&state.path().join("kept"), "", LONG);
+    assert!(next.state().document().job(1).unwrap() == mine);
+    let told = next.state().messages();
+    assert!(told.iter().any(|text| text.ends_with("; this is the scene as it was")), "{told:?}");
+}
+
+#[test]
+fn what_cannot_be_written_is_told_and_rendering_goes_on() {
+    for (ending, told) in [("exr", "Not autosaved: "), ("json", "What this window shows is not kept: ")] {
+        let state = tempfile::tempdir().unwrap();
+        let window = Window::new(options(ENDLESS, state.path(), SOON), None).unwrap();
+        let [lock] = files(state.path(), "lock").try_into().unwrap();
+        // Nothing can be written where a folder is.
+        fs::create_dir_all(lock.with_extension(ending).join("full")).unwrap();
+        let mut harness = opened(window);
+        until(&mut harness, told, |window| window.messages().iter().any(|text| text.starts_with(told)));
+        let samples = harness.state().status().samples_per_pixel;
+        until(&mut harness, "more samples", |window| window.status().samples_per_pixel > samples);
+    }
+}
+
+#[test]
+fn a_window_that_is_closed_before_its_film_was_read_leaves_it_with_its_picture() {
+    let state = tempfile::tempdir().unwrap();
+    let mut first = window(state.path(), ENDLESS);
+    until_film(&mut first, state.path());
+    close(first);
+    Window::new(options("", state.path(), SOON), None).unwrap().end_in_order();
+    assert!(state.path().join("session.exr").exists());
+    let note = fs::read_to_string(state.path().join("session.json")).unwrap();
+    assert!(note.contains("\"has_film\": true"), "{note}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::common::{drag_from, has_samples, middle, opened, save, send, until};
 use crate::remembered::Storage;
 use eframe::App;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -39,7 +39,7 @@ pub fn window(state: &Path, arguments: &str) -> Harness<'static, Window> {
 /// Closes the window as eframe does.
 pub fn close(mut harness: Harness<'_, Window>) {
     harness.state_mut().save(&mut Storage::default());
-    harness.state_mut().end_in_order();
+    harness.state_mut().on_exit(None);
 }
 
 /// The files of this ending, by name.
@@ -71,7 +71,7 @@ fn film_of(path: &Path) -> Film {
 }
 
 /// Samples per pixel that the film held when the render began.
-fn held(window: &Window) -> u64 {
+pub fn held(window: &Window) -> u64 {
     let added: u64 = window.status().contributions.iter().map(|part| part.samples_per_pixel).sum();
     window.status().samples_per_pixel.saturating_sub(added)
 }
@@ -173,6 +173,7 @@ fn a_damaged_film_is_named_and_not_opened() {
     next.run_steps(3);
     assert!(next.state().has_offer() && film.exists(), "it is not lost silently");
     assert!(next.query_all_by_label_contains("is damaged").next().is_some());
+    assert!(next.get_by_label_contains("Open 11.4").accesskit_node().is_disabled(), "it would fail again");
 }
 
 #[test]

@@ -57,6 +57,23 @@ fn every_stage_shows_what_to_look_for_and_escape_returns() {
 }
 
 #[test]
+fn a_sight_ends_when_undo_returns_to_another_stage() {
+    let mut harness = open("--stage glass-schlick");
+    until(&mut harness, "a picture", has_samples(1));
+    let fitting = harness.state().picture_rect();
+    send(&mut harness, Command::PreviousStage);
+    assert_ne!(harness.state().document().stage().unwrap().id, "glass-schlick");
+    send(&mut harness, Command::ShowMe);
+    assert!(harness.state().has_sight());
+    send(&mut harness, Command::Undo);
+    assert_eq!(harness.state().document().stage().unwrap().id, "glass-schlick");
+    assert!(!harness.state().has_sight() && !harness.state().is_comparing());
+    assert_eq!(harness.state().show(), Show::Picture);
+    harness.run_steps(4);
+    assert_eq!(harness.state().picture_rect(), fitting);
+}
+
+#[test]
 fn a_sight_ends_with_its_stage_and_with_its_view() {
     let mut harness = open("--stage glass-refract");
     until(&mut harness, "a picture", has_samples(1));

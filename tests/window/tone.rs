@@ -1,7 +1,7 @@
 //! Exposure, luminance in false colours, and the histogram.
 
 use crate::common::{SMALL, control, open, save, send, until};
-use eframe::egui::vec2;
+use eframe::egui::{Shape, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Show, Window};
@@ -42,6 +42,11 @@ fn exposure_is_seen_but_not_saved() {
     }
     until(&mut harness, "a darker picture", |window| window.shown_pixel(AT) == Some(seen(-1.5)));
     assert!(seen(-1.5)[2] < seen(0.0)[2]);
+    let badge = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+        Shape::Text(text) if text.galley.text() == "exposure -1.5 stops" => Some(text.visual_bounding_rect()),
+        _ => None,
+    });
+    assert!(harness.state().picture_rect().contains_rect(badge.unwrap()), "{badge:?}");
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("saved.png");
     save(&mut harness, Command::Save(OutputFormat::Png), &path);

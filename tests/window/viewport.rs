@@ -102,6 +102,20 @@ fn the_picture_follows_a_shift_drag() {
 }
 
 #[test]
+fn the_pointer_grabs_a_picture_that_it_moves() {
+    let mut harness = open("--stage view-distant --size 64x36");
+    until(&mut harness, "a picture", has_samples(1));
+    let pos = middle(&harness);
+    let (button, modifiers) = (PointerButton::Middle, Modifiers::NONE);
+    harness.event(egui::Event::PointerMoved(pos));
+    harness.event(egui::Event::PointerButton { pos, button, pressed: true, modifiers });
+    harness.event(egui::Event::PointerMoved(pos + egui::vec2(30.0, 0.0)));
+    harness.event(egui::Event::PointerMoved(pos + egui::vec2(60.0, 0.0)));
+    harness.step();
+    assert_eq!(harness.output().platform_output.cursor_icon, egui::CursorIcon::Grabbing);
+}
+
+#[test]
 fn ctrl_and_the_wheel_zoom_at_the_pointer() {
     let mut harness = open("--stage view-distant --size 64x36");
     until(&mut harness, "a picture", has_samples(1));
@@ -271,6 +285,26 @@ fn views_are_shown_and_follow_the_camera() {
 }
 
 #[test]
+fn the_inspector_tells_what_a_view_shows() {
+    let mut harness = open("--stage defocus --size 64x36");
+    until(&mut harness, "a picture", has_samples(2));
+    let at = middle(&harness);
+    harness.event(egui::Event::PointerMoved(at));
+    until(&mut harness, "the pixel's value", |window| window.inspected().is_some());
+    let views = [(Show::Normals, "normal"), (Show::Albedo, "albedo"), (Show::Bounces, "rays/path")];
+    let is_told =
+        |harness: &Harness<'_, Window>, name: &str| harness.query_all_by_label(name).next().is_some();
+    for (show, name) in views {
+        send(&mut harness, Command::Show(show));
+        until(&mut harness, "sixteen samples", |window| window.layer_samples() == 16);
+        harness.run_steps(2);
+        assert!(is_told(&harness, name), "{name}");
+    }
+    send(&mut harness, Command::Show(Show::Picture));
+    assert!(views.iter().all(|(_, name)| !is_told(&harness, name)));
+}
+
+#[test]
 fn the_menu_of_a_right_click_is_about_what_is_there() {
     let mut harness = open("--stage defocus");
     until(&mut harness, "a picture", has_samples(1));
@@ -285,6 +319,23 @@ fn the_menu_of_a_right_click_is_about_what_is_there() {
     assert_ne!(harness.state().document().camera.look_at, before.look_at);
     choose(&mut harness, "List the paths of this pixel");
     until(&mut harness, "sixteen paths", |window| window.listed_paths() == 16);
+}
+
+/// In a long frame, a key can be released before the click is handled.
+#[test]
+fn a_click_counts_with_the_keys_that_were_held_then() {
+    let mut harness = open("--stage defocus");
+    until(&mut harness, "a picture", has_samples(1));
+    let before = harness.state().document().camera;
+    let pos = middle(&harness) + egui::vec2(40.0, -20.0);
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::COMMAND);
+    harness.event(egui::Event::PointerMoved(pos));
+    for pressed in [true, false] {
+        harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+    }
+    harness.run_steps(2);
+    assert_ne!(harness.state().document().camera.focus_distance, before.focus_distance);
+    assert_eq!(harness.state().selected(), None);
 }
 
 #[test]

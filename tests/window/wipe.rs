@@ -92,3 +92,15 @@ fn a_wipe_begins_where_the_stages_differ() {
     harness.run_steps(30);
     assert!((harness.state().divider() - 0.8).abs() < 0.02);
 }
+
+/// The sky is the same in both stages, so their difference is nothing there.
+#[test]
+fn the_difference_from_another_stage_is_shown_when_that_is_traced() {
+    let mut harness = open("--stage glass-schlick --size 32x18 --samples 16 --device cpu");
+    until(&mut harness, "the end", |window| has_samples(16)(window) && window.status().phase.is_over());
+    let sky = harness.state().shown_pixel([0, 0]).unwrap();
+    send(&mut harness, Command::WipeDifference);
+    until(&mut harness, "no sky", |window| window.shown_pixel([0, 0]).is_some_and(|colour| colour != sky));
+    send(&mut harness, Command::WipeDifference);
+    until(&mut harness, "the sky again", |window| window.shown_pixel([0, 0]) == Some(sky));
+}

@@ -157,11 +157,11 @@ impl PathBox {
 
     /// Selects the name without its ending, so that typing replaces it.
     fn select_stem(&self, ui: &Ui, id: egui::Id, mut state: egui::text_edit::TextEditState) {
-        let stem = self.text.rfind('.').unwrap_or(self.text.len());
         let start = self.text.rfind(['/', '\\']).map_or(0, |slash| slash + 1);
+        let stem = self.text[start..].rfind('.').map_or(self.text.len(), |dot| start + dot);
         let letters = |end: usize| self.text[..end].chars().count();
         let cursor = |at: usize| egui::text::CCursor::new(letters(at));
-        let range = egui::text::CCursorRange::two(cursor(start.min(stem)), cursor(stem));
+        let range = egui::text::CCursorRange::two(cursor(start), cursor(stem));
         state.cursor.set_char_range(Some(range));
         state.store(ui.ctx(), id);
     }
@@ -270,5 +270,23 @@ mod tests {
     fn the_name_of_a_scene_becomes_a_files() {
         let path_box = PathBox::new(Purpose::Save(OutputFormat::P6), "field:1000", Some(Path::new("out")));
         assert_eq!(PathBuf::from(&path_box.text), Path::new("out").join("field-1000.ppm"));
+    }
+
+    #[test]
+    fn the_name_is_selected_without_its_folder_and_ending() {
+        for (text, ends) in
+            [("out/a.b.png", [4, 7]), ("käse.png", [0, 4]), ("out.d/a", [6, 7]), ("out.d/", [6, 6])]
+        {
+            let path_box = PathBox::of(Purpose::Open, Path::new(text));
+            let mut selected = None;
+            let _ = egui::Context::default().run_ui(egui::RawInput::default(), |ui| {
+                let id = egui::Id::unique("name");
+                path_box.select_stem(ui, id, egui::text_edit::TextEditState::default());
+                let state = egui::text_edit::TextEditState::load(ui.ctx(), id).unwrap();
+                selected = state.cursor.char_range();
+            });
+            let [from, to] = ends.map(|end: usize| egui::text::CCursor::new(end));
+            assert_eq!(selected, Some(egui::text::CCursorRange::two(from, to)), "{text}");
+        }
     }
 }

@@ -31,3 +31,26 @@ fn start() -> Option<Sender<Work>> {
     let work = move || orders.iter().for_each(|work| work());
     std::thread::Builder::new().name("slots".to_owned()).spawn(work).is_ok().then_some(sender)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::thread;
+
+    /// The thread that does the next piece of work.
+    fn worker(of: &KeptThread) -> thread::ThreadId {
+        let (answer, answers) = channel();
+        of.run(move || answer.send(thread::current().id()).unwrap());
+        answers.recv().unwrap()
+    }
+
+    #[test]
+    fn work_is_done_here_if_the_thread_is_gone() {
+        let here = thread::current().id();
+        assert_ne!(worker(&KeptThread::default()), here);
+        let (gone, _) = channel::<Work>();
+        for sender in [None, Some(gone)] {
+            assert_eq!(worker(&KeptThread { sender: sender.into() }), here);
+        }
+    }
+}

@@ -78,6 +78,7 @@ mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
     use crate::cli::{Request, parse};
+    use crate::recipe::Recipe;
     use crate::render::RenderJob;
     use crate::scene::Camera;
     use crate::stages::Stage;
@@ -121,6 +122,28 @@ mod tests {
                 assert_eq!((theirs.settings(), theirs.rules()), (mine.settings(), mine.rules()), "{line}");
             }
         }
+    }
+
+    #[test]
+    fn a_built_in_scene_is_named_until_it_is_changed() {
+        let origin = Origin::new(Recipe::builtin("book").unwrap(), Source::Builtin);
+        let mut document = Document::new(origin);
+        let line = document.command_line(4, "cpu", None);
+        assert!(line.starts_with("weekender --batch --scene=book --samples=4 "), "{line}");
+        assert_eq!(job_of(&line), document.job(1).unwrap());
+        document.checked = Document::new(Origin::of_stage(&Stage::ALL[0])).checked;
+        let line = document.command_line(4, "cpu", None);
+        assert!(line.starts_with("weekender --batch --scene=book-changed.toml --size="), "{line}");
+    }
+
+    #[test]
+    fn the_command_names_a_device_other_than_the_cpu() {
+        let document = Document::new(Origin::of_stage(&Stage::ALL[0]));
+        let line = |device, adapter| document.command_line(4, device, adapter);
+        let cpu = line("cpu", None);
+        assert!(!cpu.contains("--device") && !cpu.contains("--adapter"), "{cpu}");
+        let gpu = line("gpu", Some("llvmpipe (LLVM)"));
+        assert!(gpu.contains(" --device=gpu --adapter=") && gpu.contains("llvmpipe (LLVM)"), "{gpu}");
     }
 
     #[test]

@@ -159,6 +159,17 @@ mod tests {
     }
 
     #[test]
+    fn the_names_of_further_materials_are_numbered_on() {
+        let mut scene = scene();
+        assert_eq!(free_name(&scene, "glass-2"), "glass-2");
+        scene.add_material("glass-2", METAL);
+        assert_eq!(free_name(&scene, "glass-2"), "glass-3");
+        assert_eq!(free_name(&scene, "glass"), "glass-3");
+        scene.add_material("dark-blue", METAL);
+        assert_eq!(free_name(&scene, "dark-blue"), "dark-blue-2", "a word is no number");
+    }
+
+    #[test]
     fn spheres_are_added_copied_and_deleted() {
         let before = scene();
         let body = Body { center: DVec3::Z, radius: 0.25, material: METAL };
@@ -173,7 +184,9 @@ mod tests {
         fewer.validate().unwrap();
         assert_eq!((selected, fewer.materials.len()), (None, 1));
         assert_eq!(Body::of(&fewer, 0), Body::of(&before, 1));
-        assert_eq!(Edit::Delete(9).apply(&before), (before.clone(), None));
+        for beyond in [3, 9] {
+            assert_eq!(Edit::Delete(beyond).apply(&before), (before.clone(), None));
+        }
         assert_eq!(Edit::Change(9, body).apply(&before), (before, None));
     }
 

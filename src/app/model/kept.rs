@@ -29,7 +29,7 @@ impl Thumbnail {
         let divisor = f64::from(full[0].max(full[1])) / f64::from(Self::SIDE);
         let size = full.map(|length| ((f64::from(length) / divisor.max(1.0)).round() as u32).max(1));
         let transfer = document.rules().transfer;
-        let mut rgb8 = Vec::with_capacity(3 * size[0] as usize * size[1] as usize);
+        let mut rgb8 = Vec::new();
         // The pixels that are looked at for pixel `at` of the thumbnail along an axis.
         let taps = |at: u32, axis: usize| {
             let edge = |at: u32| u64::from(at) * u64::from(full[axis]) / u64::from(size[axis]);

@@ -3,6 +3,7 @@
 
 pub mod checked;
 pub mod command_line;
+pub mod companion;
 pub mod crop;
 pub mod device;
 pub mod document;

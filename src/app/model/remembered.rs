@@ -188,6 +188,15 @@ mod tests {
         assert_eq!(mended.bookmarks[0].camera(), Camera::BOOK);
     }
 
+    #[test]
+    fn a_device_that_this_machine_lacks_becomes_the_cpu() {
+        for device in Device::ALL {
+            let mended = Remembered { device, ..Remembered::default() }.mended();
+            let expected = if device.unavailable().is_some() { Device::Cpu } else { device };
+            assert_eq!(mended.device, expected);
+        }
+    }
+
     #[cfg(unix)]
     #[test]
     fn a_directory_that_is_not_unicode_does_not_keep_settings_from_being_stored() {

@@ -352,6 +352,15 @@ mod tests {
     }
 
     #[test]
+    fn what_is_replaced_does_not_come_back_if_there_is_no_room_for_both() {
+        let mut slots = with(&[ONE]);
+        let (name, id, size) = ("large".to_owned(), "1".to_owned(), [20_000, 10_000]);
+        slots.expect(TWO, Coming { name, id, size, samples: 1, has_own_size: true });
+        slots.put(ONE, slot(film(4, 2, 2)));
+        assert_eq!(slots.gone(), None);
+    }
+
+    #[test]
     fn pictures_get_the_size_of_those_in_the_slots() {
         let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
         for size in [[1037, 583], [333, 187], [640, 360], [1, 1]] {

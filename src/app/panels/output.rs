@@ -98,3 +98,22 @@ fn size(ui: &mut Ui, document: &mut Document) {
     });
     ui.add_space(5.0);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::stages::Stage;
+
+    #[test]
+    fn a_reset_brings_back_the_size_of_a_picture_that_keeps_its_own() {
+        let mut document = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
+        let size = document.size();
+        assert!(!is_changed(&document));
+        document.give_size([5, 4]);
+        assert!(is_changed(&document));
+        reset(&mut document);
+        assert_eq!(document.size(), size);
+        assert!(!is_changed(&document));
+    }
+}

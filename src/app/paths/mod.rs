@@ -163,6 +163,8 @@ fn at_same_place(pixel: [u32; 2], [before, after]: [[u32; 2]; 2]) -> [u32; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::stages::Stage;
 
     #[test]
     fn a_place_is_found_again_at_another_size() {
@@ -170,5 +172,20 @@ mod tests {
         assert_eq!(at_same_place([31, 0], [[32, 18], [320, 180]]), [315, 5]);
         assert_eq!(at_same_place([315, 5], [[320, 180], [32, 18]]), [31, 0]);
         assert_eq!(at_same_place([31, 17], [[32, 18], [1, 1]]), [0, 0]);
+    }
+
+    #[test]
+    fn paths_that_were_forgotten_meanwhile_are_not_listed() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut paths = Paths::default();
+        for is_forgotten in [true, false] {
+            paths.list(&document, [3, 2], &egui::Context::default());
+            if is_forgotten {
+                paths.forget();
+            }
+            let listed = paths.answers.wait().unwrap();
+            paths.learn(listed);
+            assert_eq!(paths.len(), if is_forgotten { 0 } else { 16 });
+        }
     }
 }

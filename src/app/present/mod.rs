@@ -102,7 +102,7 @@ impl Presenter {
 }
 
 fn whole(points: f32) -> i8 {
-    points.round().clamp(0.0, 127.0) as i8
+    points.round() as i8
 }
 
 fn bottom(name: &'static str, height: f32) -> Panel {

@@ -248,6 +248,19 @@ mod tests {
     }
 
     #[test]
+    fn a_film_that_takes_long_to_write_is_waited_for() {
+        let mut autosave = Autosave::new(Duration::ZERO);
+        let (sender, outcome) = channel();
+        let document = Document::new(Origin::usual());
+        autosave.under_way = Some(UnderWay { document, begun: Instant::now(), outcome });
+        assert_eq!(autosave.take_outcome(), None);
+        assert!(autosave.under_way.is_some() && autosave.saved().is_none());
+        sender.send(Ok(7)).unwrap();
+        assert_eq!(autosave.take_outcome(), None);
+        assert_eq!((autosave.under_way.is_some(), autosave.saved().unwrap().samples), (false, 7));
+    }
+
+    #[test]
     fn the_same_fault_is_told_once() {
         let mut autosave = Autosave::new(Duration::ZERO);
         let mut tell = |outcome: Result<u64, &str>| {

@@ -10,16 +10,13 @@ use super::turn::turn;
 use crate::app::model::session::Session;
 use crate::app::slot_files::Folder;
 use crate::files::{check_writable, read, write_text};
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 /// The name of the files that a window leaves when it is closed in order.
 const SESSION: &str = "session";
-
-/// On file systems without locks, files that have not changed for this long are nobody's.
-const OLD: Duration = Duration::from_secs(24 * 3600);
 
 /// The longest note that is read, in bytes.
 const NOTE_LIMIT: u64 = 256 << 20;
@@ -55,7 +52,7 @@ impl RecoveryFiles {
                 continue;
             }
             match OpenOptions::new().write(true).create_new(true).open(&paths.lock) {
-                Ok(file) if is_ours(&file, &paths, true) => {
+                Ok(file) if paths.are_ours(&file.try_lock(), true) => {
                     // This also removes the unfinished files of killed windows.
                     check_writable(&paths.film).map_err(|error| error.to_string())?;
                     return Ok(RecoveryFiles { directory: directory.to_owned(), paths, _lock: file });
@@ -95,7 +92,7 @@ impl RecoveryFiles {
     fn take_over(directory: &Path, name: &str) -> Option<RecoveryFiles> {
         let paths = Paths::of(directory, name);
         let file = OpenOptions::new().write(true).create(true).truncate(false).open(&paths.lock).ok()?;
-        if !is_ours(&file, &paths, false) {
+        if !paths.are_ours(&file.try_lock(), false) {
             return None;
         }
         // If there is nothing else, dropping it removes the lock.
@@ -257,19 +254,6 @@ fn free(directory: &Path) -> io::Result<Paths> {
     Paths::new(directory).find(is_free).ok_or_else(|| io::Error::other("all names are taken"))
 }
 
-/// Takes the lock. Whoever looks for files that were left takes each lock for a moment, and deletes it if there are no
-/// other files.
-fn is_ours(file: &File, paths: &Paths, is_new: bool) -> bool {
-    match file.try_lock() {
-        Ok(()) => paths.lock.exists(),
-        Err(TryLockError::WouldBlock) => false,
-        Err(TryLockError::Error(_)) => {
-            let age = paths.changed().and_then(|changed| changed.elapsed().ok());
-            is_new || age.is_some_and(|age| age > OLD)
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -369,10 +353,11 @@ mod tests {
     #[test]
     fn a_film_is_set_aside() {
         let directory = tempfile::tempdir().unwrap();
-        let files = RecoveryFiles::claim(directory.path()).unwrap();
+        let [files, other] = [(); 2].map(|()| RecoveryFiles::claim(directory.path()).unwrap());
         write(&files, "mine", Some("film"));
         let aside = files.set_film_aside().unwrap();
         assert!(aside.exists() && !files.has_film());
+        assert_ne!(aside, other.film(), "that name is another window's");
         let [left] = RecoveryFiles::left_in(directory.path()).try_into().unwrap();
         assert_eq!(left.film(), aside);
         files.take_film(&left).unwrap();

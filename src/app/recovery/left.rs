@@ -235,6 +235,24 @@ mod tests {
     }
 
     #[test]
+    fn a_film_that_is_not_of_the_noted_picture_is_offered_by_itself() {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("window-1-1.exr"), "a film").unwrap();
+        let note = directory.path().join("window-1-1.json");
+        std::fs::write(&note, r#"{ "title": "x", "is_changed": true, "has_film": true }"#).unwrap();
+        let [mut left] = Left::all_in(directory.path()).try_into().ok().unwrap();
+        let parts = |left: &Left| left.rows().map(|row| row.part).collect::<Vec<_>>();
+        assert_eq!(parts(&left), [Part::Film]);
+        left.separate();
+        assert_eq!(parts(&left), [Part::Film, Part::Picture]);
+        left.settle(Part::Film);
+        assert!(note.exists(), "the picture is still to be opened");
+        drop(left);
+        let [left] = Left::all_in(directory.path()).try_into().ok().unwrap();
+        assert_eq!(parts(&left), [Part::Picture]);
+    }
+
+    #[test]
     fn the_newest_files_come_first() {
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);

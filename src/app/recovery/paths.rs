@@ -1,16 +1,19 @@
 //! The names of the files that a window keeps for the next one.
 
 use crate::app::slot_files::Folder;
-use std::fs;
+use std::fs::{self, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 /// How all other names begin.
 pub const PREFIX: &str = "window-";
 
 /// The most names that are tried.
 const NAME_LIMIT: u32 = 1000;
+
+/// On file systems without locks, files that have not changed for this long are nobody's.
+const OLD: Duration = Duration::from_secs(24 * 3600);
 
 /// Film, note, lock and kept pictures of one name.
 #[derive(Debug)]
@@ -52,5 +55,37 @@ impl Paths {
     /// Errors of the file system.
     pub fn move_slots(&self, to: &Paths) -> io::Result<()> {
         if self.slots.exists() { fs::rename(self.slots.path(), to.slots.path()) } else { Ok(()) }
+    }
+
+    /// Whether an attempt to lock the files makes them this window's. Whoever looks for files that were left takes each
+    /// lock for a moment, and deletes it if there are no other files.
+    pub fn are_ours(&self, locked: &Result<(), TryLockError>, is_new: bool) -> bool {
+        match locked {
+            Ok(()) => self.lock.exists(),
+            Err(TryLockError::WouldBlock) => false,
+            Err(TryLockError::Error(_)) => {
+                let age = self.changed().and_then(|changed| changed.elapsed().ok());
+                is_new || age.is_some_and(|age| age > OLD)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::File;
+
+    #[test]
+    fn without_locks_only_old_files_are_nobodys() {
+        let directory = tempfile::tempdir().unwrap();
+        let paths = Paths::of(directory.path(), "window-1-1");
+        let locked = Err(TryLockError::Error(io::ErrorKind::Unsupported.into()));
+        assert!(paths.are_ours(&locked, true));
+        assert!(!paths.are_ours(&locked, false), "a window that has just begun has written nothing");
+        let film = File::create(&paths.film).unwrap();
+        assert!(!paths.are_ours(&locked, false), "its window may be running");
+        film.set_modified(SystemTime::now() - 2 * OLD).unwrap();
+        assert!(paths.are_ours(&locked, false));
     }
 }

@@ -229,7 +229,6 @@ impl Writer {
             Ok(bytes) => {
                 log::info!("kept picture: {} in {}", words(bytes), self.folder.film(&entry.id).display());
                 self.written.insert(entry.id.clone());
-                self.refused.remove(&entry.id);
                 self.has_told = false;
                 self.write_list(wishes);
                 self.news.give_one(News::Written(entry.id.clone()));

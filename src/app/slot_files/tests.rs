@@ -179,6 +179,39 @@ fn no_film_meets_the_description_of_another_wherever_writing_ends() {
 }
 
 #[test]
+fn two_pictures_of_one_slot_do_not_meet_there() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = folder(&directory);
+    let entries = ["metal", "glass-schlick"].map(|id| {
+        let kept = kept(of_stage(id), 2);
+        written(&folder, &kept);
+        let (number, name) = (Some(SlotNumber::ALL[2]), id.to_owned());
+        Entry { number, name, size: kept.size(), samples: 7, has_own_size: true, id: kept.id }
+    });
+    folder.write_list(&entries).unwrap();
+    let [first, second] = entries;
+    assert_eq!(folder.entries(), (vec![first, Entry { number: None, ..second }], vec![]));
+}
+
+#[test]
+fn a_picture_moves_with_its_note_or_not_at_all() {
+    let directory = tempfile::tempdir().unwrap();
+    let [mine, theirs] = ["window-1-1", "window-2-1"].map(|name| Folder::of(directory.path(), name));
+    let [whole, noteless, blocked] = ["metal", "sky", "defocus"].map(|id| kept(of_stage(id), 2));
+    for kept in [&whole, &noteless, &blocked] {
+        written(&theirs, kept);
+    }
+    std::fs::remove_file(theirs.note(&noteless.id)).unwrap();
+    std::fs::create_dir_all(mine.note(&blocked.id).join("full")).unwrap();
+    for (kept, is_taken) in [(&whole, true), (&noteless, true), (&blocked, false)] {
+        assert_eq!(mine.take(&theirs, &kept.id).is_ok(), is_taken);
+        let places = [&mine, &theirs].map(|folder| folder.film(&kept.id).exists());
+        assert_eq!(places, [is_taken, !is_taken]);
+    }
+    assert_same(&mine.read(&whole.id, &[]).unwrap(), &whole);
+}
+
+#[test]
 fn what_does_not_fit_leaves_nothing() {
     let directory = tempfile::tempdir().unwrap();
     let folder = folder(&directory);

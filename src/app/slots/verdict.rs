@@ -188,6 +188,8 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn the_answer_to_an_earlier_question_is_not_shown() {
@@ -203,5 +205,36 @@ mod tests {
         verdict.answers.answer(&context).give((2, Err("late".to_owned())));
         verdict.receive();
         assert_eq!((verdict.is_open(), verdict.words()), (false, None));
+    }
+
+    /// The window with what was found.
+    fn shown(found: Result<Found, String>) -> Harness<'static, Verdict> {
+        let names = Some(["slot 1", "the live picture"].map(str::to_owned));
+        let verdict = Verdict { names, found: Some(found), ..Verdict::default() };
+        let draw = |ui: &mut egui::Ui, verdict: &mut Verdict| verdict.ui(ui.ctx());
+        Harness::builder().with_size([800.0, 600.0]).build_ui_state(draw, verdict)
+    }
+
+    #[test]
+    fn the_reason_is_told_where_nothing_was_found() {
+        let harness = shown(Err("the films have different sizes".to_owned()));
+        assert!(harness.query_by_label("Not compared: the films have different sizes").is_some());
+    }
+
+    #[test]
+    fn a_finding_is_copied_and_closed() {
+        let text = "verdict     equal up to noise\n".to_owned();
+        let mut harness = shown(Ok(Found { headline: "Only noise", is_equal: true, text: text.clone() }));
+        harness.get_by_label("Copy").click();
+        harness.step();
+        let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text),
+            _ => None,
+        });
+        assert_eq!(copied, Some(&text));
+        assert!(harness.state().is_open());
+        harness.get_by_label("Close").click();
+        harness.run_steps(2);
+        assert!(!harness.state().is_open());
     }
 }

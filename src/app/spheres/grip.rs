@@ -214,6 +214,18 @@ mod tests {
     }
 
     #[test]
+    fn a_new_sphere_is_as_large_in_the_picture_with_every_lens() {
+        for vfov_degrees in [10.0, 40.0, 90.0, 130.0] {
+            let camera = Camera { vfov_degrees, ..Camera::BOOK };
+            let body = new_body(None, &camera, 1.5, [0.5, 0.5]);
+            let top = body.center + body.radius * camera.basis().v;
+            let share = 0.5 - camera.place_of(top, 1.5).unwrap()[1];
+            // The radius has two digits.
+            assert!((share / NEW_SHARE - 1.0).abs() < 0.06, "{vfov_degrees} degrees: {share}");
+        }
+    }
+
+    #[test]
     fn a_new_sphere_lies_on_what_is_there() {
         let mut scene = Scene::default();
         scene.add_sphere(DVec3::new(0.0, -100.5, -1.0), 100.0, 0);

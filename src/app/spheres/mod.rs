@@ -198,3 +198,45 @@ pub fn neighbour(scene: &Scene, selected: Option<usize>, is_next: bool) -> Optio
         (Some(sphere), false) => sphere.checked_sub(1).unwrap_or(last),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::app::tests::{until, window};
+    use crate::app::window::Window;
+
+    const FIELD: &str = "weekender --scene field:60000 --size 16x9 --samples 1 --device cpu";
+
+    /// An edit that gives a sphere this radius.
+    fn with_radius(document: &Document, sphere: usize, radius: f64) -> Edit {
+        Edit::Change(sphere, Body { radius, ..Body::of(document.scene(), sphere).unwrap() })
+    }
+
+    #[test]
+    fn of_the_edits_that_wait_the_last_one_of_each_sphere_is_made() {
+        let mut window = window(FIELD);
+        let model = &mut window.model;
+        let edit = |sphere, radius| with_radius(&model.document, sphere, radius);
+        let edits = [edit(1, 0.125), edit(1, 0.25), edit(2, 0.5), edit(1, 0.0625)];
+        let mut spheres = Spheres::default();
+        for edit in edits {
+            spheres.edit(model, edit).unwrap();
+        }
+        assert_eq!(spheres.queue, &edits[1..]);
+        // Another picture has spheres of its own.
+        model.document = Document::new(Origin::usual());
+        spheres.follow(&Context::default(), model).unwrap();
+        assert!(spheres.queue.is_empty() && !spheres.is_working);
+    }
+
+    #[test]
+    fn an_edit_of_a_large_scene_that_cannot_be_made_is_told_and_changes_nothing() {
+        let mut window = window(FIELD);
+        let edit = with_radius(window.document(), 1, 0.0);
+        window.spheres.edit(&mut window.model, edit).unwrap();
+        let is_told = |window: &Window| window.messages().iter().any(|text| text.contains("radius is 0"));
+        until(&mut window, &Context::default(), "why not", is_told);
+        assert!(!window.document().has_changed_scene() && window.spheres.queue.is_empty());
+    }
+}

@@ -185,6 +185,7 @@ mod tests {
         let mut second = Maker::open(1).unwrap();
         for id in ["ppm-tiny", "metal", "book"] {
             let alone = Maker::open(1).unwrap().picture(stage(id), None).unwrap();
+            assert!(alone.1.chunks_exact(3).any(|pixel| *pixel != alone.1[..3]), "{id} has one colour");
             assert!(second.picture(stage(id), Some(directory.path())).unwrap() == alone, "{id}");
         }
         assert_eq!(second.rendered, 0);

@@ -184,6 +184,8 @@ pub(super) fn paint(ui: &Ui, painter: &Painter, rect: Rect, size: [u32; 2], crop
 #[cfg(test)]
 mod tests {
     use super::*;
+    use eframe::egui::Shape;
+    use egui_kittest::Harness;
 
     const RECT: Rect = Rect { min: pos2(100.0, 50.0), max: pos2(420.0, 230.0) };
     const SIZE: [u32; 2] = [32, 18];
@@ -225,5 +227,20 @@ mod tests {
         assert_eq!([over(190.0, 80.0), over(190.0, 140.0)], [CursorIcon::ResizeVertical; 2]);
         assert_eq!([over(140.0, 80.0), over(240.0, 140.0)], [CursorIcon::ResizeNwSe; 2]);
         assert_eq!([over(240.0, 80.0), over(140.0, 140.0)], [CursorIcon::ResizeNeSw; 2]);
+    }
+
+    #[test]
+    fn the_size_of_a_part_is_told_within_what_is_seen_of_it() {
+        // The picture is larger than the viewport.
+        let (seen, rect) = (RECT, RECT.expand(200.0));
+        let crop = Crop { first: [0, 0], size: SIZE };
+        let harness = Harness::builder().with_size([600.0, 300.0]).build_ui(|ui| {
+            paint(ui, &ui.painter().with_clip_rect(seen), rect, SIZE, Some(crop));
+        });
+        let top = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+            Shape::Text(text) if text.galley.text() == crop.words() => Some(text.pos.y),
+            _ => None,
+        });
+        assert!(seen.y_range().contains(top.unwrap()), "{top:?}");
     }
 }

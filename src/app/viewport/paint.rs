@@ -325,4 +325,21 @@ mod tests {
             assert_eq!([left_of("mine"), left_of("theirs")], [!is_left, is_left]);
         }
     }
+
+    #[test]
+    fn the_words_of_a_click_are_beside_it() {
+        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 200.0));
+        let click = pos2(200.0, 150.0);
+        let mark = Mark { place: [0.25, 0.5], text: "sky".to_owned(), since: Instant::now() };
+        let harness = Harness::builder().with_size([600.0, 300.0]).build_ui(|ui| {
+            mark.paint(ui, rect, rect);
+        });
+        let words = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+            egui::Shape::Text(text) if text.galley.text() == "sky" => Some(text.visual_bounding_rect()),
+            _ => None,
+        });
+        let words = words.unwrap();
+        assert!(words.left() > click.x && words.left() < click.x + 40.0, "{words}");
+        assert!(words.y_range().contains(click.y), "{words}");
+    }
 }

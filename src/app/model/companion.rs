@@ -1,0 +1,36 @@
+//! The address of a stage in the companion, the page that `weekender companion` writes.
+
+use crate::gallery::Figure;
+use crate::stages::Stage;
+use std::path::Path;
+
+/// The URL of the companion with this absolute path, at the first figure that shows the stage.
+pub fn url(page: &Path, stage: Option<&Stage>) -> String {
+    // Characters that end or change a path in a URL.
+    let path = page.display().to_string().replace('%', "%25").replace('#', "%23").replace('?', "%3F");
+    let path = path.replace(' ', "%20").replace('\\', "/");
+    let shows = |stage: &Stage| {
+        let has_stage = |figure: &&Figure| figure.panels.iter().any(|panel| panel.stage == stage);
+        Figure::ALL.iter().find(has_stage)
+    };
+    let anchor = stage.and_then(shows).map_or_else(String::new, |figure| format!("#figure-{}", figure.id));
+    format!("file:///{}{anchor}", path.trim_start_matches('/'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_companion_opens_at_a_figure_of_the_stage() {
+        let page = Path::new("/my books/50%/companion/index.html");
+        let begin = "file:///my%20books/50%25/companion/index.html";
+        assert_eq!(url(page, None), begin);
+        for stage in Stage::ALL {
+            let url = url(page, Some(stage));
+            let id = url.strip_prefix(begin).unwrap().strip_prefix("#figure-").unwrap();
+            let figure = Figure::ALL.iter().find(|figure| figure.id == id).unwrap();
+            assert!(figure.panels.iter().any(|panel| panel.stage.id == stage.id), "{url}: {}", stage.id);
+        }
+    }
+}

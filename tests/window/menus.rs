@@ -1,0 +1,80 @@
+//! The menus of a right click on the picture.
+
+use crate::common::{SMALL, drag_from, has_samples, middle, open, send, until};
+use crate::objects::{metal_sphere, opened, select, spheres};
+use eframe::egui::{self, Modifiers, PointerButton};
+use egui_kittest::kittest::{NodeT, Queryable};
+use egui_kittest::{Harness, Node};
+use weekender::app::{Command, SlotCommand, SlotNumber, Window};
+
+/// Opens the menu in the middle of the picture.
+fn open_menu(harness: &mut Harness<'_, Window>) {
+    let pos = middle(harness);
+    harness.event(egui::Event::PointerMoved(pos));
+    for pressed in [true, false] {
+        let (button, modifiers) = (PointerButton::Secondary, Modifiers::NONE);
+        harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+        harness.step();
+    }
+    harness.run_steps(5);
+}
+
+/// The entry of the open menu whose text begins so; panels may have a button of the same name.
+fn entry<'h>(harness: &'h Harness<'_, Window>, name: &'h str) -> Node<'h> {
+    let picture = harness.get_by_label("Picture").rect();
+    let mut named = harness.get_all_by_label_contains(name);
+    let entry = named.find(|node| {
+        node.accesskit_node().role() == egui::Role::Button && picture.contains(node.rect().center())
+    });
+    entry.unwrap_or_else(|| panic!("no {name} in the menu"))
+}
+
+fn choose(harness: &mut Harness<'_, Window>, command: Command) {
+    open_menu(harness);
+    entry(harness, &command.name()).click();
+    harness.run_steps(5);
+    assert_eq!(harness.state().performed(), Some(command));
+}
+
+#[test]
+fn a_picture_without_rays_offers_only_its_paths() {
+    let mut harness = open("--stage ppm-tiny");
+    until(&mut harness, "a picture", has_samples(1));
+    open_menu(&mut harness);
+    for name in ["Select this", "Focus on this", "Look at this", "Add a sphere here"] {
+        assert!(entry(&harness, name).accesskit_node().is_disabled(), "{name}");
+    }
+    assert!(!entry(&harness, "List the paths of this pixel").accesskit_node().is_disabled());
+}
+
+#[test]
+fn the_selected_sphere_is_copied_and_deleted() {
+    let mut harness = opened();
+    let before = spheres(&harness).len();
+    let metal = metal_sphere(&harness);
+    select(&mut harness, metal);
+    choose(&mut harness, Command::DuplicateSphere);
+    assert_eq!(spheres(&harness).len(), before + 1);
+    choose(&mut harness, Command::DeleteSphere);
+    assert_eq!(spheres(&harness).len(), before);
+}
+
+#[test]
+fn a_slot_that_is_shown_and_a_crop_have_menus_of_their_own() {
+    let mut harness = open(&format!("{SMALL} --samples 4"));
+    until(&mut harness, "the end", |window| has_samples(4)(window) && window.status().phase.is_over());
+    let one = SlotNumber::ALL[0];
+    send(&mut harness, Command::Slot(SlotCommand::KeepIn(one)));
+    until(&mut harness, "a kept picture", |window| window.slot(one).is_some());
+    send(&mut harness, Command::Slot(SlotCommand::Look(one)));
+    choose(&mut harness, Command::Slot(SlotCommand::LookLive));
+    assert_eq!(harness.state().looked(), None);
+
+    send(&mut harness, Command::Crop);
+    let from = middle(&harness);
+    drag_from(&mut harness, from, egui::vec2(60.0, 40.0));
+    assert!(harness.state().crop().is_some());
+    choose(&mut harness, Command::CopyCrop);
+    choose(&mut harness, Command::Crop);
+    assert!(harness.state().crop().is_none());
+}
