@@ -2,7 +2,7 @@
 
 use crate::film::checkpoint;
 use crate::render_cpu::Isa;
-use crate::render_gpu::adapters;
+use crate::render_gpu::{AdapterInfo, adapters};
 use crate::terminal;
 use anyhow::Result;
 use std::fmt::Write as _;
@@ -31,13 +31,13 @@ impl Build {
     /// If standard output cannot be written.
     pub fn print(&self, is_verbose: bool) -> Result<()> {
         if is_verbose {
-            terminal::print(&self.details())
+            terminal::print(&self.details(&adapters()))
         } else {
             terminal::print(concat!("weekender ", env!("CARGO_PKG_VERSION"), "\n"))
         }
     }
 
-    fn details(&self) -> String {
+    fn details(&self, adapters: &[AdapterInfo]) -> String {
         let levels: Vec<String> = Isa::available().iter().map(ToString::to_string).collect();
         let level = Isa::available().last().map_or_else(String::new, |best| {
             format!("{best}, {} lanes (of {})", best.native_lanes(), levels.join(", "))
@@ -51,7 +51,6 @@ impl Build {
             current_platform::CURRENT_PLATFORM,
             checkpoint::VERSION,
         );
-        let adapters = adapters();
         if adapters.is_empty() {
             text.push_str("adapters      none\n");
         }
@@ -71,6 +70,11 @@ mod tests {
     #[test]
     fn a_build_without_git_says_so() {
         assert!(Build { commit: "" }.line().contains("commit unknown"));
-        assert!(Build { commit: "0123abc+" }.details().contains("commit        0123abc+\n"));
+        assert!(Build { commit: "0123abc+" }.details(&[]).contains("commit        0123abc+\n"));
+    }
+
+    #[test]
+    fn a_machine_without_adapters_says_so() {
+        assert!(Build { commit: "" }.details(&[]).ends_with("\nadapters      none\n"));
     }
 }

@@ -195,7 +195,7 @@ fn json_has_both_paths() {
 
 #[test]
 fn what_cannot_be_compared_is_refused() {
-    let cases: [(&[&str], &[&str]); 8] = [
+    let cases: [(&[&str], &[&str]); 9] = [
         (&[], &["--pixel"]),
         (&["--pixel", "800,0", "--sides", "cpu,reference"], &["800,0", "799,449"]),
         (&["--pixel", "1"], &["a column and a row"]),
@@ -207,6 +207,7 @@ fn what_cannot_be_compared_is_refused() {
         ),
         (&["--pixel", "1,1", "--adapter", "no such adapter"], &["the side gpu", "--sides cpu,reference"]),
         (&["--pixel", "1,1", "--stage", "all"], &["--stage all", "choose one stage"]),
+        (&["--pixel", "1,1", "--sides", "cpu,reference", "--json", "nowhere/a.json"], &["nowhere/a.json"]),
     ];
     for (arguments, parts) in cases {
         let (code, text, message) = diff(arguments);

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use weekender::film::checkpoint;
+use weekender::journal;
 
 /// Runs the program in `directory`, which is also the place for temporary files.
 fn weekender(directory: &Path, arguments: &[&str]) -> Output {
@@ -51,6 +52,20 @@ fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
 }
 
 #[test]
+fn a_panic_of_the_tracer_is_told_in_an_animation_too() {
+    let directory = tempfile::tempdir().unwrap();
+    let flags = ["--batch", "--device", "cpu", "--size", "24x14", "--samples", "4", "--turntable=2"];
+    let files = ["--simulate-panic", "0", "--out", "frames", "--json", "frames.json"];
+    let output = weekender(directory.path(), &[&flags[..], &files].concat());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("warning: ") && said.contains("panicked"), "{said}");
+    let json = fs::read_to_string(directory.path().join("frames.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let first = report["warnings"][0].as_str().unwrap_or_default();
+    assert!(first.contains("panicked") && report["frames_done"] == 2, "{report}");
+}
+
+#[test]
 fn a_panic_of_the_program_keeps_the_samples_and_leaves_a_report() {
     let directory = tempfile::tempdir().unwrap();
     let flags = ["--batch", "--device", "cpu", "--size", "48x27", "--samples", "4294967296"];
@@ -73,25 +88,70 @@ fn a_panic_of_the_program_keeps_the_samples_and_leaves_a_report() {
     }
 }
 
+/// A run in `directory` that crashes after 8 samples, and then writes its picture to `out`.
+fn crash(directory: &Path, out: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    command.current_dir(directory).env("TMPDIR", directory).env("XDG_STATE_HOME", directory);
+    command.args(["--batch", "--device", "cpu", "--size", "48x27", "--samples", "4294967296"]);
+    command.args(["--simulate-crash", "8", "--out"]).arg(out).stdin(Stdio::null());
+    command
+}
+
 #[test]
 fn a_report_has_other_places_if_there_is_none_for_temporary_files() {
     let directory = tempfile::tempdir().unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
-    command.current_dir(directory.path()).env("TMPDIR", "/dev/null").env("XDG_STATE_HOME", "/dev/null");
-    command.args([
-        "--batch",
-        "--device",
-        "cpu",
-        "--size",
-        "48x27",
-        "--samples",
-        "4294967296",
-        "--simulate-crash",
-        "8",
-    ]);
-    let output = command.args(["--out", "kept.png"]).output().unwrap();
+    let mut command = crash(directory.path(), Path::new("kept.png"));
+    let output = command.env("TMPDIR", "/dev/null").env("XDG_STATE_HOME", "/dev/null").output().unwrap();
     let said = String::from_utf8_lossy(&output.stderr);
     // The current directory is left.
     assert_eq!((output.status.code(), reports(directory.path()).len()), (Some(3), 1), "{said}");
     assert!(directory.path().join("kept.png").exists(), "{said}");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn that_a_report_has_no_place_at_all_is_told() {
+    let directory = tempfile::tempdir().unwrap();
+    let picture = directory.path().join("kept.png");
+    // Nobody can make a file in /proc.
+    let output = crash(Path::new("/proc"), &picture).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("no report could be written: ") && picture.exists(), "{said}");
+}
+
+#[test]
+fn a_backtrace_is_told_and_reported_if_it_is_asked_for() {
+    for (wish, is_wanted) in [("1", true), ("0", false)] {
+        let directory = tempfile::tempdir().unwrap();
+        let mut command = crash(directory.path(), Path::new("kept.png"));
+        let output = command.env("RUST_BACKTRACE", wish).env_remove("RUST_LIB_BACKTRACE").output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let reports = reports(directory.path());
+        let [path] = reports.as_slice() else { panic!("{reports:?}: {said}") };
+        for text in [said, fs::read_to_string(path).unwrap()] {
+            let has_frames = text.lines().any(|line| line.trim_start().starts_with("0: "));
+            assert_eq!(has_frames, is_wanted, "{text}");
+        }
+    }
+}
+
+/// The test runs itself in a process of its own, because what is done about a panic is set for the whole process.
+#[test]
+fn a_panic_outside_of_a_render_leaves_a_report_too() {
+    const CHILD: &str = "WEEKENDER_TEST_OF_A_PANIC";
+    if std::env::var_os(CHILD).is_some() {
+        journal::watched("weekender of a test".to_owned(), || panic!("outside of a render"));
+        return;
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["--exact", "a_panic_outside_of_a_render_leaves_a_report_too"]).env(CHILD, "1");
+    let output = command.current_dir(directory.path()).env("TMPDIR", directory.path()).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && said.contains("a report is in "), "{said}");
+    let reports = reports(directory.path());
+    let [path] = reports.as_slice() else { panic!("{reports:?}: {said}") };
+    let report = fs::read_to_string(path).unwrap();
+    assert!(report.contains("weekender of a test") && report.contains("outside of a render"), "{report}");
 }

@@ -188,20 +188,10 @@ impl<'a> Run<'a> {
     }
 
     fn show(&mut self, frame: u32, status: &Status) {
-        let (rendered, kept, rendering) = (self.rendered, self.kept, self.rendering);
-        let count = self.options.frames.len();
-        let done = rendered + kept;
-        self.display.update(u64::from(done), || {
-            let left = (count as u32).saturating_sub(done);
-            let left = match rendered {
-                0 => String::new(),
-                _ => {
-                    let each = rendering.as_secs_f64() / f64::from(rendered);
-                    format!(", {} left", seconds(each * f64::from(left)))
-                }
-            };
-            format!("frame {frame}: {done} of {count} frames done, {} spp{left}", status.samples_per_pixel)
-        });
+        let done = self.rendered + self.kept;
+        let count = self.options.frames.len() as u32;
+        let each = (self.rendered > 0).then(|| self.rendering.as_secs_f64() / f64::from(self.rendered));
+        self.display.update(u64::from(done), || so_far(frame, status.samples_per_pixel, [done, count], each));
     }
 
     fn write(
@@ -264,6 +254,14 @@ impl<'a> Run<'a> {
     }
 }
 
+/// How far the animation is. `each` is the time that a frame takes, seconds, if one was rendered.
+fn so_far(frame: u32, samples: u64, [done, count]: [u32; 2], each: Option<f64>) -> String {
+    let left = each.map_or_else(String::new, |each| {
+        format!(", {} left", seconds(each * f64::from(count.saturating_sub(done))))
+    });
+    format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
+}
+
 /// The figures of an animation.
 #[derive(Serialize)]
 struct Summary {
@@ -316,5 +314,16 @@ impl fmt::Display for Summary {
             Some(path) => writeln!(f, "         {}", path.display()),
             None => Ok(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_that_of_the_frames_that_are_not_done() {
+        assert_eq!(so_far(3, 4, [2, 6], None), "frame 3: 2 of 6 frames done, 4 spp");
+        assert_eq!(so_far(3, 4, [2, 6], Some(2.5)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
     }
 }

@@ -159,6 +159,21 @@ mod tests {
     use crate::progressive::{Plan, RenderRequest};
 
     #[test]
+    fn what_could_not_be_written_is_written_again_even_without_new_samples() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("film.exr");
+        let render = options(&["--checkpoint", path.to_str().unwrap()]);
+        let mut keeper = Keeper::new(&render, Places::of(&render).checkpoint.unwrap(), 0, Some(0.0));
+        // The film has one sample per pixel.
+        (keeper.asked, keeper.is_under_way) = (1, true);
+        let told = keeper.note(Outcome { samples: None, words: Some("the disk is full".to_owned()) });
+        assert_eq!((told.as_deref(), keeper.kept()), (Some("the disk is full"), None));
+        assert!(keeper.asked < 1 && !keeper.is_under_way);
+        assert_eq!(keeper.note(Outcome { samples: Some(1), words: None }), None);
+        assert_eq!(keeper.kept(), Some(1));
+    }
+
+    #[test]
     fn the_film_is_on_disk_while_the_render_goes_on() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("film.exr");

@@ -358,6 +358,17 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn a_render_that_leaves_nothing_has_not_broken_off() {
+        let options = options(&["--checkpoint", "a.exr"]);
+        let status = Status { phase: Phase::Failed("it broke".to_owned()), ..Status::default() };
+        let failure = |kept| outcome(&options, &status, None, &files::Written::default(), kept).unwrap_err();
+        assert!(matches!(failure(None), Failure::Run(_)));
+        assert!(
+            matches!(failure(Some(4)), Failure::BrokeOff(error) if error.to_string().contains("4 samples"))
+        );
+    }
+
+    #[test]
     fn a_render_that_breaks_off_has_an_exit_code_of_its_own_and_its_files() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["a.png", "a.exr"].map(|name| directory.path().join(name));

@@ -105,3 +105,56 @@ pub fn times_integer(mine: &Mine, right: &Compared) -> Option<Compared> {
         Compared { hypothesis, ..right.clone() }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::hypothesis::Expected;
+    use crate::stages::Stage;
+    use glam::DVec3;
+    use std::sync::Arc;
+
+    /// The bytes that `hypothesis` makes of a picture.
+    fn shown(hypothesis: &Hypothesis, expected: &Expected, [width, height]: [u32; 2]) -> Mine {
+        let row = |index: usize| index / width as usize;
+        let pixels = expected.pixels.iter().enumerate();
+        let bytes = pixels
+            .map(|(index, pixel)| pixel.map(|x| hypothesis.byte_of(x, row(index), height as usize)))
+            .collect();
+        Mine { width, height, bytes, format: "P3", damages: Vec::new() }
+    }
+
+    #[test]
+    fn a_right_picture_of_a_few_edges_has_no_mistake_of_pixels() {
+        let mut recipe = Stage::find("antialiased").unwrap().recipe();
+        (recipe.settings.width, recipe.settings.height) = (16, 9);
+        let scene = Arc::make_mut(&mut recipe.scene);
+        scene.spheres.truncate(1);
+        (scene.spheres[0].center, scene.spheres[0].radius) = (DVec3::NEG_Z, 0.2);
+        let mut studio = Studio::new(&recipe).unwrap();
+        let effort = Effort { fast: 256, plain: 16 };
+        let hypothesis = Hypothesis::right(studio.recipe());
+        let expected = studio.render(&hypothesis, effort).unwrap();
+        let mine = shown(&hypothesis, &expected, [16, 9]);
+        let right = compare(&mine, hypothesis, expected);
+        let found = by_pixels(&mine, &mut studio, &right, effort).unwrap();
+        assert_eq!(found.and_then(|found| found.hypothesis.mistake), None);
+    }
+
+    #[test]
+    fn a_factor_of_255_is_found_although_it_is_smaller_than_the_step_of_a_byte() {
+        let recipe = Stage::find("lambertian-gamma").unwrap().recipe();
+        let right = Hypothesis::right(&recipe);
+        let value = |index: usize| 0.1 + 0.8 * (index * 7919 % 12_289) as f64 / 12_289.0;
+        let pixels = (0..64 * 64).map(|pixel| [0, 1, 2].map(|channel| value(3 * pixel + channel))).collect();
+        let expected = Expected { pixels };
+        let found = |hypothesis: &Hypothesis| {
+            let mine = shown(hypothesis, &expected, [64, 64]);
+            let compared = compare(&mine, right.clone(), expected.clone());
+            times_integer(&mine, &compared).and_then(|found| found.hypothesis.mistake)
+        };
+        assert_eq!(found(&right), None);
+        let of_255 = Hypothesis::of(Mistake::TimesInteger, &recipe).remove(0);
+        assert_eq!(found(&of_255), Some(Mistake::TimesInteger));
+    }
+}

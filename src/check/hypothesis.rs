@@ -367,6 +367,9 @@ mod tests {
                     let [linear, half_step] = hypothesis.linear(byte, 3, 9);
                     assert_eq!(hypothesis.byte_of(linear, 3, 9), byte, "{id}, {:?}", hypothesis.mistake);
                     assert!(half_step > 0.0);
+                    // Of a value times 255, cut off, the upper half of all bytes is one less.
+                    let less = hypothesis.byte_of(hypothesis.times_255(linear, 3, 9), 3, 9);
+                    assert_eq!(less, byte - u8::from(byte >= 128), "{id}, {:?}", hypothesis.mistake);
                 }
             }
         }

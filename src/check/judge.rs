@@ -140,3 +140,28 @@ impl<'a> Trial<'a> {
         Ok(self.finding(explains.then_some(best)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::hypothesis::Expected;
+
+    fn compared(misfit: f64, is_noise: bool) -> Compared {
+        let hypothesis = Hypothesis::right(&Stage::ALL[0].recipe());
+        Compared { hypothesis, misfit, is_noise, expected: Expected { pixels: Vec::new() } }
+    }
+
+    #[test]
+    fn a_right_picture_ranks_first_then_a_whole_explanation_then_the_nearest_stage() {
+        let finding = |right, mistake| Finding { stage: &Stage::ALL[0], right, mistake };
+        let findings = [
+            finding(compared(0.9, true), None),
+            finding(compared(2.0, false), Some(compared(0.8, true))),
+            finding(compared(2.0, false), Some(compared(0.1, false))),
+            finding(compared(0.2, false), None),
+            finding(compared(2.0, false), Some(compared(0.3, false))),
+        ];
+        let ranks: Vec<_> = findings.iter().map(Finding::rank).collect();
+        assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
+    }
+}

@@ -349,3 +349,19 @@ pub(super) fn bubble(recipe: &Recipe) -> Option<usize> {
             && spheres.iter().any(|outer| is_around(&outer))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::Stage;
+
+    #[test]
+    fn mistakes_of_bounces_need_both_paths_and_spheres() {
+        for (id, can_show) in [("sky", false), ("normals-world", false), ("lambertian-gamma", true)] {
+            let recipe = Stage::find(id).unwrap().recipe();
+            for mistake in [Mistake::ZeroTMin, Mistake::BounceLimit] {
+                assert_eq!(mistake.applies_to(&recipe), can_show, "{mistake:?} in {id}");
+            }
+        }
+    }
+}

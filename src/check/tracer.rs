@@ -1,5 +1,6 @@
 //! A plain tracer that follows the book's chapters step by step, in `f64` and without any of this program's speed, so
-//! that it can make the mistakes that readers make. What the book leaves to a rule of the stage is a rule here, too.
+//! that it can make the mistakes of readers that no scene, camera or rule of a stage expresses. What the book leaves to
+//! a rule of the stage is a rule here, too.
 
 use super::mistake::Mistake;
 use crate::recipe::Recipe;
@@ -192,7 +193,6 @@ impl<'a> Tracer<'a> {
 
     fn sky(&self, direction: DVec3) -> DVec3 {
         let a = 0.5 * (direction.normalize().y + 1.0);
-        let a = if self.makes(Mistake::SkyReversed) { 1.0 - a } else { a };
         self.scene.sky.bottom.lerp(self.scene.sky.top, a)
     }
 
@@ -237,8 +237,7 @@ impl<'a> Tracer<'a> {
                 let reflected = reflect(ray.direction, hit.normal);
                 let reflected =
                     if self.makes(Mistake::FuzzUnnormalised) { reflected } else { reflected.normalize() };
-                let fuzz = if self.makes(Mistake::FuzzMissing) { 0.0 } else { fuzz.min(1.0) };
-                let direction = reflected + fuzz * random.unit_vector();
+                let direction = reflected + fuzz.min(1.0) * random.unit_vector();
                 (direction.dot(hit.normal) > 0.0).then_some((albedo, direction))
             }
             Material::Dielectric { refraction_index } => {
@@ -249,13 +248,8 @@ impl<'a> Tracer<'a> {
 
     fn diffuse(&self, hit: &Hit, random: &mut Random) -> DVec3 {
         let unit = random.unit_vector();
-        let hemisphere = if unit.dot(hit.normal) > 0.0 { unit } else { -unit };
-        let is_hemisphere = match self.rules.diffuse {
-            Diffuse::Hemisphere => !self.makes(Mistake::LambertianEarly),
-            Diffuse::Lambertian => self.makes(Mistake::Hemisphere),
-        };
-        if is_hemisphere {
-            return hemisphere;
+        if self.rules.diffuse == Diffuse::Hemisphere {
+            return if unit.dot(hit.normal) > 0.0 { unit } else { -unit };
         }
         let length = if self.makes(Mistake::PointInSphere) { random.number().cbrt() } else { 1.0 };
         let direction = hit.normal + length * unit;
@@ -271,12 +265,7 @@ impl<'a> Tracer<'a> {
         };
         let cos_theta = (-direction).dot(hit.normal).min(1.0);
         let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
-        let laws = match self.mistake {
-            Some(Mistake::AlwaysRefract) => DielectricLaws::RefractOnly,
-            Some(Mistake::SchlickMissing) => DielectricLaws::TotalReflection,
-            _ => self.rules.dielectric,
-        };
-        let reflects = match laws {
+        let reflects = match self.rules.dielectric {
             DielectricLaws::RefractOnly => false,
             DielectricLaws::TotalReflection => ratio * sin_theta > 1.0,
             DielectricLaws::Schlick => ratio * sin_theta > 1.0 || schlick(cos_theta, ratio) > random.number(),
@@ -296,4 +285,19 @@ fn reflect(v: DVec3, normal: DVec3) -> DVec3 {
 fn schlick(cosine: f64, ratio: f64) -> f64 {
     let r0 = ((1.0 - ratio) / (1.0 + ratio)).powi(2);
     r0 + (1.0 - r0) * (1.0 - cosine).powi(5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn glass_reflects_a_twenty_fifth_from_above_and_all_at_a_grazing_angle() {
+        for ratio in [1.5, 1.0 / 1.5] {
+            for (cosine, share) in [(1.0, 0.04), (0.5, 0.04 + 0.96 / 32.0), (0.0, 1.0)] {
+                let reflected = schlick(cosine, ratio);
+                assert!((reflected - share).abs() < 1e-12, "{reflected} at {cosine}, {ratio}");
+            }
+        }
+    }
 }

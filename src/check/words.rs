@@ -131,3 +131,70 @@ fn of_mistake(found: &Compared) -> Vec<(&'static str, String)> {
     }
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::hypothesis::{Expected, Hypothesis};
+    use crate::check::{Damage, Mistake};
+    use crate::stages::Stage;
+
+    fn mine([width, height]: [u32; 2], damages: Vec<Damage>) -> Mine {
+        Mine { width, height, bytes: Vec::new(), format: "P3", damages }
+    }
+
+    /// What is said about a picture of the stage `id` that shows `mistake` or is right.
+    fn told(id: &str, mine: &Mine, mistake: Option<(Mistake, bool)>) -> String {
+        let stage = Stage::find(id).unwrap();
+        let right = Compared {
+            hypothesis: Hypothesis::right(&stage.recipe()),
+            misfit: 0.0,
+            is_noise: mistake.is_none(),
+            expected: Expected { pixels: Vec::new() },
+        };
+        let mistake = mistake.map(|(mistake, is_noise)| Compared {
+            hypothesis: Hypothesis::of(mistake, &stage.recipe()).remove(0),
+            is_noise,
+            ..right.clone()
+        });
+        text(Path::new("a.ppm"), mine, &Finding { stage, right, mistake }, &[])
+    }
+
+    #[test]
+    fn a_damaged_file_is_told_with_what_to_change() {
+        let damage = Damage { title: "it is torn".to_owned(), remedy: "mend it" };
+        let told = told("metal", &mine([40, 20], vec![damage]), None);
+        assert!(told.contains("\nfile     it is torn\nchange   mend it\n"), "{told}");
+    }
+
+    /// The first picture of the book is square.
+    #[test]
+    fn a_square_picture_is_remarked_on_unless_it_is_meant_to_be_square() {
+        let gradient = Stage::ALL.iter().find(|stage| stage.setup.rules.shading == Shading::ImageGradient);
+        let gradient = gradient.unwrap().id;
+        for (id, size, is_remarked) in
+            [("metal", [40, 40], true), ("metal", [40, 20], false), (gradient, [40, 40], false)]
+        {
+            let told = told(id, &mine(size, Vec::new()), None);
+            assert!(told.contains("right: it differs from ours by noise only"), "{told}");
+            assert_eq!(told.contains("\nnote     the picture is square"), is_remarked, "{told}");
+        }
+    }
+
+    #[test]
+    fn what_was_seen_of_a_mistake_is_told() {
+        let told = told("metal", &mine([40, 20], Vec::new()), Some((Mistake::SwappedChannels, true)));
+        assert!(told.contains("\nseen     the channels seem to be blue, green, red\n"), "{told}");
+    }
+
+    #[test]
+    fn a_mistake_that_does_not_explain_all_may_not_be_the_only_one() {
+        let mine = mine([40, 20], Vec::new());
+        for explains_all in [true, false] {
+            let told = told("metal", &mine, Some((Mistake::GammaTwice, explains_all)));
+            let certainty = if explains_all { "a mistake: " } else { "most likely a mistake: " };
+            assert!(told.contains(&format!("\nverdict  {certainty}gamma is applied twice\n")), "{told}");
+            assert_eq!(told.contains("there may be a second mistake"), !explains_all, "{told}");
+        }
+    }
+}

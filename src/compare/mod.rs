@@ -4,6 +4,8 @@ mod heat_map;
 mod non_finite;
 mod paired;
 mod side;
+#[cfg(test)]
+mod tests;
 mod text;
 mod variances;
 mod verdict;

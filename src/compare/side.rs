@@ -225,3 +225,15 @@ impl OpenedSide {
         })
     }
 }
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_that_do_not_fit_into_memory_are_refused() {
+        check_memory(400, 225, 2).unwrap();
+        let refused = check_memory(1 << 22, 1 << 22, 0).unwrap_err().to_string();
+        assert!(refused.starts_with("comparing pictures of 4194304x4194304 needs "), "{refused}");
+    }
+}

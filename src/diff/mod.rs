@@ -84,8 +84,7 @@ pub fn run(options: &DiffOptions) -> Result<ExitCode, Failure> {
     let json = options.json.as_ref();
     let is_terminal =
         if is_taken(json) { std::io::stderr().is_terminal() } else { std::io::stdout().is_terminal() };
-    let paint =
-        Paint { is_on: is_terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty()) };
+    let paint = Paint::on(is_terminal, std::env::var_os("NO_COLOR"));
     let mut text = opening(options, &sides, pixel, sample, found, paint);
     text.push('\n');
     text.push_str(&text::bounces(&told, &comparison, paint));

@@ -3,6 +3,7 @@
 use super::compare::{PathComparison, Quantity, amount, departure};
 use super::words::Told;
 use crate::record::PathRecord;
+use std::ffi::OsString;
 use std::fmt::Write;
 
 /// Width of a line in characters.
@@ -35,6 +36,11 @@ pub enum Tone {
 }
 
 impl Paint {
+    /// Colours on a terminal, unless the variable `NO_COLOR` is set to some text (no-color.org).
+    pub fn on(is_terminal: bool, no_color: Option<OsString>) -> Paint {
+        Paint { is_on: is_terminal && no_color.is_none_or(|value| value.is_empty()) }
+    }
+
     /// `text` in the colour of `tone`.
     pub fn paint(self, tone: Tone, text: &str) -> String {
         let code = match tone {
@@ -218,6 +224,9 @@ fn line(text: &mut String, content: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::diff::compare;
+    use crate::recipe::Recipe;
+    use crate::record::RecordedRay;
 
     #[test]
     fn numbers_have_nine_characters() {
@@ -225,6 +234,35 @@ mod tests {
             assert_eq!(number(x).chars().count(), 9, "{}", number(x));
         }
         assert_eq!(number(-13.25).trim(), "-13.25000");
+    }
+
+    #[test]
+    fn colours_are_for_terminals_and_can_be_switched_off() {
+        let is_on =
+            |is_terminal, no_color: Option<&str>| Paint::on(is_terminal, no_color.map(Into::into)).is_on;
+        assert!(is_on(true, None) && is_on(true, Some("")));
+        assert!(!is_on(true, Some("1")) && !is_on(false, None));
+        let [on, off] = [true, false].map(|is_on| Paint { is_on });
+        assert_eq!(on.paint(Tone::Good, "="), "\x1b[32m=\x1b[0m");
+        assert_eq!((on.paint(Tone::Good, ""), off.paint(Tone::Good, "=")), (String::new(), "=".to_owned()));
+    }
+
+    #[test]
+    fn the_verdict_is_green_if_the_paths_agree_and_red_if_not() {
+        let job = Recipe::find("three-spheres").unwrap().job().unwrap();
+        let path = |z: f64| {
+            let (direction, throughput) = ([0.0, 0.0, -1.0], [1.0; 3]);
+            let ray = RecordedRay { origin: [0.0, 0.0, z], direction, throughput, hit: None };
+            PathRecord { rays: vec![ray], radiance: [0.5; 3] }
+        };
+        let [here, there] = [path(1.0), path(2.0)];
+        for (other, code) in [(&here, "\x1b[32m"), (&there, "\x1b[1;31m")] {
+            let paths = [&here, other];
+            let told = Told { job: &job, names: ["cpu", "reference"], paths, tolerance: 1e-3 };
+            let text = closing(&told, &compare(&job, paths, 1e-3), Paint { is_on: true });
+            let verdict = text.lines().find(|line| line.contains("verdict")).unwrap();
+            assert!(verdict.contains(code), "{verdict:?}");
+        }
     }
 
     #[test]

@@ -85,11 +85,9 @@ impl FileIdentity {
 
 /// Whether `directory` treats names that differ only in letter case as the same name.
 fn ignores_case(directory: &Path) -> bool {
-    let Ok(probe) = super::leftovers::create_in(directory, &mut tempfile::Builder::new()) else {
-        return false;
-    };
-    let Some(name) = probe.path().file_name() else { return false };
-    directory.join(name.to_string_lossy().to_uppercase()).exists()
+    let probe = super::leftovers::create_in(directory, &mut tempfile::Builder::new()).ok();
+    let name = probe.as_ref().and_then(|probe| probe.path().file_name());
+    name.is_some_and(|name| directory.join(name.to_string_lossy().to_uppercase()).exists())
 }
 
 /// Follows the links at the end of `path`, even if their target does not exist.
@@ -160,6 +158,13 @@ mod tests {
         assert_eq!(same(&at("new"), &at("NEW")), is_blind);
         assert_eq!(same(&at("unborn"), &at("UNBORN")), is_blind);
         assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 2, "trying out leaves nothing behind");
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn where_the_file_system_cannot_be_asked_case_matters() {
+        // Nobody can make a file in /proc.
+        assert!(!same(Path::new("/proc/unborn"), Path::new("/proc/UNBORN")));
     }
 
     #[cfg(unix)]

@@ -7,7 +7,7 @@
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 use tempfile::{Builder, NamedTempFile};
 
 const PREFIX: &str = ".weekender-";
@@ -60,10 +60,7 @@ fn remove_ownerless(path: &Path) {
     let is_ownerless = match file.try_lock() {
         Ok(()) => true,
         Err(TryLockError::WouldBlock) => false,
-        Err(TryLockError::Error(_)) => {
-            let changed = file.metadata().and_then(|found| found.modified()).ok();
-            changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age > OLD)
-        }
+        Err(TryLockError::Error(_)) => is_old(file.metadata().and_then(|found| found.modified()).ok()),
     };
     if is_ownerless {
         // Another run may already have removed it.
@@ -71,9 +68,24 @@ fn remove_ownerless(path: &Path) {
     }
 }
 
+/// Whether a file that was changed then has no owner on a file system without locks.
+fn is_old(changed: Option<SystemTime>) -> bool {
+    changed.and_then(|changed| changed.elapsed().ok()).is_some_and(|age| age > OLD)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_is_old_after_a_day_and_not_if_its_age_is_unknown() {
+        let now = SystemTime::now();
+        assert!(is_old(Some(now - OLD - Duration::from_secs(1))));
+        let hour = Duration::from_secs(3600);
+        for young in [None, Some(now), Some(now - OLD + hour), Some(now + hour)] {
+            assert!(!is_old(young), "{young:?}");
+        }
+    }
 
     #[test]
     fn only_what_nobody_writes_is_removed() {

@@ -53,8 +53,9 @@ pub(super) fn run(
                 let _writing = interrupt.while_writing(names.join(" and "));
                 write(&options.out, sum.film(), plan.recipe.rules.transfer, &sum.description())?;
                 console::note(&sum.words());
+                last = Some(Instant::now());
             }
-            (is_news, last) = (false, Some(Instant::now()));
+            is_news = false;
             if is_over {
                 break;
             }

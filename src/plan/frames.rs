@@ -141,4 +141,12 @@ mod tests {
             assert!(wrong.check().is_err(), "{frames:?}");
         }
     }
+
+    #[test]
+    fn no_frames_and_frames_beyond_the_limit_are_refused() {
+        let last = |end: u32| Frames::new(&(end - 2..end), None, RATE, 2).unwrap().check();
+        assert!(last(FRAME_LIMIT).is_ok() && last(FRAME_LIMIT + 1).is_err());
+        let none = Frames { frames: [3, 3], turntable: None, rate: RATE, parts: Vec::new() };
+        assert!(none.check().is_err());
+    }
 }

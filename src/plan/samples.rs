@@ -30,11 +30,6 @@ pub struct Part {
 }
 
 impl Part {
-    /// The part's samples.
-    pub fn range(&self) -> Range<u64> {
-        self.samples[0]..self.samples[1]
-    }
-
     /// What `found` lacks of the part: the number of samples per pixel.
     pub fn missing(&self, found: &SampleRanges) -> u64 {
         let (mut missing, mut from) = (0, self.samples[0]);

@@ -180,6 +180,15 @@ mod tests {
         assert_eq!(first_hit(&ball, DVec3::Y, -DVec3::Y), Some((0, 2.0)));
         assert_eq!(first_hit(&ball, DVec3::ZERO, DVec3::Z), Some((0, 1.0)));
         assert_eq!(first_hit(&ball, 3.0 * DVec3::Y, DVec3::Y), None);
+        // Along the surface, both roots are 0.
+        assert_eq!(first_hit(&ball, DVec3::Y, DVec3::X), None);
+    }
+
+    #[test]
+    fn the_nearer_of_two_hits_in_front_counts() {
+        let ball = scene(&[(0.375 * DVec3::Z, 0.125)]);
+        assert_eq!(first_hit(&ball, DVec3::ZERO, DVec3::Z), Some((0, 0.25)));
+        assert_eq!(first_hit(&ball, DVec3::ZERO, 0.25 * DVec3::Z), Some((0, 1.0)));
     }
 
     #[test]

@@ -17,22 +17,13 @@ const RADIUS: f64 = 0.01;
 /// The scene with the distant spheres. They reflect all light, so a closed room stays dark and a white world white.
 pub fn with_far_spheres(recipe: &Recipe, unit: f64) -> Recipe {
     let mut scene = Scene::clone(&recipe.scene);
-    let name = unused_name(&scene);
-    let material = scene.add_material(name, Material::Lambertian { albedo: DVec3::ONE });
+    // No scene that is rendered here has a material of this name.
+    let material = scene.add_material("far".to_owned(), Material::Lambertian { albedo: DVec3::ONE });
     for index in 0..COUNT {
         let center = recipe.camera.look_from + DISTANCE * unit * direction(index);
         scene.add_sphere(center, RADIUS * unit, material);
     }
     Recipe { scene: Arc::new(scene), ..recipe.clone() }
-}
-
-fn unused_name(scene: &Scene) -> String {
-    let is_used = |name: &str| scene.materials.iter().any(|material| material.name == name);
-    let mut name = "far".to_owned();
-    while is_used(&name) {
-        name.push('_');
-    }
-    name
 }
 
 /// Evenly distributed directions, by the golden angle.

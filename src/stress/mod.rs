@@ -142,3 +142,27 @@ fn suite(
     }
     printed.map(|()| report)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::ProgressChoice;
+
+    #[test]
+    fn a_suite_that_is_interrupted_says_so_and_leaves_out_the_case_under_way() {
+        let options = StressOptions {
+            filter: String::new(),
+            search: None,
+            seed: 0,
+            levels: Vec::new(),
+            adapter: None,
+            json: None,
+            out: None,
+            progress: ProgressChoice::Off,
+        };
+        let case = cases().iter().find(|case| case.id == "shells/1").unwrap();
+        let report = suite(&options, &[case], Vec::new(), &AtomicBool::new(true)).unwrap();
+        assert!(report.interrupted && report.cases.is_empty(), "{report:?}");
+        assert_eq!(report.chosen, 1);
+    }
+}

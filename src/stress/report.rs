@@ -144,6 +144,39 @@ mod tests {
     use super::*;
 
     #[test]
+    fn the_ratio_of_times_is_that_of_the_slowest_backend() {
+        let measured = |seconds, tame_seconds| Measured {
+            backend: "cpu".to_owned(),
+            form: "plain",
+            mean: None,
+            offset: None,
+            deviation: None,
+            rounding: None,
+            seconds,
+            tame_seconds,
+            verdict: Verdict::Right,
+        };
+        let report = CaseReport {
+            id: "a".to_owned(),
+            family: "A",
+            stiff: String::new(),
+            expected: String::new(),
+            why: "",
+            tolerance: 0.0,
+            spheres: 1,
+            measured: vec![
+                measured(Some(3.0), Some(2.0)),
+                measured(Some(8.0), Some(2.0)),
+                measured(Some(1.0), Some(2.0)),
+                measured(Some(9.0), None),
+            ],
+            first_hits: None,
+            book: Vec::new(),
+        };
+        assert_eq!(report.time_ratio(), Some(4.0));
+    }
+
+    #[test]
     fn one_first_hit_in_twenty_may_differ() {
         let is_right = |agree| FirstHits { rays: 40, agree }.is_right();
         assert!(is_right(40) && is_right(38) && !is_right(37));

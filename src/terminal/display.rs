@@ -28,14 +28,7 @@ impl Display {
         match (choice, stderr().is_terminal()) {
             (ProgressChoice::Off, _) | (ProgressChoice::Auto, false) => Display::Off,
             (ProgressChoice::On, false) => Display::Lines { next: Instant::now(), interval },
-            (_, true) => {
-                let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
-                if let Ok(style) = ProgressStyle::with_template(template) {
-                    bar.set_style(style.progress_chars("=> "));
-                }
-                bar.set_prefix(console::printable(prefix).into_owned());
-                Display::Bar(bar)
-            }
+            (_, true) => Display::Bar(bar(ProgressDrawTarget::stderr(), steps, template, prefix)),
         }
     }
 
@@ -88,5 +81,80 @@ impl Display {
         if let Display::Bar(bar) = self {
             bar.finish_and_clear();
         }
+    }
+}
+
+fn bar(target: ProgressDrawTarget, steps: u64, template: &str, prefix: &str) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(steps), target);
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.set_prefix(console::printable(prefix).into_owned());
+    bar
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use indicatif::TermLike;
+    use std::io;
+    use std::sync::{Arc, Mutex};
+
+    /// All that is written to a terminal of 80 columns.
+    #[derive(Clone, Debug, Default)]
+    struct Written(Arc<Mutex<String>>);
+
+    impl TermLike for Written {
+        fn width(&self) -> u16 {
+            80
+        }
+
+        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn write_line(&self, text: &str) -> io::Result<()> {
+            self.write_str(text)
+        }
+
+        fn write_str(&self, text: &str) -> io::Result<()> {
+            self.0.lock().unwrap().push_str(text);
+            Ok(())
+        }
+
+        fn clear_line(&self) -> io::Result<()> {
+            Ok(())
+        }
+
+        fn flush(&self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_bar_shows_its_name_its_length_and_the_words_until_it_is_cleared() {
+        let written = Written::default();
+        let target = ProgressDrawTarget::term_like(Box::new(written.clone()));
+        let bar = bar(target, 4, "{prefix} [{bar:8}] {wide_msg}", "a\u{1b}b");
+        let mut display = Display::Bar(bar.clone());
+        display.update(2, || "half\u{1b} done".to_owned());
+        let shown = written.0.lock().unwrap().clone();
+        // A name cannot control the terminal.
+        assert!(shown.contains("a\\u{1b}b [====>   ] half\\u{1b} done"), "{shown:?}");
+        assert!(!bar.is_finished());
+        display.clear();
+        assert!(bar.is_finished());
     }
 }

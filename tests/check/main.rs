@@ -49,6 +49,7 @@ fn planted_mistakes_are_named() {
         ("lambertian-gamma", "truncated"),
         ("lambertian-gamma", "zero-t-min"),
         ("lambertian-gamma", "point-in-sphere"),
+        ("metal-fuzzy", "fuzz-missing"),
         ("metal-fuzzy", "fuzz-unnormalised"),
         ("hollow-glass", "index-inverted"),
         ("hollow-glass", "always-refract"),
@@ -103,6 +104,8 @@ fn every_form_of_a_picture_is_read() {
 #[test]
 fn damages_are_repaired_and_told() {
     let utf_16: Vec<u8> = [0xFEFF].into_iter().chain(P3.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    let utf_16_be: Vec<u8> =
+        [0xFEFF].into_iter().chain(P3.encode_utf16()).flat_map(u16::to_be_bytes).collect();
     let of_words = |bytes: fn(u16) -> [u8; 2]| P3.encode_utf16().flat_map(bytes).collect::<Vec<u8>>();
     let marked = [b"\xEF\xBB\xBF", P3.as_bytes()].concat();
     let with_messages = P3.replace("255\n0", "255\nScanlines remaining: 1\n0");
@@ -110,10 +113,13 @@ fn damages_are_repaired_and_told() {
     let cr_lf = b"P6\r\n2 1\r\n255\r\n\x00\x01\r\n\xFD\xFE\xFF".to_vec();
     for (file, word) in [
         (utf_16, "UTF-16"),
+        (utf_16_be, "UTF-16"),
         (of_words(u16::to_be_bytes), "UTF-16"),
         (of_words(u16::to_le_bytes), "UTF-16"),
         (marked, "byte order mark"),
         (with_messages.into_bytes(), "1 lines"),
+        (format!("starting\n{P3}").into_bytes(), "other text before"),
+        (P3.replace("0 1 2", "0 1.5 2").into_bytes(), "1 values are not whole"),
         (too_large.into_bytes(), "2 numbers"),
         (format!("{P3} 7").into_bytes(), "7 numbers"),
         (cr_lf, "byte 10"),
@@ -135,6 +141,20 @@ fn damages_are_repaired_and_told() {
     ] {
         let reason = Mine::decode(file).unwrap_err();
         assert!(reason.contains(word), "{reason} should say {word}");
+    }
+}
+
+#[test]
+fn what_is_not_a_number_is_neither_whole_nor_between_0_and_the_largest_value() {
+    for value in ["nan", "-nan", "-nan(ind)"] {
+        let mine = Mine::decode(P3.replace("253", value).as_bytes()).unwrap();
+        let titles: Vec<&str> = mine.damages.iter().map(|damage| damage.title.as_str()).collect();
+        assert_eq!(
+            titles,
+            ["1 values are not whole numbers", "1 numbers are below 0 or above 255"],
+            "{value}"
+        );
+        assert_eq!(mine.bytes, [[0, 1, 2], [0, 254, 255]], "{value}");
     }
 }
 
@@ -186,12 +206,14 @@ fn exit_codes_files_and_json_tell_the_finding() {
         (&["right.ppm", "--stage", "book"], "random"),
         (&["right.ppm", "--stage", "metall"], "did you mean metal?"),
         (&["right.ppm", "--out", "right.ppm"], "right.ppm"),
+        (&["right.ppm", "--json", "nowhere/found.json"], "nowhere"),
         (&["d/mine.png", "--out", "d"], "would replace"),
     ] {
         let output = check(at, arguments);
         let told = text(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
         assert!(told.contains(part), "{arguments:?} should say {part}: {told}");
+        assert_eq!(text(&output.stdout), "", "{arguments:?}");
     }
 }
 

@@ -18,6 +18,16 @@ fn a_saved_scene_renders_the_same_film() {
 }
 
 #[test]
+fn a_scene_is_saved_along_with_its_picture() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    let first = ["--stage", "gamut", "--samples", "2", "--save-scene", "s.toml", "--checkpoint", "a.exr"];
+    render(directory.path(), &first);
+    render(directory.path(), &["--scene", "s.toml", "--samples", "2", "--checkpoint", "b.exr"]);
+    assert_eq!(film(at("a.exr")), film(at("b.exr")));
+}
+
+#[test]
 fn a_resumed_film_equals_an_uninterrupted_one() {
     let directory = temp();
     let at = |name: &str| directory.path().join(name);

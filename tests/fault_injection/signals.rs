@@ -155,6 +155,21 @@ fn a_signal_that_arrives_twice_is_one() {
 }
 
 #[test]
+fn who_presses_ctrl_c_is_told_that_a_second_time_is_faster() {
+    for (name, is_told) in [("INT", true), ("TERM", false)] {
+        let at = TempDir::new().unwrap();
+        let at = at.path();
+        let mut child = batch(at, "off", &ENDLESS).spawn().unwrap();
+        until("the film is not written", || at.join("g.exr").exists());
+        signal(&child, name);
+        wait(&mut child);
+        let told = text(&child.wait_with_output().unwrap().stderr);
+        assert!(told.contains("finishing the current samples"), "{name}: {told}");
+        assert_eq!(told.contains("press Ctrl-C again"), is_told, "{name}: {told}");
+    }
+}
+
+#[test]
 fn a_second_signal_ends_the_program_at_once() {
     // One pass takes far longer than this test.
     let picture = ["--batch", "--device", "reference", "--threads", "1", "--size", "2400x1600"];

@@ -44,7 +44,10 @@ fn the_estimate_knows_how_far_off_it_may_be() {
     assert_eq!(Film::new(4, 3, 2).error(), None);
     let mut same = Film::new(4, 3, 2);
     same.record(0..2, 0).unwrap();
-    assert_eq!(same.error().unwrap().rmse_deviation, 0.0);
+    let estimate = same.error().unwrap();
+    assert_eq!(estimate.rmse_deviation, 0.0);
+    let doubt = same.doubt(&estimate).unwrap();
+    assert!(doubt.contains("no path has found any light in 2 samples"), "{doubt}");
 }
 
 #[test]

@@ -81,6 +81,18 @@ fn a_film_that_began_anew_does_not_replace_what_it_had() {
 }
 
 #[test]
+fn a_film_whose_file_was_deleted_is_written_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("g.exr");
+    let mut run = SharedFile::new(&path);
+    run.save(&film(&[0..2]), &Description::new("r"), &same).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    let saved = run.save(&film(&[0..4]), &Description::new("r"), &same).unwrap();
+    assert_eq!((saved.path, saved.note, saved.is_elsewhere), (path.clone(), None, false));
+    assert!(at(&path) == film(&[0..4]));
+}
+
+#[test]
 fn disjoint_samples_of_two_new_runs_are_added() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("g.exr");

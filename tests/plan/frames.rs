@@ -38,6 +38,10 @@ fn parts_have_the_frames_of_one_run_and_make_its_animation() {
     let flags = ["--turntable=7", "--fps", "12"];
     let lines = plan(at, &[&flags[..], &["--parts", "3"]].concat());
     assert_eq!(lines.lines().count(), 3, "{lines}");
+    // The same plan once more says again what it divides.
+    let again = [&["plan", "--out", "p"], &SMALL[..], &flags, &["--parts", "3"]].concat();
+    let told = ends(at, 0, &again).1;
+    assert!(told.contains("3 parts of 2 to 3 frames"), "{told}");
     for line in lines.lines().rev() {
         let words = shlex::split(line).unwrap();
         assert_eq!(words[1], "render-part");
@@ -142,6 +146,43 @@ fn a_watch_makes_the_animation_when_the_last_frame_has_come() {
     assert!(output.status.success(), "{}", text(&output.stderr));
     assert!(text(&output.stdout).contains("3 of 3 frames are whole"));
     assert!(at.join("t.png").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_watch_that_is_ended_tells_what_is_wrong_and_what_is_missing() {
+    use std::io::{BufRead, BufReader, Read};
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    plan(at, &["--turntable=2", "--parts", "2"]);
+    let mut watch =
+        super::common::command(at, &["merge", "p", "--watch", "--every", "0.1s", "--out", "t.png"]);
+    let mut child = watch.stderr(Stdio::piped()).spawn().unwrap();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    let mut told_until = |words: &str| -> Vec<String> {
+        let mut lines = Vec::new();
+        for line in stderr.by_ref().lines().map(Result::unwrap) {
+            lines.push(line);
+            if lines.last().is_some_and(|line| line.contains(words)) {
+                return lines;
+            }
+        }
+        panic!("{words} is not in {lines:?}");
+    };
+    // It has seen that there is no frame yet.
+    told_until("0 of 2 frames are whole");
+    fs::write(at.join("no-picture"), "no picture").unwrap();
+    fs::rename(at.join("no-picture"), frame(&at.join("p"), 0)).unwrap();
+    succeeds(at, &["render-part", "p", "--part", "1", "--device", "cpu"]);
+    let told = told_until("1 of 2 frames are whole");
+    assert!(told.iter().any(|line| line.starts_with("warning: part 0: ")), "{told:?}");
+    let killed = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    assert!(killed.success());
+    told_until("1 of 2 frames are whole");
+    told_until("interrupted; the same command goes on");
+    told_until("--part 0");
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(!at.join("t.png").exists());
 }
 
 #[cfg(unix)]

@@ -26,6 +26,8 @@ fn files_say_what_they_are() {
     assert_eq!(of("p/part-1.exr"), "\"film\" \"metal\" \"metal\" 4 \"4..8\" 4 null");
     assert_eq!(of("a b.exr"), "\"film\" \"three-spheres\" null 4 \"0..4\" 4 null");
     assert_eq!(of("a.png"), "\"picture\" \"three-spheres\" null 4 null null null");
+    std::fs::copy(at.join("a.png"), at.join("without an ending")).unwrap();
+    assert_eq!(of("without an ending"), of("a.png"));
     assert!(of("s.toml").starts_with("\"scene\" \"s\" null "), "{}", of("s.toml"));
     assert!(json("a b.exr")["rmse_estimate"].as_f64().unwrap() > 0.0);
 

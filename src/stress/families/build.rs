@@ -159,4 +159,15 @@ mod tests {
         assert_eq!(counted(100_000, "ray"), "100,000 rays");
         assert_eq!(grouped(1_234_567), "1,234,567");
     }
+
+    #[test]
+    fn spheres_eye_and_focus_move_together() {
+        let mut recipe = one_ball();
+        recipe.camera.focus_distance = Some(3.0);
+        let moved = moved(&recipe, 4.0, DVec3::X);
+        let ball = moved.scene.spheres[0];
+        assert_eq!((ball.center, ball.radius), (DVec3::X, 4.0));
+        assert_eq!((moved.camera.look_from, moved.camera.look_at), (DVec3::new(1.0, 0.0, 12.0), DVec3::X));
+        assert_eq!(moved.camera.focus_distance, Some(12.0));
+    }
 }

@@ -268,6 +268,9 @@ mod tests {
         let mut checker = checker();
         let small = sized(tame(), [12, 8], 8);
         assert_eq!(checker.first_failure(&small, &go_on), None);
+        assert_eq!(checker.fails(Check::Rounding, &small, &go_on), None);
+        let traced = checker.last.as_ref().map(|(_, outcomes)| outcomes.len());
+        assert_eq!(traced, Some(2), "the pictures of both backends are kept for the next check");
         // Its threshold is a length, so a larger scene looks different.
         let book = by_the_book(&moved(&small, 0.003, DVec3::ZERO));
         let reason = checker.fails(Check::Scaling, &book, &go_on);

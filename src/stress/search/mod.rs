@@ -32,24 +32,67 @@ const SHRINK_TIME: Duration = Duration::from_secs(20);
 /// # Errors
 /// If a file cannot be written.
 pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> Result<bool> {
-    let directory = options.out.clone().unwrap_or_else(|| PathBuf::from(DIRECTORY));
-    let mut checker =
-        Checker::new(backends(options), Backend::new("f64", BackendChoice::Reference { threads: None }));
-    let mut display = display(options.progress, time);
+    let reference = Backend::new("f64", BackendChoice::Reference { threads: None });
+    let search = Search {
+        options,
+        checker: Checker::new(backends(options), reference),
+        display: display(options.progress, time),
+        print: &|text| terminal::print_beside(options.json.as_ref(), text),
+        interrupt,
+    };
     let begin = Instant::now();
-    let (mut scenes, mut found) = (0_u32, Vec::new());
-    let mut printed = Ok(());
-    let is_over = || begin.elapsed() >= time || interrupt.load(Ordering::Relaxed);
-    while !is_over() {
-        let recipe = random::scene(options.seed, scenes);
-        scenes += 1;
-        display.update(begin.elapsed().as_secs(), || {
-            format!("{}, {}", counted(scenes as usize, "scene"), counted(found.len(), "failure"))
-        });
-        let Some((check, reason)) = checker.first_failure(&recipe, interrupt) else { continue };
-        if interrupt.load(Ordering::Relaxed) {
-            break;
+    search.among((0..).take_while(|_| begin.elapsed() < time && !interrupt.load(Ordering::Relaxed)))
+}
+
+/// A search among random scenes.
+struct Search<'a> {
+    options: &'a StressOptions,
+    checker: Checker,
+    display: Display,
+    /// Prints a failure, and the count at the end.
+    print: &'a dyn Fn(&str) -> Result<()>,
+    interrupt: &'a AtomicBool,
+}
+
+impl Search<'_> {
+    /// Checks the random scenes of these numbers and saves the failures. Returns whether there were none.
+    fn among(mut self, numbers: impl Iterator<Item = u32>) -> Result<bool> {
+        let seed = self.options.seed;
+        let directory = self.options.out.clone().unwrap_or_else(|| PathBuf::from(DIRECTORY));
+        let begin = Instant::now();
+        let (mut scenes, mut found) = (0, 0);
+        let mut printed = Ok(());
+        for number in numbers {
+            scenes += 1;
+            self.display.update(begin.elapsed().as_secs(), || {
+                format!("{}, {}", counted(scenes, "scene"), counted(found, "failure"))
+            });
+            let recipe = random::scene(seed, number);
+            let Some((check, reason)) = self.checker.first_failure(&recipe, self.interrupt) else { continue };
+            if self.interrupt.load(Ordering::Relaxed) {
+                break;
+            }
+            let (small, reason) = self.shrunk(recipe, check, reason);
+            let path = directory.join(format!("found-{seed}-{number}.toml"));
+            save(&path, &small, check, &reason, [seed, number])?;
+            let spheres = counted(small.scene.spheres.len(), "sphere");
+            let text = format!("{} ({spheres}): {}: {reason}\n", path.display(), check.name());
+            printed = printed.and(self.display.above(|| (self.print)(&text)));
+            found += 1;
         }
+        self.display.clear();
+        let text = format!(
+            "search: {found} of {} failed in {:.0} s\n",
+            counted(scenes, "random scene"),
+            begin.elapsed().as_secs_f64()
+        );
+        printed.and((self.print)(&text))?;
+        Ok(found == 0)
+    }
+
+    /// The scene as small as the failure of `check` allows, and why the check fails then.
+    fn shrunk(&mut self, recipe: Recipe, check: Check, reason: String) -> (Recipe, String) {
+        let (checker, interrupt) = (&mut self.checker, self.interrupt);
         let until = Instant::now() + SHRINK_TIME;
         let small = shrink::shrink(recipe, |smaller| {
             Instant::now() < until
@@ -57,24 +100,8 @@ pub fn run(options: &StressOptions, time: Duration, interrupt: &AtomicBool) -> R
                 && checker.fails(check, smaller, interrupt).is_some()
         });
         let reason = checker.fails(check, &small, interrupt).unwrap_or(reason);
-        let path = directory.join(format!("found-{}-{}.toml", options.seed, scenes - 1));
-        save(&path, &small, check, &reason, [options.seed, scenes - 1])?;
-        printed = printed.and(display.above(|| {
-            let spheres = counted(small.scene.spheres.len(), "sphere");
-            let text = format!("{} ({spheres}): {}: {reason}\n", path.display(), check.name());
-            terminal::print_beside(options.json.as_ref(), &text)
-        }));
-        found.push(path);
+        (small, reason)
     }
-    display.clear();
-    let text = format!(
-        "search: {} of {} failed in {:.0} s\n",
-        found.len(),
-        counted(scenes as usize, "random scene"),
-        begin.elapsed().as_secs_f64()
-    );
-    printed.and(terminal::print_beside(options.json.as_ref(), &text))?;
-    Ok(found.is_empty())
 }
 
 fn display(choice: ProgressChoice, time: Duration) -> Display {
@@ -106,7 +133,52 @@ fn saved_text(recipe: &Recipe, check: Check, reason: &str, [seed, number]: [u32;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render_cpu::Isa;
     use crate::stress::families::build::one_ball;
+    use std::cell::RefCell;
+
+    /// A backend that does not start fails with every scene.
+    #[test]
+    fn each_failure_is_made_small_and_saved_and_told() {
+        let directory = tempfile::tempdir().unwrap();
+        let out = directory.path().join("found");
+        let options = StressOptions {
+            filter: String::new(),
+            search: None,
+            seed: 7,
+            levels: Vec::new(),
+            adapter: None,
+            json: None,
+            out: Some(out.clone()),
+            progress: ProgressChoice::Off,
+        };
+        let no_kernel = CpuOptions { isa: Some(Isa::Portable), lanes: Some(3), ..CpuOptions::default() };
+        let reference = Backend::new("f64", BackendChoice::Reference { threads: Some(1) });
+        let (told, go_on) = (RefCell::new(String::new()), AtomicBool::new(false));
+        let print = |text: &str| -> Result<()> {
+            told.borrow_mut().push_str(text);
+            Ok(())
+        };
+        let search = Search {
+            options: &options,
+            checker: Checker::new(vec![Backend::new("cpu", BackendChoice::Cpu(no_kernel))], reference),
+            display: Display::Off,
+            print: &print,
+            interrupt: &go_on,
+        };
+        assert!(!search.among(0..2).unwrap(), "something was found");
+        let told = told.borrow();
+        for number in 0..2 {
+            let path = out.join(format!("found-7-{number}.toml"));
+            let line = format!("{} (0 spheres): f32 against f64: cpu: level", path.display());
+            assert!(told.contains(&line), "{line} in {told}");
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert!(text.contains(&format!("seed 7, scene {number},")), "{text}");
+            let small = file::load(&path).unwrap();
+            assert_eq!((small.scene.spheres.len(), small.settings.max_depth), (0, 1), "{text}");
+        }
+        assert!(told.contains("\nsearch: 2 of 2 random scenes failed in "), "{told}");
+    }
 
     #[test]
     fn what_is_saved_is_a_scene_file_that_says_what_failed() {

@@ -135,6 +135,20 @@ mod tests {
     }
 
     #[test]
+    fn spheres_that_become_matte_share_a_material() {
+        let mut scene = Scene::default();
+        let glass = scene.add_material("glass", Material::Dielectric { refraction_index: 1.5 });
+        for x in [0.0, 3.0] {
+            scene.add_sphere(DVec3::new(x, 0.0, 0.0), 1.0, glass);
+        }
+        make_matte(&mut scene, 0);
+        make_matte(&mut scene, 1);
+        let matte = Material::Lambertian { albedo: DVec3::splat(0.5) };
+        assert!(scene.spheres.iter().all(|sphere| *scene.material_of(sphere) == matte));
+        assert_eq!(scene.materials.len(), 2);
+    }
+
+    #[test]
     fn what_does_not_matter_goes_away() {
         // "Fails" as long as there is a glass sphere with a radius above a thousandth.
         let is_glass = |scene: &Scene| {
