@@ -170,6 +170,8 @@ mod tests {
         assert!(shown.starts_with("begin ö") && shown.ends_with("ö end\n"), "{shown}");
         assert!(shown.contains("98810 characters left out") && shown.chars().count() < 1300, "{shown}");
         assert_eq!(presentable("short\n"), "short\n");
+        let longest = "x".repeat(LINE_LIMIT);
+        assert_eq!(presentable(&longest), longest);
     }
 
     #[test]

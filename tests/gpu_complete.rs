@@ -178,3 +178,34 @@ fn a_device_that_always_leaves_samples_out_fails() {
     assert!(error.contains("in 1 blocks of tiles 0 to 3 from row 0 on"), "{error}");
     assert!(film == job.new_film());
 }
+
+#[test]
+fn samples_that_a_film_has_already_are_refused_and_the_device_goes_on() {
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, true);
+    let Some(mut gpu) = gpu(GpuOptions::default()) else { return };
+    let expected = rendered(&mut gpu, &job, 4);
+    assert!(gpu.report().films > 0 && gpu.report().film_time > Duration::ZERO);
+    gpu.advance(&job, 0..4, &mut job.new_film(), &go_on()).unwrap();
+    let mut film = expected.clone();
+    let outcome = gpu.collect(&mut film);
+    assert!(matches!(outcome, Err(RenderError::Film(_))), "{outcome:?}");
+    assert!(film == expected);
+    assert!(rendered(&mut gpu, &job, 4) == expected);
+}
+
+#[test]
+fn samples_that_are_found_missing_at_the_end_are_traced_again_and_no_others() {
+    let (scene, camera) = (BuiltinScene::ALL[0].build)();
+    let job = job_of(&scene, camera, [16, 9], 12, SamplerKind::Sobol, false);
+    let Some(mut good) = gpu(GpuOptions::default()) else { return };
+    let mut expected = job.new_film();
+    good.accumulate(&job, 4..5, &mut expected, &go_on()).unwrap();
+    let injection = Some(FaultInjection { fault: Fault::Short, point: InjectionPoint::Dispatch, after: 0 });
+    let mut short = gpu(GpuOptions { injection, ..GpuOptions::default() }).unwrap();
+    let mut film = job.new_film();
+    short.advance(&job, 4..5, &mut film, &go_on()).unwrap();
+    short.collect(&mut film).unwrap();
+    assert!(film == expected, "{}", film.samples());
+    assert!(short.take_messages().iter().any(|message| message.contains("traced again")));
+}

@@ -120,6 +120,7 @@ fn dispatches_and_slabs_do_not_show() {
 fn specialised_is_general() {
     let Some(mut specialised) = gpu(GpuOptions::default()) else { return };
     let Some(mut general) = gpu(GpuOptions { specialise: false, ..GpuOptions::default() }) else { return };
+    let mut left_out = [0; 2];
     for scene in &BuiltinScene::ALL[..2] {
         let (spheres, camera) = (scene.build)();
         let job = job_of(&spheres, camera, [96, 54], 20, SamplerKind::Sobol, false);
@@ -131,7 +132,10 @@ fn specialised_is_general() {
             .filter(|(a, b)| a.iter().zip(b).any(|(a, b)| (a - b).abs() > 1e-3))
             .count();
         assert!(parted <= 3, "{}: {parted}", scene.name);
+        left_out[0] += specialised.kernel_contents().left_out.len();
+        left_out[1] += general.kernel_contents().left_out.len();
     }
+    assert!(left_out[0] > left_out[1], "{left_out:?}");
 }
 
 /// Only the fuzz of metals uses the random direction here.

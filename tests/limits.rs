@@ -175,6 +175,16 @@ fn what_does_not_fit_into_memory_is_refused_before_it_is_asked_for() {
 }
 
 #[test]
+fn threads_that_the_system_does_not_start_are_told() {
+    let at = TempDir::new().unwrap();
+    let many = ["--batch", "--device", "cpu", "--threads", "1024", "--samples", "1", "--size", "16x9"];
+    let (code, told) = weekender(Some(900_000), &[&many[..], &["--out", "a.png"]].concat(), at.path());
+    assert!(matches!(code, Some(1 | 2)), "{code:?}: {told}");
+    assert!(told.contains("cannot start 1024 threads") && told.contains("--threads"), "{told}");
+    assert!(!told.contains("panicked") && !at.path().join("a.png").exists(), "{told}");
+}
+
+#[test]
 fn with_any_limit_of_memory_the_program_ends_in_an_orderly_way() {
     let at = TempDir::new().unwrap();
     let at = at.path();

@@ -227,3 +227,70 @@ fn prepared(choice: &BackendChoice, job: &RenderJob) -> Result<Runner, String> {
     renderer.prepare(job, &AtomicBool::new(false)).map_err(|error| error.to_string())?;
     Ok(Runner::Renderer(renderer))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fake::Fake;
+    use super::*;
+    use crate::cli::{self, Request};
+    use crate::recipe::Recipe;
+    use std::sync::Arc;
+
+    static NEVER: AtomicBool = AtomicBool::new(false);
+
+    fn job() -> RenderJob {
+        let mut recipe = Recipe::find("metals").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (8, 4);
+        recipe.job().unwrap()
+    }
+
+    fn candidate(kind: Kind, fake: Fake) -> Candidate {
+        Candidate::new("fake".to_owned(), kind, 1, 1, Ok(Runner::Renderer(Box::new(fake))))
+    }
+
+    #[test]
+    fn a_gpu_is_kept_busy_for_a_moment_before_a_measured_run() {
+        // One run is a moment; a third would fail.
+        let fake = Fake { pause: WAKING, fails_after: Some(2), ..Fake::default() };
+        let runs = Arc::clone(&fake.runs);
+        let mut gpu = candidate(Kind::Gpu, fake);
+        gpu.measure(&job(), &NEVER).unwrap();
+        assert_eq!((runs.load(Ordering::Relaxed), gpu.row.runs.len()), (2, 1));
+        assert_eq!(gpu.row.skipped, None);
+        // A processor needs no such thing.
+        let fake = Fake::default();
+        let runs = Arc::clone(&fake.runs);
+        let mut cpu = candidate(Kind::Packets, fake);
+        cpu.measure(&job(), &NEVER).unwrap();
+        assert_eq!((runs.load(Ordering::Relaxed), cpu.row.runs.len()), (1, 1));
+    }
+
+    #[test]
+    fn a_candidate_that_fails_is_skipped_from_then_on() {
+        // It fails while it is kept busy.
+        let fake = Fake { fails_after: Some(2), ..Fake::default() };
+        let runs = Arc::clone(&fake.runs);
+        let mut gpu = candidate(Kind::Gpu, fake);
+        for _ in 0..2 {
+            gpu.measure(&job(), &NEVER).unwrap();
+            assert_eq!((runs.load(Ordering::Relaxed), gpu.row.runs.len()), (3, 0));
+            assert_eq!(gpu.row.skipped.as_deref(), Some("fake failed: out of memory"));
+            assert!(!gpu.is_ready());
+        }
+    }
+
+    #[test]
+    fn a_gpu_that_was_named_has_a_row_even_if_there_is_none() {
+        let line =
+            "weekender bench --adapter no-such-GPU --scene metals --isa portable --threads 1 --size 8x4";
+        let Request::Bench(options) = cli::parse(line.split(' ').map(Into::into)).unwrap() else {
+            panic!("no benchmark")
+        };
+        let found = candidates(&options, "metals", &job(), &Err(BaselineError::Unfit("not wanted")));
+        let rows: Vec<(Kind, bool)> = found.iter().map(|found| (found.row.kind, found.is_ready())).collect();
+        assert_eq!(rows, [(Kind::Baseline, false), (Kind::Scalar, true), (Kind::Gpu, false)]);
+        assert_eq!(found[0].row.skipped.as_deref(), Some("not wanted"));
+        let reason = found[2].row.skipped.as_deref().unwrap();
+        assert!(reason.contains("no-such-GPU") || reason.contains("no graphics adapter"), "{reason}");
+    }
+}

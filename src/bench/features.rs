@@ -223,3 +223,63 @@ fn trace(
     let stats = renderer.accumulate(job, 0..samples, &mut film, cancel)?;
     Ok((Run::of(&stats, &film), film))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fake::Fake;
+    use super::*;
+    use crate::cli::{self, Request};
+
+    fn options(words: &str) -> BenchOptions {
+        let line = format!("weekender bench --features --scene metals --isa portable --size 8x4 {words}");
+        match cli::parse(line.split(' ').map(Into::into)).unwrap() {
+            Request::Bench(options) => *options,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Measures a scene in two pairs of runs of two samples.
+    fn measured(own: Fake, general: Fake) -> (DeviceFigures, Result<(), Cancelled>) {
+        let options = options("--samples 2 --runs 2 --progress off");
+        let renderers: [Box<dyn Renderer>; 2] = [Box::new(own), Box::new(general)];
+        let pair = Pair { name: "fake".to_owned(), renderers: Ok(renderers) };
+        let mut progress = Progress::new(options.progress, 3);
+        measure_device(&options, pair, &mut progress, &AtomicBool::new(false))
+    }
+
+    #[test]
+    fn an_interrupt_keeps_a_row_that_has_a_pair_of_runs() {
+        // The first run of each kernel is its warm-up.
+        for (runs, rows) in [(0, 0), (1, 0), (2, 1)] {
+            let own = Fake { cancelled_after: Some(runs), ..Fake::default() };
+            let (device, outcome) = measured(own, Fake::default());
+            assert!(outcome.is_err());
+            assert_eq!(device.rows.len(), rows, "cancelled after {runs} runs");
+            assert!(device.rows.iter().all(|row| row.own_runs.len() == 1 && row.skipped.is_none()));
+        }
+        let (device, outcome) = measured(Fake::default(), Fake::default());
+        assert!(outcome.is_ok());
+        assert_eq!(device.rows.iter().map(|row| row.own_runs.len()).collect::<Vec<_>>(), [2]);
+    }
+
+    #[test]
+    fn a_row_whose_kernel_fails_says_why() {
+        let (device, outcome) = measured(Fake::default(), Fake { fails_after: Some(0), ..Fake::default() });
+        assert!(outcome.is_ok());
+        let reasons: Vec<_> = device.rows.iter().map(|row| row.skipped.as_deref()).collect();
+        assert_eq!(reasons, [Some("fake failed: out of memory")]);
+    }
+
+    #[test]
+    fn a_gpu_that_was_named_is_listed_even_if_there_is_none() {
+        let options = options("--adapter no-such-GPU --progress off");
+        let mut pairs = pairs(&options);
+        assert_eq!(pairs.len(), 2);
+        let gpu = pairs.remove(1);
+        let mut progress = Progress::new(options.progress, 1);
+        let (device, outcome) = measure_device(&options, gpu, &mut progress, &AtomicBool::new(false));
+        assert!(outcome.is_ok() && device.rows.is_empty());
+        let reason = device.skipped.unwrap();
+        assert!(reason.contains("no-such-GPU") || reason.contains("no graphics adapter"), "{reason}");
+    }
+}

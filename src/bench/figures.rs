@@ -301,6 +301,10 @@ mod tests {
         assert_eq!(packets.paths_per_second, Some(Spread { median: 4.0, min: 2.0, max: 8.0 }));
         assert_eq!(packets.rays_per_second, Some(Spread { median: 10.0, min: 5.0, max: 20.0 }));
         assert_eq!((packets.efficiency, packets.lanes_in_use), (Some(2.0), Some(0.75)));
+        // A film without noise, such as a black one, tells nothing about the efficiency.
+        let mut black = Row { runs: vec![Run { rmse: Some(0.0), ..run }], ..packets };
+        black.sum_up();
+        assert_eq!(black.efficiency, None);
         // A GPU has threads instead.
         assert_eq!(row(Kind::Gpu).lanes_in_use, None);
     }

@@ -1,6 +1,8 @@
 //! `weekender bench`: how fast this machine renders, compared with a plain C program.
 
 mod candidate;
+#[cfg(test)]
+mod fake;
 mod features;
 mod figures;
 mod machine;
@@ -181,4 +183,60 @@ fn write(options: &BenchOptions, figures: &BenchFigures) -> anyhow::Result<()> {
         chart::save(path, &plot::figure(figures))?;
     }
     printed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::figures::{DeviceFigures, GainRow, Spread};
+    use super::*;
+    use crate::cli::{self, Request};
+
+    fn figures() -> BenchFigures {
+        BenchFigures {
+            schema: SCHEMA,
+            machine: Machine { load_at_start: Some(0.25), ..Machine::look() },
+            scenes: Vec::new(),
+            scale: Vec::new(),
+            features: Vec::new(),
+            warnings: Vec::new(),
+            interrupted: false,
+        }
+    }
+
+    #[test]
+    fn a_field_that_cannot_be_measured_ends_the_measurement() {
+        let line = "weekender bench --scale 1..10 --isa portable --threads 1 --runs 1 --progress off";
+        let Request::Bench(options) = cli::parse(line.split(' ').map(Into::into)).unwrap() else {
+            panic!("no benchmark")
+        };
+        let mut figures = figures();
+        // No field has so few spheres.
+        let error = fields(&options, &[0, 1], &mut figures, &AtomicBool::new(false)).unwrap_err();
+        assert!(error.to_string().contains("field:0"), "{error}");
+        assert!(figures.scale.is_empty());
+    }
+
+    #[test]
+    fn a_busy_machine_and_runs_that_differ_are_reasons_to_doubt() {
+        assert_eq!(warnings(&figures()), [""; 0]);
+        let mut figures = figures();
+        figures.machine.load_at_start = Some(0.75);
+        let spread = |min: f64, max: f64| Some(Spread { median: 100.0, min, max });
+        let row = |name: &str, gain| GainRow { name: name.to_owned(), gain, ..GainRow::default() };
+        let rows = vec![
+            row("steady", spread(95.0, 105.0)),
+            row("first", spread(90.0, 110.0)),
+            row("second", spread(80.0, 105.0)),
+            row("skipped", None),
+        ];
+        figures.features = vec![DeviceFigures { device: "avx2".to_owned(), rows, skipped: None }];
+        assert_eq!(
+            warnings(&figures),
+            [
+                "the machine was busy: load 0.75 at the start, above 0.5; close other programs and measure again",
+                "in 2 of 3 rows, the runs differ by more than 10 % of their median; the largest difference is 25 % \
+                 in second, avx2",
+            ]
+        );
+    }
 }

@@ -118,3 +118,150 @@ fn in_proportion(series: &Series) -> Series {
     });
     Series { name: "in proportion".to_owned(), points: points.collect(), look: Look::Guide }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::figures::{Row, SCHEMA};
+    use super::super::machine::Machine;
+    use super::*;
+
+    fn figures(scenes: Vec<SceneFigures>, scale: Vec<ScaleFigures>) -> BenchFigures {
+        let machine = Machine {
+            version: "1.2.3",
+            processor: "a processor".to_owned(),
+            cores: 8,
+            levels: vec!["portable", "avx2"],
+            load_at_start: None,
+        };
+        let (features, warnings) = (Vec::new(), Vec::new());
+        BenchFigures { schema: SCHEMA, machine, scenes, scale, features, warnings, interrupted: false }
+    }
+
+    fn spread(median: f64) -> Option<Spread> {
+        Some(Spread { median, min: 0.5 * median, max: 2.0 * median })
+    }
+
+    fn row(name: &str, kind: Kind, speed: Option<f64>) -> Row {
+        Row {
+            name: name.to_owned(),
+            kind,
+            lanes: 1,
+            threads: 1,
+            samples_per_pixel: 4,
+            runs: Vec::new(),
+            paths_per_second: speed.and_then(spread),
+            rays_per_second: None,
+            lanes_in_use: None,
+            ratio_to_baseline: speed.map(|speed| speed / 4e6),
+            efficiency: None,
+            skipped: None,
+        }
+    }
+
+    fn scene(name: &str, rows: Vec<Row>) -> SceneFigures {
+        let scene = name.to_owned();
+        SceneFigures { scene, width: 200, height: 113, max_depth: 50, sampler: "sobol", spheres: 5, rows }
+    }
+
+    #[test]
+    fn a_scene_has_a_bar_for_each_row_that_was_measured() {
+        let rows = vec![
+            row("C89", Kind::Baseline, Some(4e6)),
+            row("avx2", Kind::Packets, Some(128e6)),
+            row("GPU", Kind::Gpu, None),
+        ];
+        let panel = |title: &str, bars: Vec<Bar>| {
+            let label = "million paths per second: median, minimum and maximum".to_owned();
+            Panel::Bars(BarChart { title: title.to_owned(), label, bars })
+        };
+        let bar = |name: &str, value: f64, note: &str, kind| Bar {
+            name: name.to_owned(),
+            value,
+            spread: Some([0.5 * value, 2.0 * value]),
+            note: note.to_owned(),
+            kind,
+        };
+        let scenes = vec![scene("book", rows), scene("sky", vec![row("avx2", Kind::Packets, Some(8e6))])];
+        let expected = Figure {
+            title: "Paths per second".to_owned(),
+            about: "Weekender 1.2.3, a processor, 8 threads, avx2".to_owned(),
+            // Both charts are as high as the one with two bars.
+            size: [1000, 64 + 2 * (100 + 2 * 36)],
+            columns: 1,
+            panels: vec![
+                panel(
+                    "book, 200 × 113, depth 50",
+                    vec![bar("C89", 4.0, "4.0", 0), bar("avx2", 128.0, "128   32.0 × C89", 2)],
+                ),
+                panel("sky, 200 × 113, depth 50", vec![bar("avx2", 8.0, "8.0   2.0 × C89", 2)]),
+            ],
+        };
+        assert_eq!(figure(&figures(scenes, Vec::new())), expected);
+        assert_eq!(figure(&figures(Vec::new(), Vec::new())).size, [1000, 164], "nothing was measured");
+    }
+
+    #[test]
+    fn fields_have_curves_of_time_memory_and_speed() {
+        let field = |spheres: u64, peak_memory_bytes, speed| ScaleFigures {
+            spheres,
+            generate_seconds: 0.25,
+            build_seconds: 0.5,
+            hierarchy_seconds: 0.125,
+            scene_bytes_per_sphere: 40.0,
+            table_bytes_per_sphere: 128.0,
+            peak_memory_bytes,
+            samples_per_pixel: 4,
+            paths_per_second: spread(speed),
+            rays_per_second: None,
+        };
+        let scale = vec![field(4096, Some(64 << 20), 4e6), field(8192, None, 2e6)];
+        let figure = figure(&figures(Vec::new(), scale));
+        assert_eq!((figure.size, figure.columns), ([1350, 480], 3));
+        let lines: Vec<(String, Vec<String>)> = figure
+            .panels
+            .iter()
+            .map(|panel| {
+                let Panel::Lines(chart) = panel else { panic!("{panel:?}") };
+                let of_series = |series: &Series| {
+                    let points: Vec<String> = series
+                        .points
+                        .iter()
+                        .map(|point| match point.spread {
+                            None => format!("{} {}", point.x, point.y),
+                            Some([low, high]) => format!("{} {} ({low} to {high})", point.x, point.y),
+                        })
+                        .collect();
+                    format!("{}: {}", series.name, points.join(", "))
+                };
+                (format!("{}, {}", chart.title, chart.y.label), chart.series.iter().map(of_series).collect())
+            })
+            .collect();
+        let lines: Vec<(&str, Vec<&str>)> = lines
+            .iter()
+            .map(|(title, series)| (title.as_str(), series.iter().map(String::as_str).collect()))
+            .collect();
+        assert_eq!(
+            lines,
+            [
+                (
+                    "Time to build, seconds",
+                    vec![
+                        "in proportion: 4096 1.5, 8192 3",
+                        "prepared scene: 4096 0.5, 8192 0.5",
+                        "hierarchy: 4096 0.125, 8192 0.125",
+                        "scene generation: 4096 0.25, 8192 0.25",
+                    ]
+                ),
+                (
+                    "Memory, MiB",
+                    vec![
+                        "2 GiB: 4096 2048, 8192 2048",
+                        "process peak: 4096 64",
+                        "prepared scene: 4096 0.5, 8192 1",
+                    ]
+                ),
+                ("Speed, million paths per second", vec![": 4096 4 (2 to 8), 8192 2 (1 to 4)"]),
+            ]
+        );
+    }
+}

@@ -200,7 +200,8 @@ fn gain_line(name: &str, cells: [String; 7]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::figures::Run;
+    use super::super::figures::{Kind, Run};
+    use super::super::machine::Machine;
     use super::*;
 
     fn run(seconds: f64) -> Run {
@@ -283,9 +284,13 @@ mod tests {
             paths_per_second: None,
             rays_per_second: None,
         };
-        let lines = scale_lines(&[row]);
-        let cells: Vec<&str> = lines[2].split_whitespace().collect();
-        assert_eq!(cells, ["1000", "0.250", "0.5000", "0.1250", "96.5", "300", "4", "-", "-"]);
+        assert_eq!(
+            scale_lines(&[row])[1..],
+            [
+                "  spheres  generate s   build s  hierarchy s   bytes  peak MiB   spp  Mpaths/s   Mrays/s",
+                "     1000       0.250    0.5000       0.1250    96.5       300     4         -         -",
+            ]
+        );
     }
 
     #[test]
@@ -293,7 +298,7 @@ mod tests {
         let spread = |median: f64| Some(Spread { median, min: 0.5 * median, max: 3.0 * median });
         let row = Row {
             name: "avx2, 8 lanes".to_owned(),
-            kind: super::super::figures::Kind::Packets,
+            kind: Kind::Packets,
             lanes: 8,
             threads: 1,
             samples_per_pixel: 64,
@@ -330,6 +335,64 @@ mod tests {
                 "avx2, 8 lanes                        64     2.00    1.00    6.00   7.00   250.0    87.5    1.23e3",
                 "avx2, 8 lanes                        64    12514    6257   37542   2697   38866    87.5    1.23e3",
                 "avx2, 8 lanes                        64        -       -       -      -       -       -         -",
+            ]
+        );
+    }
+
+    #[test]
+    fn an_interrupted_measurement_shows_what_it_has_and_its_warnings() {
+        let row = Row {
+            name: "a graphics card with a name of forty-two letters".to_owned(),
+            kind: Kind::Gpu,
+            lanes: 0,
+            threads: 0,
+            samples_per_pixel: 64,
+            runs: vec![run(0.25), run(0.25)],
+            paths_per_second: None,
+            rays_per_second: None,
+            lanes_in_use: None,
+            ratio_to_baseline: None,
+            efficiency: None,
+            skipped: None,
+        };
+        let scene = SceneFigures {
+            scene: "sky".to_owned(),
+            width: 8,
+            height: 4,
+            max_depth: 50,
+            sampler: "sobol",
+            spheres: 1,
+            rows: vec![row],
+        };
+        let machine = Machine {
+            version: "1.2.3",
+            processor: "a processor".to_owned(),
+            cores: 1,
+            levels: vec!["portable"],
+            load_at_start: Some(0.25),
+        };
+        let figures = BenchFigures {
+            schema: 1,
+            machine,
+            scenes: vec![scene],
+            scale: Vec::new(),
+            features: Vec::new(),
+            warnings: vec!["the machine was busy".to_owned()],
+            interrupted: true,
+        };
+        assert_eq!(
+            text(&figures).split('\n').collect::<Vec<_>>(),
+            [
+                "Weekender 1.2.3, a processor, 1 thread, portable, load 0.25 at the start",
+                "",
+                "sky, 8x4, depth 50, sobol, 1 sphere; medians of 2 runs",
+                "                                    spp Mpaths/s     min     max  x C89 Mrays/s lanes % 1/(MSE s)",
+                "a graphics card with a name of ...   64        -       -       -      -       -       -         -",
+                "",
+                "Interrupted: only the runs finished so far are shown.",
+                "",
+                "warning: the machine was busy",
+                "",
             ]
         );
     }

@@ -146,4 +146,22 @@ mod tests {
             assert!(fault.message.contains(word), "{text}: {fault}");
         }
     }
+
+    #[test]
+    fn two_chapters_with_one_number_or_name_are_a_fault_of_the_second() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path().join(FOLDER);
+        std::fs::create_dir_all(&folder).unwrap();
+        for name in ["05-sphere.md", "05-other.md", "06-sphere.md", "07-normals.md"] {
+            std::fs::write(folder.join(name), "+++\ntitle = \"A\"\n+++\n").unwrap();
+        }
+        let mut faults = Vec::new();
+        let chapters = Chapter::read_all(&Library::Checkout(directory.path().to_owned()), &mut faults);
+        assert_eq!(chapters.len(), 4);
+        let fault = |name: &str, other: &str| {
+            let message = format!("has the number or the name of {FOLDER}/{other}; choose another");
+            Fault::new(&format!("{FOLDER}/{name}"), 0, message)
+        };
+        assert_eq!(faults, [fault("05-sphere.md", "05-other.md"), fault("06-sphere.md", "05-sphere.md")]);
+    }
 }

@@ -304,4 +304,54 @@ struct Pair(u32, u32);
         let message = cut(&library, &declared).unwrap_err();
         assert_eq!(message, "a.rs: lines 1 to 42 are 42, more than 40; choose a shorter item or region");
     }
+
+    #[test]
+    fn braces_in_comments_end_nothing() {
+        let source = [
+            "fn nested() {",
+            "    /* } /* } */ } */",
+            "    more();",
+            "}",
+            "fn short() {",
+            "    /*/ } */",
+            "    more();",
+            "}",
+            "fn divided() { f(a /* b *// c) }",
+            "fn after() {}",
+        ];
+        let found = |item: &str| find_item(&source, item, false);
+        assert_eq!(found("fn nested"), Ok((0, 3)));
+        assert_eq!(found("fn short"), Ok((4, 7)));
+        assert_eq!(found("fn divided"), Ok((8, 8)));
+    }
+
+    #[test]
+    fn declarations_that_are_no_toml_are_a_fault_of_their_line() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join(FILE);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, "# Excerpts\n[first]\nfile = \"a.rs\"\nitem = \"fn a\"\ncolour = 1\n").unwrap();
+        let mut faults = Vec::new();
+        let found = read_all(&Library::Checkout(directory.path().to_owned()), &mut faults);
+        assert!(found.is_empty());
+        assert_eq!(
+            faults.iter().map(|fault| (fault.file.as_str(), fault.line)).collect::<Vec<_>>(),
+            [(FILE, 5)]
+        );
+    }
+
+    #[test]
+    fn an_excerpt_names_its_first_and_its_last_line() {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::write(directory.path().join("a.rs"), "\n\nmod b {\n    fn a() {\n        x();\n    }\n}\n")
+            .unwrap();
+        let library = Library::Checkout(directory.path().to_owned());
+        let declared =
+            Declared { file: "a.rs".to_owned(), item: Some("fn a".to_owned()), region: None, docs: false };
+        let text = "fn a() {\n    x();\n}\n".to_owned();
+        assert_eq!(
+            cut(&library, &declared),
+            Ok(Excerpt { file: "a.rs".to_owned(), first: 4, last: 6, text })
+        );
+    }
 }

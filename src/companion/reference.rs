@@ -81,3 +81,27 @@ pub fn read<T: DeserializeOwned>(library: &Library, file: &str, faults: &mut Vec
     entries.sort_by_key(|entry| entry.line);
     entries
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_entry_that_cannot_be_read_is_a_fault_of_its_line() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join(GLOSSARY);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        let library = Library::Checkout(directory.path().to_owned());
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            let mut faults = Vec::new();
+            let entries: Vec<Entry<Term>> = read(&library, GLOSSARY, &mut faults);
+            let terms: Vec<String> = entries.into_iter().map(|entry| entry.value.term).collect();
+            (terms, faults.into_iter().map(|fault| (fault.file, fault.line)).collect::<Vec<_>>())
+        };
+        let good = "[z]\nterm = \"Z\"\ntext = \"z\"\narea = \"rendering\"\n";
+        let second = "[a]\nterm = \"A\"\ntext = \"a\"\narea = \"cooking\"\n";
+        assert_eq!(read(good), (vec!["Z".to_owned()], Vec::new()));
+        assert_eq!(read(&format!("{good}{second}")), (Vec::new(), vec![(GLOSSARY.to_owned(), 8)]));
+    }
+}

@@ -292,4 +292,14 @@ mod tests {
             assert!(pixels.iter().flatten().all(|x| *x == 0.0), "{compression:?}");
         }
     }
+
+    #[test]
+    fn sixteen_bits_have_as_many_levels() {
+        let file = b"P6 1 1 65535 \xff\xff\x80\x00\x00\x00";
+        let encoding = Encoding::Book(Transfer::Linear);
+        let read = decode_picture(io::Cursor::new(file), file.len() as u64, encoding).unwrap();
+        let [end, middle, zero] = read.pixels[0];
+        assert!(end.is_nan());
+        assert_eq!([middle, zero, read.limit], [32_768.5, 0.5, 65_535.0].map(|level| level / 65_536.0));
+    }
 }

@@ -203,3 +203,38 @@ fn parting_axis(nodes: &[obvhs::bvh2::node::Bvh2Node], first: usize) -> u32 {
     let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
     (axis as u32) << 30 | u32::from(apart[axis] < 0.0) << 29
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_tree_that_no_other_builder_keeps_low_enough_is_halved() {
+        // Each sphere is twice as far away as the one before, so every split that pays leaves most of them together.
+        let far = |place: i32| 2_f64.powi(place);
+        let sphere = |place| Sphere { center: DVec3::X * far(place), radius: 0.1 * far(place), material: 0 };
+        let spheres: Vec<Sphere> = (0..64).map(sphere).collect();
+        let bounded = Bounded::all(&spheres, &DVec3::ZERO);
+        const LEVELS: usize = 7;
+        assert!(depth(&parted::build(&bounded, 1, false).nodes) > LEVELS);
+        let tree = build_tree(&bounded, 1, |tree| tree, |tree| depth(&tree.nodes) <= LEVELS);
+        assert_eq!(depth(&tree.nodes), LEVELS);
+        let mut order = tree.primitive_indices;
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..64), "each sphere is in it once");
+    }
+
+    #[test]
+    fn a_ray_meets_only_the_boxes_that_it_enters() {
+        // A row along x, and a ray that leaves it at once.
+        let sphere = |place: i32| Sphere { center: f64::from(place) * DVec3::X, radius: 0.25, material: 0 };
+        let spheres: Vec<Sphere> = (0..100).map(sphere).collect();
+        let hierarchy = Hierarchy::<f64>::build(&spheres, DVec3::ZERO);
+        let mut met = Vec::new();
+        hierarchy.along(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0).normalize(), |place| {
+            met.push(place);
+            f64::INFINITY
+        });
+        assert!(met.contains(&0) && met.len() <= LEAF_SPHERES as usize, "{met:?}");
+    }
+}

@@ -159,3 +159,46 @@ fn instance(backends: wgpu::Backends) -> &'static wgpu::Instance {
 pub fn adapters() -> Vec<AdapterInfo> {
     all_adapters(|_| true).into_iter().map(|(info, _)| info).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fastest_adapter_comes_first() {
+        let adapter = |kind, backend: &str, is_software, lacks: Option<&str>| AdapterInfo {
+            name: "an adapter".to_owned(),
+            kind,
+            backend: backend.to_owned(),
+            driver: String::new(),
+            is_software,
+            storage_binding_limit: 1 << 27,
+            buffer_limit: 1 << 28,
+            has_timestamps: false,
+            subgroup_size: 32,
+            lacks: lacks.map(str::to_owned),
+        };
+        let ordered = [
+            adapter("discrete GPU", "Vulkan", false, None),
+            adapter("discrete GPU", "GL", false, None),
+            adapter("integrated GPU", "Vulkan", false, None),
+            adapter("virtual GPU", "Vulkan", false, None),
+            adapter("other", "Vulkan", false, None),
+            adapter("software", "Vulkan", true, None),
+            adapter("discrete GPU", "Vulkan", false, Some("no compute shaders")),
+        ];
+        for pair in ordered.windows(2) {
+            assert!(pair[0].rank() < pair[1].rank(), "{pair:?}");
+        }
+    }
+
+    #[test]
+    fn software_is_known_by_its_name() {
+        for name in
+            ["llvmpipe (LLVM 20.1.2, 256 bits)", "SwiftShader Device", "Microsoft Basic Render Driver"]
+        {
+            assert!(names_software(name), "{name}");
+        }
+        assert!(!names_software("NVIDIA H100 PCIe/PCIe/SSE2"));
+    }
+}

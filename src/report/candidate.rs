@@ -213,6 +213,9 @@ fn by_baseline(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recipe::Recipe;
+    use crate::render::{BackendInfo, RenderError, Stats};
+    use std::ops::Range;
 
     #[test]
     fn the_last_step_should_end_within_the_limits() {
@@ -238,5 +241,59 @@ mod tests {
         assert_eq!(steps(7.9, 64), [1, 2, 4]);
         assert_eq!(steps(1e9, 9), [1, 2, 4, 8]);
         assert_eq!(steps(0.1, 1), [1, 2], "two samples are always taken");
+    }
+
+    /// A second of the device's clock passes in every call.
+    #[derive(Default)]
+    struct Clocked {
+        clock: Duration,
+        traced: Vec<Range<u64>>,
+    }
+
+    impl Renderer for Clocked {
+        fn info(&self) -> BackendInfo {
+            BackendInfo { name: "clocked", device: String::new(), lanes: 1, threads: 1 }
+        }
+
+        fn device_time(&self) -> Option<Duration> {
+            Some(self.clock)
+        }
+
+        fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+            Ok(())
+        }
+
+        fn accumulate(
+            &mut self,
+            _: &RenderJob,
+            range: Range<u64>,
+            film: &mut Film,
+            _: &AtomicBool,
+        ) -> Result<Stats, RenderError> {
+            self.clock += Duration::from_secs(1);
+            self.traced.push(range.clone());
+            film.record(range, 2)?;
+            Ok(Stats { rejected: 2, trace: Duration::from_millis(250), ..Stats::default() })
+        }
+    }
+
+    #[test]
+    fn the_warm_up_does_not_count() {
+        let mut recipe = Recipe::find("metals").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (16, 9);
+        let job = recipe.job().unwrap();
+        let mut film = job.new_film();
+        film.record(0..2, 0).unwrap();
+        let reference = ReferencePicture::of_film("metals", "", &film, recipe.rules.transfer).unwrap();
+        let mut clocked = Clocked { clock: Duration::from_secs(60), ..Clocked::default() };
+        let mut growing = Growing::new(&mut clocked, &job).unwrap();
+        growing.warm_up().unwrap();
+        let mut measured = |samples| {
+            let found = growing.grow(samples, &reference).unwrap().unwrap();
+            (found.samples, found.trace_seconds, found.device_seconds, found.rejected)
+        };
+        assert_eq!(measured(2), (2, 0.25, Some(1.0), 2));
+        assert_eq!(measured(4), (4, 0.5, Some(2.0), 4));
+        assert_eq!(clocked.traced, [0..1, 0..2, 2..4]);
     }
 }

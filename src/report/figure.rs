@@ -102,3 +102,124 @@ fn floor(scene: &str, data: &Data, times: [f64; 2], bottom: f64) -> Option<Serie
     let floor = of_scene.filter_map(|row| row.floor).fold(0.0, f64::max);
     (floor > bottom).then(|| line("rounding".to_owned(), &[[times[0], floor], [times[1], floor]]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::data::{Curve, Rounding, SCHEMA, Settings};
+    use super::super::summary::CurvePoint;
+    use super::*;
+    use crate::statistics::fit::Crossing;
+
+    fn data() -> Data {
+        let settings = Settings {
+            software: "Weekender 1.2.3".to_owned(),
+            size: (48, 27),
+            seeds: 4,
+            time_limit: 10.0,
+            max_samples: 64,
+            estimate_error: true,
+            reference_samples: 512,
+            reference: "cpu".to_owned(),
+        };
+        let rounding = Rounding {
+            scene: "book".to_owned(),
+            backend: "cpu".to_owned(),
+            samples: 64,
+            bias: 0.0,
+            rms: 0.125,
+            floor: Some(0.25),
+            floor_limit: 0.5,
+        };
+        let (references, runs) = (Vec::new(), Vec::new());
+        Data { schema: SCHEMA, settings, references, runs, rounding: vec![rounding] }
+    }
+
+    fn point(wall_seconds: f64, rmse: f64) -> CurvePoint {
+        CurvePoint {
+            samples: 16,
+            seeds: 4,
+            trace_seconds: wall_seconds,
+            wall_seconds,
+            device_seconds: None,
+            rmse,
+            range: [0.5 * rmse, 2.0 * rmse],
+            rel_mse: 0.0,
+            flip: 0.0,
+            estimate_ratio: None,
+        }
+    }
+
+    fn curve(scene: &str) -> CurveSummary {
+        let [scene, backend, sampler] = [scene, "cpu", "sobol"].map(str::to_owned);
+        CurveSummary {
+            curve: Curve { scene, backend, sampler },
+            about: String::new(),
+            points: vec![point(1.0, 1.0), point(4.0, 0.25)],
+            slope: None,
+            efficiency: 1.0,
+            times: vec![Some(Crossing { time: 2.0, is_extrapolated: false })],
+        }
+    }
+
+    #[test]
+    fn a_chart_has_its_curve_the_target_and_the_effect_of_rounding() {
+        let series = |name: &str, look, points: &[(f64, f64, Option<[f64; 2]>)]| Series {
+            name: name.to_owned(),
+            points: points.iter().map(|(x, y, spread)| Point { x: *x, y: *y, spread: *spread }).collect(),
+            look,
+        };
+        let guide = |name, [from, to]: [(f64, f64); 2]| {
+            series(name, Look::Guide, &[(from.0, from.1, None), (to.0, to.1, None)])
+        };
+        let axis = |label: &str, limits| Axis { limits: Some(limits), ..Axis::new(label, Scale::Log) };
+        // The chart ends a little below the smallest error.
+        let bottom = 0.175;
+        let chart = LineChart {
+            title: "book".to_owned(),
+            x: axis("seconds of rendering", [0.8, 5.0]),
+            y: axis("error (RMSE, white is 1)", [bottom, 1.4]),
+            series: vec![
+                guide("4x the time, half the error", [(1.0, 1.0), (4.0, 0.5)]),
+                guide("target: 0.5", [(1.0, 0.5), (4.0, 0.5)]),
+                guide("", [(2.0, 0.5), (2.0, bottom)]),
+                guide("rounding", [(1.0, 0.25), (4.0, 0.25)]),
+                series(
+                    "cpu, sobol",
+                    Look::Measured,
+                    &[(1.0, 1.0, Some([0.5, 2.0])), (4.0, 0.25, Some([bottom, 0.5]))],
+                ),
+            ],
+            legend: Some(Corner::LowerLeft),
+        };
+        let expected = Figure {
+            title: "Error against time".to_owned(),
+            about:
+                "lower left is better; each mark doubles the samples: 1, 2, 4 ...; bands span 4 pictures; \
+                    Weekender 1.2.3"
+                    .to_owned(),
+            size: [560, 560],
+            columns: 1,
+            panels: vec![Panel::Lines(chart)],
+        };
+        assert_eq!(figure(&data(), &[curve("book")], 0.5), expected);
+    }
+
+    #[test]
+    fn scenes_have_charts_of_their_own_in_two_columns() {
+        let mut one = data();
+        one.settings.seeds = 1;
+        let found = figure(&one, &[curve("a"), curve("b"), curve("a"), curve("c")], 0.5);
+        assert_eq!((found.size, found.columns), ([1120, 1030], 2));
+        assert!(!found.about.contains("bands"), "{}", found.about);
+        let names: Vec<(&str, usize)> = found
+            .panels
+            .iter()
+            .map(|panel| {
+                let Panel::Lines(chart) = panel else { panic!("{panel:?}") };
+                let curves = chart.series.iter().filter(|series| series.look == Look::Measured).count();
+                (chart.title.as_str(), curves)
+            })
+            .collect();
+        assert_eq!(names, [("a", 2), ("b", 1), ("c", 1)]);
+    }
+}

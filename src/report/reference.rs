@@ -192,3 +192,76 @@ fn kept(path: &Path, job: &RenderJob, about: &str) -> Option<Film> {
     let is_same = theirs == *job && read.backend.as_deref() == Some(about);
     is_same.then_some(read.film)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::film::fixed_point;
+    use crate::render_cpu::CpuOptions;
+    use glam::DVec3;
+    use std::path::PathBuf;
+    use tempfile::TempDir;
+
+    fn small() -> Recipe {
+        let mut recipe = Recipe::find("metals").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (16, 9);
+        recipe
+    }
+
+    fn cpu(panics_after: Option<u64>) -> BackendChoice {
+        BackendChoice::Cpu(CpuOptions { threads: Some(1), panics_after, ..CpuOptions::default() })
+    }
+
+    fn place() -> (TempDir, PathBuf) {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("reference.exr");
+        (directory, path)
+    }
+
+    #[test]
+    fn only_a_film_of_the_same_paths_is_a_reference() {
+        let (_directory, path) = place();
+        let recipe = small();
+        make(&path, &recipe, &cpu(None), 2, |_| true).unwrap().unwrap();
+        assert_eq!(read(&path, &recipe).unwrap().used.samples, 2);
+        let mut moved = recipe.clone();
+        moved.camera.look_from += DVec3::new(0.25, 0.5, 1.0);
+        let mut other = Recipe::find("three-spheres").unwrap();
+        (other.settings, other.camera, other.rules) = (recipe.settings, recipe.camera, recipe.rules);
+        assert!(other.scene != recipe.scene);
+        let mut wider = recipe.clone();
+        wider.settings.width += 1;
+        let mut shorter = recipe.clone();
+        shorter.settings.max_depth -= 1;
+        for (what, recipe) in [("camera", moved), ("scene", other), ("size", wider), ("depth", shorter)] {
+            let error = read(&path, &recipe).err().map(|error| error.to_string()).unwrap_or_default();
+            assert!(error.contains("is not a picture of"), "{what}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_backend_that_fails_is_an_error_and_the_film_is_kept() {
+        let (_directory, path) = place();
+        let recipe = small();
+        make(&path, &recipe, &cpu(None), 2, |_| true).unwrap().unwrap();
+        let error = make(&path, &recipe, &cpu(Some(0)), 8, |_| true).err().unwrap();
+        assert!(error.to_string().contains("panicked"), "{error}");
+        assert_eq!(checkpoint::load(&path).unwrap().film.sample_count(), 2);
+    }
+
+    #[test]
+    fn errors_are_means_over_pixels_and_channels() {
+        let mut film = Film::new(16, 9, 2);
+        for half in film.halves_mut() {
+            half.iter_mut().for_each(|sum| sum.add(fixed_point([0.5; 3]).unwrap()));
+        }
+        film.record(0..2, 0).unwrap();
+        let reference = ReferencePicture::of_film("grey", "", &film, Transfer::Linear).unwrap();
+        assert_eq!((reference.used.mse, reference.used.rel_mse), (0.0, 0.0));
+        assert_eq!(reference.errors(&film_means(&film)), Errors { mse: 0.0, rel_mse: 0.0, flip: 0.0 });
+        let errors = reference.errors(&[[0.75; 3]; 16 * 9]);
+        assert!((errors.mse - 0.0625).abs() < 1e-9, "{errors:?}");
+        assert!((errors.rel_mse - 0.0625 / 0.26).abs() < 1e-9, "{errors:?}");
+        assert!(errors.flip > 0.0, "{errors:?}");
+    }
+}

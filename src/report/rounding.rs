@@ -80,5 +80,8 @@ mod tests {
         // Halves that differ in opposite directions have nothing in common; the limit is a number all the same.
         let found = rounding("s", "b", &film(|_, half| if half == 0 { 1e-3 } else { -1e-3 }), &exact);
         assert!(found.floor.is_none() && found.floor_limit > 0.0, "{found:?}");
+        // Films that are equal to the bit have no floor.
+        let found = rounding("s", "b", &exact, &exact);
+        assert_eq!((found.bias, found.rms, found.floor, found.floor_limit), (0.0, 0.0, None, 0.0));
     }
 }

@@ -115,4 +115,24 @@ mod tests {
         assert_eq!(places[..2], [first, second.clone()]);
         assert_eq!(places.iter().filter(|place| **place == second).count(), 1, "{places:?}");
     }
+
+    #[test]
+    fn a_place_without_a_free_name_is_passed_over() {
+        let directory = tempfile::tempdir().unwrap();
+        let [full, free] = ["full", "free"].map(|name| directory.path().join(name));
+        for place in [&full, &free] {
+            std::fs::create_dir(place).unwrap();
+        }
+        let process = std::process::id();
+        std::fs::write(full.join(format!("weekender-a-{process}.exr")), "").unwrap();
+        for number in 2..NAME_LIMIT {
+            std::fs::write(full.join(format!("weekender-a-{process}-{number}.exr")), "").unwrap();
+        }
+        let (mut film, description) = (Film::new(4, 3, 2), Description::new("r"));
+        film.record(0..6, 0).unwrap();
+        let kept = keep_in(&[full.clone(), free.clone()], "a", &film, &description).unwrap();
+        assert_eq!(kept.parent(), Some(free.as_path()));
+        let lost = keep_in(std::slice::from_ref(&full), "a", &film, &description).unwrap_err();
+        assert!(lost.ends_with(&format!("failed, too: {} (no free name)", full.display())), "{lost}");
+    }
 }

@@ -238,4 +238,20 @@ mod tests {
             prop_assert!((law.error_at(3.0) / (scale * 3_f64.powf(slope)) - 1.0).abs() < 1e-9);
         }
     }
+
+    #[test]
+    fn an_error_that_rises_never_meets_a_target() {
+        assert_eq!(time_to(&curve(0.25, 5), 0.05), None);
+    }
+
+    #[test]
+    fn estimates_of_no_error_do_not_count() {
+        // A picture that is black so far.
+        let mut points = curve(-0.6, 6);
+        let now = points.pop().unwrap();
+        let before = predict(&points, now, now.error / 2.0);
+        assert!(before.is_some());
+        points.push(Point { time: 0.8 * now.time, error: 0.0 });
+        assert_eq!(predict(&points, now, now.error / 2.0), before);
+    }
 }

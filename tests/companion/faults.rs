@@ -65,6 +65,7 @@ fn faults_of_a_chapter_name_its_line() {
         ("[@no-such]", "no entry \"no-such\""),
         ("## 6.1 Another Title", "is called \"Shading with Surface Normals\""),
         ("# Title", "two to four #"),
+        ("## Where the digits go", "another heading has the anchor #sphere-where-the-digits-go"),
         ("$\\nosuch$", "is not understood"),
         ("```cobol\nx\n```", "\"cobol\" has no colours"),
         ("<b>x</b>", "HTML is not allowed"),
@@ -100,6 +101,8 @@ fn faults_of_other_files_are_told() {
         said.contains("glossary.toml:") && said.contains("no chapter links the term \"lonely\""),
         "{said}"
     );
+    let said = refused(&texts, CHAPTER, &|text| text.replacen("book = \"5\"", "book = \"99\"", 1));
+    assert!(said.contains(&format!("{CHAPTER}:1: the book has no chapter \"99\"")), "{said}");
     let said = refused(&texts, CHAPTER, &|text| text.replacen("title", "titel", 1));
     assert!(said.contains(&format!("{CHAPTER}:2: ")) && said.contains("titel"), "{said}");
 }

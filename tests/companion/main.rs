@@ -10,6 +10,7 @@ mod html_common;
 mod valid;
 
 use html::Html;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::LazyLock;
@@ -156,4 +157,24 @@ fn a_benchmark_can_be_shown_instead_of_the_kept_one() {
     assert_eq!(refused.status.code(), Some(2));
     assert!(text(&refused.stderr).contains("weekender bench --json"), "{}", text(&refused.stderr));
     assert!(!directory.path().join("out").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_the_page_and_says_how_to_go_on() {
+    let directory = TempDir::new().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_weekender"));
+    command.arg("companion").arg("--out").arg(directory.path()).args(["--progress", "on"]);
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut said = BufReader::new(child.stderr.take().unwrap());
+    // The first line of progress: a figure is being rendered.
+    let mut line = String::new();
+    said.read_line(&mut line).unwrap();
+    let signalled = Command::new("kill").args(["-s", "INT", &child.id().to_string()]).status().unwrap();
+    assert!(signalled.success());
+    said.read_to_string(&mut line).unwrap();
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{line}");
+    assert!(line.contains("figures missing; run the same command again to go on"), "{line}");
+    assert!(directory.path().join("index.html").exists());
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender};
 use std::time::Duration;
 use weekender::backends::BackendChoice;
 use weekender::film::{Film, PixelSum};
@@ -84,6 +85,77 @@ impl Renderer for Fake {
         let samples = range.end - range.start;
         film.record(range, 0)?;
         Ok(Stats { paths: samples * 4, rays: samples * 8, ..Stats::default() })
+    }
+}
+
+/// Spoils the film in its second pass, and tells so.
+pub struct Spoiling {
+    pub fake: Fake,
+    pub passes: u32,
+    /// Is told when the film has been spoilt.
+    pub spoilt: Option<Sender<()>>,
+}
+
+impl Spoiling {
+    pub fn new(name: &'static str) -> Self {
+        Spoiling { fake: Fake::new(name), passes: 0, spoilt: None }
+    }
+}
+
+impl Renderer for Spoiling {
+    fn info(&self) -> BackendInfo {
+        self.fake.info()
+    }
+
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
+        self.fake.prepare(job, cancel)
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.passes += 1;
+        if self.passes == 1 {
+            return self.fake.accumulate(job, range, film, cancel);
+        }
+        film.halves_mut()[0][0].add(PixelSum([1; 3]));
+        if let Some(spoilt) = &self.spoilt {
+            spoilt.send(()).unwrap();
+        }
+        Err(RenderError::FilmLost { backend: self.fake.name, reason: "pulled out".into() })
+    }
+}
+
+/// Waits for a signal before its first pass.
+pub struct Waiting {
+    pub fake: Fake,
+    pub signal: Option<Receiver<()>>,
+}
+
+impl Renderer for Waiting {
+    fn info(&self) -> BackendInfo {
+        self.fake.info()
+    }
+
+    fn prepare(&mut self, job: &RenderJob, cancel: &AtomicBool) -> Result<(), RenderError> {
+        self.fake.prepare(job, cancel)
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        if let Some(signal) = self.signal.take() {
+            signal.recv_timeout(PATIENCE).unwrap();
+        }
+        self.fake.accumulate(job, range, film, cancel)
     }
 }
 

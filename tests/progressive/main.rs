@@ -2,8 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper of a test may fail like the test")]
 
+mod breakdowns;
 mod common;
 mod failures;
 mod handover;
 mod preview;
 mod stopping;
+mod together;

@@ -165,4 +165,19 @@ mod tests {
     fn millions_have_three_digits() {
         assert_eq!([5.214e6, 54.62e6, 154.2e6].map(millions), ["5.21", "54.6", "154"]);
     }
+
+    #[test]
+    fn a_measurement_whose_file_is_missing_is_a_fault_of_the_list() {
+        let directory = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(directory.path().join(FOLDER)).unwrap();
+        let entry = |name: &str| format!("[{name}]\nfile = \"{name}.json\"\ncommand = \"true\"\n");
+        std::fs::write(directory.path().join(FILE), entry("error") + &entry("speed")).unwrap();
+        std::fs::write(directory.path().join(FOLDER).join("speed.json"), "{}").unwrap();
+        let mut faults = Vec::new();
+        let measured = Measured::read(&Library::Checkout(directory.path().to_owned()), &mut faults);
+        assert_eq!(measured.kept.keys().collect::<Vec<_>>(), ["speed"]);
+        let [fault] = faults.as_slice() else { panic!("{faults:?}") };
+        assert_eq!((fault.file.as_str(), fault.line), (FILE, 0));
+        assert!(fault.message.starts_with("error: docs/companion/error.json "), "{fault}");
+    }
 }

@@ -24,8 +24,8 @@ pub(super) enum Step {
 ///
 /// This parses the text again, so that reading a file without errors need not record places.
 pub(super) fn find_place(text: &str, path: &[Step]) -> Range<usize> {
-    let Ok(document) = DeTable::parse(text) else { return 0..0 };
     let mut place = 0..0;
+    let Ok(document) = DeTable::parse(text) else { return place };
     let Some((Step::Key(first), rest)) = path.split_first() else { return place };
     let Some((key, value)) = document.get_ref().get_key_value(first.as_str()) else { return place };
     place = narrower(key.span(), value.span());
