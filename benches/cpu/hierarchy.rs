@@ -4,7 +4,7 @@ use crate::widths::{Body, COUNT, Vectors, rays, run, widths};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use glam::DVec3;
-use weekender::prepared::hierarchy::Hierarchy;
+use weekender::prepared::hierarchy::{Effort, Hierarchy};
 use weekender::render_cpu::bvh::{EMPTY_STACK, traverse};
 use weekender::render_cpu::lanes::{Lanes, Mask, Unsigned};
 use weekender::render_cpu::sphere::Nearest;
@@ -23,7 +23,7 @@ fn build(bencher: Bencher, count: u64) {
     let spheres = spheres(count);
     bencher
         .counter(ItemsCount::new(count))
-        .bench(|| Hierarchy::<f32>::build(divan::black_box(&spheres), DVec3::ZERO));
+        .bench(|| Hierarchy::<f32>::build(divan::black_box(&spheres), DVec3::ZERO, Effort::Quick));
 }
 
 /// Rays in all directions from a little above the middle of a field.
@@ -37,7 +37,7 @@ struct Traverse {
 impl Traverse {
     fn new(count: u64) -> Self {
         let spheres = spheres(count);
-        let hierarchy = Hierarchy::build(&spheres, DVec3::ZERO);
+        let hierarchy = Hierarchy::build(&spheres, DVec3::ZERO, Effort::Quick);
         let packed = |index: &u32| {
             let Sphere { center, radius, .. } = spheres[*index as usize];
             [center.x, center.y, center.z, radius * radius].map(|x| x as f32)

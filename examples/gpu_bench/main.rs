@@ -21,7 +21,7 @@ use weekender::backends::BackendChoice;
 use weekender::kernel::Node;
 use weekender::prepared::PreparedScene;
 use weekender::prepared::cwbvh::{CwBvhNode, Cwbvh};
-use weekender::prepared::hierarchy::Hierarchy;
+use weekender::prepared::hierarchy::{Effort, Hierarchy};
 use weekender::progressive::{Plan, Progressive, RenderRequest};
 use weekender::recipe::Recipe;
 use weekender::render::{RenderJob, RenderSettings, Renderer};
@@ -156,7 +156,7 @@ fn hierarchy(scene: &str) -> anyhow::Result<()> {
     let mut sizes = [0, 0];
     for _ in 0..5 {
         let start = Instant::now();
-        let bvh2 = Hierarchy::<f32>::build(spheres.iter().copied(), prepared.origin);
+        let bvh2 = Hierarchy::<f32>::build(spheres.iter().copied(), prepared.origin, Effort::Quick);
         bvh2_times.push(ms(start));
         let start = Instant::now();
         let cwbvh = Cwbvh::build(spheres.iter().copied(), prepared.origin);

@@ -26,10 +26,10 @@ fn remedy(reason: &io::Error) -> &'static str {
         }
         ErrorKind::IsADirectory => "name a file in that directory",
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            "free some space or choose another place; the file that was there is as it was"
+            "free some space, or choose another place; an existing file is left unchanged"
         }
         ErrorKind::FileTooLarge => {
-            "allow larger files (ulimit -f), or choose another place; the file that was there is as it was"
+            "allow larger files (ulimit -f), or choose another place; an existing file is left unchanged"
         }
         ErrorKind::InvalidFilename | ErrorKind::InvalidInput => "choose another name",
         _ => "choose another place",

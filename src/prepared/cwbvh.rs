@@ -5,7 +5,7 @@
 //! than its contents.
 
 use super::bounded::Bounded;
-use super::hierarchy::build_tree;
+use super::hierarchy::{Effort, build_tree};
 use crate::kernel::CWBVH_STACK_SIZE;
 use crate::scene::Sphere;
 use glam::{DVec3, Vec3A};
@@ -41,7 +41,7 @@ impl Cwbvh {
             let wide = bvh2_to_cwbvh(&tree, LEAF_SPHERES, true, false);
             Cwbvh { nodes: wide.nodes, order: wide.primitive_indices }
         };
-        let mut built = build_tree(&bounded, 1, wide, |built| built.depth() <= DEPTH_LIMIT);
+        let mut built = build_tree(&bounded, 1, Effort::Quick, wide, |built| built.depth() <= DEPTH_LIMIT);
         let boxes: Vec<Aabb> = built.order.iter().map(|index| bounded[*index as usize].aabb()).collect();
         built.set_boxes(&boxes);
         debug_assert_eq!(built.validate(&bounded), Ok(()));

@@ -12,6 +12,7 @@ use obvhs::BvhBuildParams;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
+use std::ops::RangeInclusive;
 use std::time::Duration;
 
 /// Most levels of a tree, limited by the traversal's stack.
@@ -23,6 +24,18 @@ const LEAF_SPHERES: u32 = 12;
 /// What a packet's visit of a node costs, in tests of a sphere. Higher costs make fuller leaves. The number was chosen by
 /// measurement; between 5 and 8, packets differ by less than 3 %, and one lane prefers 5.
 const VISIT_COST: f32 = 5.0;
+
+/// Numbers of spheres for which a thorough build gives a better hierarchy than a quick one, and fits memory and time.
+const IMPROVABLE: RangeInclusive<usize> = 20_001..=4_000_000;
+
+/// How long building a hierarchy may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// Up to some .1 s on one core, and 1 µs per sphere: for a picture that someone waits for.
+    Quick,
+    /// As long as the best tree takes, which is up to 20 times as long.
+    Thorough,
+}
 
 /// The nodes of a hierarchy, root first, and the order of its spheres.
 #[derive(Clone, Debug)]
@@ -38,9 +51,9 @@ pub struct Hierarchy<R> {
 
 impl<R: Real> Hierarchy<R> {
     /// Builds the hierarchy over at least one sphere, with coordinates relative to `origin`.
-    pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3) -> Self {
+    pub fn build<'a>(spheres: impl IntoIterator<Item = &'a Sphere>, origin: DVec3, effort: Effort) -> Self {
         let fits = |tree: &Bvh2| depth(&tree.nodes) <= DEPTH_LIMIT;
-        let tree = build_tree(&Bounded::all(spheres, &origin), LEAF_SPHERES, |tree| tree, fits);
+        let tree = build_tree(&Bounded::all(spheres, &origin), LEAF_SPHERES, effort, |tree| tree, fits);
         let corner = |v: glam::Vec3A| v.to_array().map(|x| R::from_f64(f64::from(x)));
         let mut extent = 0.0_f32;
         let nodes = tree
@@ -68,11 +81,12 @@ impl<R: Real> Hierarchy<R> {
 pub(super) fn build_tree<T>(
     spheres: &[Bounded<'_, '_>],
     leaf_spheres: u32,
+    effort: Effort,
     lay_out: impl Fn(Bvh2) -> T,
     fits: impl Fn(&T) -> bool,
 ) -> T {
     if !parted::is_crowded(spheres) {
-        let params = params(spheres.len(), leaf_spheres);
+        let params = params(spheres.len(), leaf_spheres, effort);
         let tree = lay_out(build_bvh2(spheres, params, &mut Duration::default()));
         if fits(&tree) {
             return tree;
@@ -174,6 +188,11 @@ impl<R> Hierarchy<R> {
         }
     }
 
+    /// Whether a thorough build of this many spheres is worth its time if they are traced for long.
+    pub fn is_improvable(&self) -> bool {
+        IMPROVABLE.contains(&self.ranks.len())
+    }
+
     /// The number of nodes on the longest path from the root to a leaf.
     pub fn depth(&self) -> usize {
         levels(|index| {
@@ -183,13 +202,13 @@ impl<R> Hierarchy<R> {
     }
 }
 
-/// Build parameters of obvhs for this many spheres: the best tree that is built within some .1 s on one core.
-fn params(spheres: usize, max_prims_per_leaf: u32) -> BvhBuildParams {
-    let preset = match spheres {
-        0..=1_000 => BvhBuildParams::medium_build(),
-        1_001..=20_000 => BvhBuildParams::very_slow_build(),
-        20_001..=200_000 => BvhBuildParams::slow_build(),
-        _ => BvhBuildParams::fast_build(),
+/// Build parameters of obvhs for this many spheres.
+fn params(spheres: usize, max_prims_per_leaf: u32, effort: Effort) -> BvhBuildParams {
+    let preset = match (spheres, effort) {
+        (0..=1_000, _) => BvhBuildParams::medium_build(),
+        (1_001..=20_000, _) | (_, Effort::Thorough) => BvhBuildParams::very_slow_build(),
+        (20_001..=200_000, Effort::Quick) => BvhBuildParams::slow_build(),
+        (_, Effort::Quick) => BvhBuildParams::fast_build(),
     };
     // A split box would list its sphere twice.
     BvhBuildParams { pre_split: false, max_prims_per_leaf, collapse_traversal_cost: VISIT_COST, ..preset }
@@ -217,7 +236,7 @@ mod tests {
         let bounded = Bounded::all(&spheres, &DVec3::ZERO);
         const LEVELS: usize = 7;
         assert!(depth(&parted::build(&bounded, 1, false).nodes) > LEVELS);
-        let tree = build_tree(&bounded, 1, |tree| tree, |tree| depth(&tree.nodes) <= LEVELS);
+        let tree = build_tree(&bounded, 1, Effort::Quick, |tree| tree, |tree| depth(&tree.nodes) <= LEVELS);
         assert_eq!(depth(&tree.nodes), LEVELS);
         let mut order = tree.primitive_indices;
         order.sort_unstable();
@@ -229,7 +248,7 @@ mod tests {
         // A row along x, and a ray that leaves it at once.
         let sphere = |place: i32| Sphere { center: f64::from(place) * DVec3::X, radius: 0.25, material: 0 };
         let spheres: Vec<Sphere> = (0..100).map(sphere).collect();
-        let hierarchy = Hierarchy::<f64>::build(&spheres, DVec3::ZERO);
+        let hierarchy = Hierarchy::<f64>::build(&spheres, DVec3::ZERO, Effort::Quick);
         let mut met = Vec::new();
         hierarchy.along(DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0).normalize(), |place| {
             met.push(place);

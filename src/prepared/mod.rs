@@ -20,7 +20,7 @@ use crate::stages::SurfaceRule;
 use facts::Facts;
 use glam::DVec3;
 use groups::{Anchored, Groups};
-use hierarchy::Hierarchy;
+use hierarchy::{Effort, Hierarchy};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -70,15 +70,21 @@ pub struct PreparedScene<R> {
 impl<R: Real> PreparedScene<R> {
     /// Sorts, anchors and rounds the scene, and builds a hierarchy if there are enough spheres.
     pub fn new(job: &RenderJob) -> Self {
-        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES)
+        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Quick)
+    }
+
+    /// Like [`PreparedScene::new`], with the best hierarchy that can be built, which may take many times as long. Both
+    /// render the same bits.
+    pub fn thorough(job: &RenderJob) -> Self {
+        PreparedScene::with_hierarchy_from(job, HIERARCHY_MIN_SPHERES, Effort::Thorough)
     }
 
     /// Like [`PreparedScene::new`], but never builds a hierarchy, for comparisons.
     pub fn as_list(job: &RenderJob) -> Self {
-        PreparedScene::with_hierarchy_from(job, usize::MAX)
+        PreparedScene::with_hierarchy_from(job, usize::MAX, Effort::Quick)
     }
 
-    fn with_hierarchy_from(job: &RenderJob, least_spheres: usize) -> Self {
+    fn with_hierarchy_from(job: &RenderJob, least_spheres: usize, effort: Effort) -> Self {
         let facts = Arc::new(Facts::of(job.scene()));
         let groups = Groups::of(job, &facts);
         let has_hierarchy = job.rules().surface == SurfaceRule::Exact
@@ -87,7 +93,7 @@ impl<R: Real> PreparedScene<R> {
         let (mut listed, mut hierarchy) = (groups.in_list_order(), None);
         if has_hierarchy {
             let spheres = listed.iter().map(|index| &job.scene().spheres[*index as usize]);
-            let built = Hierarchy::build(spheres, groups.origin);
+            let built = Hierarchy::build(spheres, groups.origin, effort);
             listed = built.ranks.iter().map(|rank| listed[*rank as usize]).collect();
             hierarchy = Some(built);
         }

@@ -5,6 +5,8 @@ use super::isa::Isa;
 use super::kernels;
 use super::options::{CpuError, CpuOptions};
 use super::pass::{Pass, PassTracer, Prepared, TracedTile, what_is_missing};
+use super::priority::give_way;
+use super::rebuild::Rebuild;
 use super::tiles::tile_side;
 use super::work::TileStats;
 use crate::film::{Film, FilmError};
@@ -15,19 +17,17 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-/// The nice value added to low-priority threads. Under contention each step costs about a tenth of the time.
-#[cfg(target_os = "linux")]
-const NICENESS: i32 = 10;
-
 /// The renderer on the CPU.
 pub struct CpuRenderer {
     /// Level and lane count; `None` for the reference.
     packets: Option<(Isa, usize)>,
     /// Whether every job gets the general kernel.
     general: bool,
+    low_priority: bool,
     threads: rayon::ThreadPool,
     job: Option<RenderJob>,
-    prepared: Option<Prepared>,
+    pub(super) prepared: Option<Prepared>,
+    pub(super) rebuild: Rebuild,
     occupancy: TileOccupancy,
     messages: Vec<String>,
     /// Tiles left before one in which the tracer panics (fault injection).
@@ -81,9 +81,11 @@ impl CpuRenderer {
             .map(|threads| CpuRenderer {
                 packets,
                 general: false,
+                low_priority,
                 threads,
                 job: None,
                 prepared: None,
+                rebuild: Rebuild::new(),
                 occupancy: TileOccupancy::default(),
                 tiles_to_panic: None,
                 messages: Vec::new(),
@@ -94,13 +96,6 @@ impl CpuRenderer {
                 CpuError::Threads { threads, reason: error.to_string() }
             })
     }
-}
-
-/// Lowers the priority of this thread, and of threads that it starts. If the system refuses, the priority stays unchanged.
-pub fn give_way() {
-    // On Linux this changes the thread's priority, not the process's.
-    #[cfg(target_os = "linux")]
-    let _ = rustix::process::nice(NICENESS);
 }
 
 impl Renderer for CpuRenderer {
@@ -156,6 +151,7 @@ impl Renderer for CpuRenderer {
                 };
                 let prepared = self.threads.install(|| PreparedScene::renewed(old.zip(before), job));
                 self.messages = prepared.warnings().to_vec();
+                self.rebuild.note_prepared(&prepared);
                 let wanted = self.wanted_parts(&prepared);
                 let kernel = kernels::kernel(isa, lanes, wanted).ok_or_else(|| RenderError::Backend {
                     backend: "cpu",
@@ -193,6 +189,7 @@ impl Renderer for CpuRenderer {
         cancel: &AtomicBool,
     ) -> Result<Stats, RenderError> {
         self.prepare(job, cancel)?;
+        self.take_better_hierarchy(job);
         if let Some(range) = film.samples().overlap(&range) {
             return Err(FilmError::Overlap { range }.into());
         }
@@ -222,13 +219,15 @@ impl Renderer for CpuRenderer {
         let tiles = traced.iter().map(|tile| tile.stats).fold(TileStats::default(), TileStats::plus);
         film.record(range, tiles.rejected)?;
         self.note_occupancy(side, film.width().div_ceil(side), &traced);
+        let trace = start.elapsed();
+        self.begin_better_hierarchy(job, trace);
         Ok(Stats {
             paths,
             rays: tiles.rays,
             rejected: tiles.rejected,
             busy_lanes: tiles.rays,
             offered_lanes: tiles.offered_lanes,
-            trace: start.elapsed(),
+            trace,
         })
     }
 }
@@ -236,6 +235,23 @@ impl Renderer for CpuRenderer {
 impl CpuRenderer {
     fn wanted_parts<R: Real>(&self, prepared: &PreparedScene<R>) -> u32 {
         if self.general { parts::ALL } else { prepared.features.parts() }
+    }
+
+    /// Goes on with the better hierarchy if it has been built.
+    fn take_better_hierarchy(&mut self, job: &RenderJob) {
+        if let Some(Prepared::Single(broadcast, _)) = &mut self.prepared
+            && let Some(better) = self.rebuild.take_built(job)
+        {
+            **broadcast = BroadcastScene::new(better);
+        }
+    }
+
+    /// Begins to build a better hierarchy if tracing has gone on for long.
+    fn begin_better_hierarchy(&mut self, job: &RenderJob, traced: Duration) {
+        if let Some(Prepared::Single(broadcast, _)) = &self.prepared {
+            let threads = self.threads.current_num_threads();
+            self.rebuild.note_pass(traced, threads, &broadcast.prepared, job, self.low_priority);
+        }
     }
 
     fn note_occupancy(&mut self, side: u32, columns: u32, traced: &[TracedTile]) {
@@ -253,6 +269,8 @@ impl CpuRenderer {
 mod tests {
     use super::*;
     use crate::recipe::Recipe;
+    #[cfg(target_os = "linux")]
+    use crate::render_cpu::priority::NICENESS;
     use crate::scene::{Material, Sphere};
     use glam::DVec3;
 

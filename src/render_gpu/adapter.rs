@@ -118,11 +118,14 @@ fn names_software(name: &str) -> bool {
     ["llvmpipe", "softpipe", "swiftshader", "swrast", "basic render"].iter().any(|s| name.contains(s))
 }
 
-/// All adapters, best first. GL is enumerated only if no other backend has a usable adapter that is `wanted`: it would
+/// All adapters, best first, of those graphics interfaces that the environment variable `WGPU_BACKEND` names, if it is
+/// set (`vulkan,gl`; `noop` finds none). GL is enumerated only if no other backend has a usable adapter that is `wanted`: it would
 /// list the same hardware again, and its libraries print warnings of their own.
 pub fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, wgpu::Adapter)> {
-    let mut adapters = adapters_of(wgpu::Backends::PRIMARY);
-    if !adapters.iter().any(|(info, _)| info.lacks.is_none() && wanted(info)) {
+    let allowed = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::all());
+    let mut adapters = adapters_of(wgpu::Backends::PRIMARY & allowed);
+    let is_found = adapters.iter().any(|(info, _)| info.lacks.is_none() && wanted(info));
+    if !is_found && allowed.contains(wgpu::Backends::GL) {
         adapters.extend(adapters_of(wgpu::Backends::GL));
     }
     adapters.sort_by_key(|(info, _)| info.rank());

@@ -21,7 +21,7 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("sampling", &["render"]),
     ("kernel", &["scene", "stages", "film", "render", "sampling"]),
     ("prepared", &["scene", "stages", "film", "render", "kernel"]),
-    ("render_cpu", &["stages", "film", "render", "record", "sampling", "kernel", "prepared"]),
+    ("render_cpu", &["memory", "stages", "film", "render", "record", "sampling", "kernel", "prepared"]),
     ("render_gpu", &["stages", "film", "render", "record", "sampling", "kernel", "prepared"]),
     ("explain", &["scene", "stages", "render", "record", "sampling"]),
     ("layers", &["scene", "render", "record", "render_cpu"]),

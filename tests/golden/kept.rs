@@ -26,6 +26,7 @@ pub fn check(name: &str, actual: &str) {
     let new = option_env!("CARGO_TARGET_TMPDIR")
         .map_or_else(std::env::temp_dir, PathBuf::from)
         .join(format!("{name}.txt"));
+    std::fs::create_dir_all(new.parent().unwrap()).unwrap();
     std::fs::write(&new, actual).unwrap();
     panic!(
         "{name} is not as kept; if it should be, run again with UPDATE_SNAPSHOTS=1; all of it is in {}\n{}",

@@ -4,6 +4,7 @@
 //! texts anew; whoever does so reads what `git diff` shows.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a helper of a test may fail like the test")]
 
+mod charts;
 mod common;
 mod films;
 mod flags;

@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::sync::Arc;
 use weekender::kernel::{BOX_MARGIN, Node, Real};
 use weekender::prepared::PreparedScene;
-use weekender::prepared::hierarchy::Hierarchy;
+use weekender::prepared::hierarchy::{Effort, Hierarchy};
 use weekender::render::{RenderJob, RenderSettings};
 use weekender::render_cpu::bvh::{EMPTY_STACK, misses_box, slabs_of, traverse};
 use weekender::render_cpu::lanes::{Key, Lanes, Mask, Reference, Scalar, Unsigned, V3, Wide, WideU};
@@ -98,7 +98,7 @@ struct Tree<L: Lanes> {
 
 impl<L: Lanes> Tree<L> {
     fn over(listed: &[Sphere]) -> Self {
-        let hierarchy = Hierarchy::<L::Real>::build(listed, DVec3::ZERO);
+        let hierarchy = Hierarchy::<L::Real>::build(listed, DVec3::ZERO, Effort::Quick);
         let ordered: Vec<Sphere> = hierarchy.ranks.iter().map(|rank| listed[*rank as usize]).collect();
         assert_eq!(ordered.len(), listed.len(), "each sphere is in one leaf");
         let row = |(sphere, rank): (&Sphere, &u32)| {

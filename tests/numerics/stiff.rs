@@ -6,7 +6,7 @@ use glam::DVec3;
 use weekender::film::Film;
 use weekender::kernel::Roots;
 use weekender::prepared::PreparedScene;
-use weekender::prepared::hierarchy::{DEPTH_LIMIT, Hierarchy};
+use weekender::prepared::hierarchy::{DEPTH_LIMIT, Effort, Hierarchy};
 use weekender::render::{RenderJob, RenderSettings};
 use weekender::scene::builtin::{LeftSphere, field, three_spheres};
 use weekender::scene::{Camera, Material, Scene, Sky};
@@ -116,7 +116,7 @@ fn shells_and_crowds_have_low_trees() {
     let copies = vec![ball(DVec3::Y, 1.0); 6000];
     let row: Vec<_> = (0..6000).map(|i| ball(DVec3::X * f64::from(i), 0.5)).collect();
     for spheres in [&shells, &halves, &crowd, &copies, &row] {
-        let hierarchy = Hierarchy::<f32>::build(spheres, DVec3::ZERO);
+        let hierarchy = Hierarchy::<f32>::build(spheres, DVec3::ZERO, Effort::Quick);
         let mut order = hierarchy.ranks.clone();
         order.sort_unstable();
         assert!(order.iter().enumerate().all(|(place, rank)| place == *rank as usize), "each once");

@@ -1,8 +1,8 @@
 //! What the device holds, and breakdowns in the middle of a switch, a pause or a picture, and of those that look on.
 
 use super::common::{
-    CPU, FAILING, Fake, PATIENCE, PAUSE, Spoiling, Waiting, expected, job, other_cpu, started, wait_for,
-    wait_until,
+    CPU, FAILING, Fake, Holding, PATIENCE, PAUSE, Spoiling, Waiting, expected, job, other_cpu, started,
+    wait_for, wait_until,
 };
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -13,60 +13,12 @@ use weekender::progressive::{EndReason, Phase, Plan, Progressive, RenderRequest}
 use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 use weekender::render_gpu::GpuError;
 
-/// Holds samples back as a GPU does, and loses them when they are collected after that went well a few times.
-struct Losing {
-    fake: Fake,
-    held: Vec<Range<u64>>,
-    good_collections: u32,
-    /// Is told of every pass before the one that is lost.
-    traced: Sender<u32>,
-}
-
-impl Renderer for Losing {
-    fn info(&self) -> BackendInfo {
-        self.fake.info()
-    }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        self.held.clear();
-        Ok(())
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.fake.accumulate(job, range, film, cancel)
-    }
-
-    fn advance(
-        &mut self,
-        _: &RenderJob,
-        range: Range<u64>,
-        _: &mut Film,
-        _: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        std::thread::sleep(PAUSE);
-        self.held.push(range);
+/// Tells a test, after every pass, how many collections will still go well.
+fn tell(traced: &Sender<u32>) -> impl FnMut(&Range<u64>, u32) + Send + 'static {
+    let traced = traced.clone();
+    move |_, good_collections| {
         // The test may have heard enough.
-        let _ = self.traced.send(self.good_collections);
-        Ok(Stats::default())
-    }
-
-    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
-        let held = std::mem::take(&mut self.held);
-        let Some(left) = self.good_collections.checked_sub(1) else {
-            return Err(RenderError::Backend { backend: self.fake.name, reason: "pulled out".into() });
-        };
-        self.good_collections = left;
-        let mut stats = Stats::default();
-        for range in held {
-            stats.add(&self.fake.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
-        }
-        Ok(stats)
+        let _ = traced.send(good_collections);
     }
 }
 
@@ -90,7 +42,7 @@ fn the_first_picture_is_collected() {
     let (traced, _is_traced) = channel();
     let progressive = Progressive::with_factory(Box::new(move |choice| {
         let fake = Fake::new(choice.name());
-        Ok(Box::new(Losing { fake, held: Vec::new(), good_collections: 1000, traced: traced.clone() }))
+        Ok(Box::new(Holding::new(fake, 1000, tell(&traced))))
     }));
     let mut progressive = progressive.unwrap();
     progressive.ask_for_picture();
@@ -161,7 +113,7 @@ fn samples_that_a_pause_cannot_collect_are_rendered_by_the_next_backend() {
         if *choice != CPU {
             return Ok(Box::new(fake));
         }
-        Ok(Box::new(Losing { fake, held: Vec::new(), good_collections: 0, traced: traced.clone() }))
+        Ok(Box::new(Holding::new(fake, 0, tell(&traced))))
     }));
     let mut progressive = progressive.unwrap();
     progressive.start(RenderRequest::new(job(2), CPU, short_passes()));
@@ -184,8 +136,7 @@ fn samples_that_a_switch_cannot_collect_are_rendered_by_the_new_backend() {
     let progressive = Progressive::with_factory(Box::new(move |choice| {
         let fake = Fake::new(choice.name());
         if *choice == CPU {
-            let traced = traced.clone();
-            return Ok(Box::new(Losing { fake, held: Vec::new(), good_collections: 1, traced }));
+            return Ok(Box::new(Holding::new(fake, 1, tell(&traced))));
         }
         is_let_go_on.recv_timeout(PATIENCE).unwrap();
         Ok(Box::new(fake))

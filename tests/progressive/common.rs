@@ -159,6 +159,69 @@ impl Renderer for Waiting {
     }
 }
 
+/// Holds samples back until they are collected, as a GPU does.
+pub struct Holding<F> {
+    fake: Fake,
+    held: Vec<Range<u64>>,
+    /// Collections that go well before one that loses the samples.
+    good_collections: u32,
+    /// Is told of every pass, and of how many collections will still go well.
+    on_pass: F,
+}
+
+impl<F: FnMut(&Range<u64>, u32) + Send> Holding<F> {
+    pub fn new(fake: Fake, good_collections: u32, on_pass: F) -> Self {
+        Holding { fake, held: Vec::new(), good_collections, on_pass }
+    }
+}
+
+impl<F: FnMut(&Range<u64>, u32) + Send> Renderer for Holding<F> {
+    fn info(&self) -> BackendInfo {
+        self.fake.info()
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        self.held.clear();
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        job: &RenderJob,
+        range: Range<u64>,
+        film: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        self.fake.accumulate(job, range, film, cancel)
+    }
+
+    fn advance(
+        &mut self,
+        _: &RenderJob,
+        range: Range<u64>,
+        _: &mut Film,
+        _: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        std::thread::sleep(PAUSE);
+        (self.on_pass)(&range, self.good_collections);
+        self.held.push(range);
+        Ok(Stats::default())
+    }
+
+    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
+        let held = std::mem::take(&mut self.held);
+        let Some(left) = self.good_collections.checked_sub(1) else {
+            return Err(RenderError::Backend { backend: self.fake.name, reason: "pulled out".into() });
+        };
+        self.good_collections = left;
+        let mut stats = Stats::default();
+        for range in held {
+            stats.add(&self.fake.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
+        }
+        Ok(stats)
+    }
+}
+
 /// In these tests, the reference fails after sample 16, and every CPU backend works.
 pub fn factory() -> Factory {
     Box::new(|choice| {

@@ -1,7 +1,7 @@
 //! Films, pictures and samples that pass between render, renderer and user.
 
 use super::common::{
-    CPU, FAILING, Fake, PATIENCE, PAUSE, expected, factory, job, other_cpu, started, wait_for,
+    CPU, FAILING, Fake, Holding, PATIENCE, PAUSE, expected, factory, job, other_cpu, started, wait_for,
 };
 use std::ops::Range;
 use std::sync::atomic::AtomicBool;
@@ -59,62 +59,15 @@ fn switching_back_calls_the_switch_off() {
     assert_eq!(at_work, [CPU.name()]);
 }
 
-/// Holds samples back until they are collected, as a GPU does.
-struct Holding {
-    fake: Fake,
-    held: Vec<Range<u64>>,
-    traced: Arc<Mutex<u64>>,
-}
-
-impl Renderer for Holding {
-    fn info(&self) -> BackendInfo {
-        self.fake.info()
-    }
-
-    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
-        self.held.clear();
-        Ok(())
-    }
-
-    fn accumulate(
-        &mut self,
-        job: &RenderJob,
-        range: Range<u64>,
-        film: &mut Film,
-        cancel: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        self.fake.accumulate(job, range, film, cancel)
-    }
-
-    fn advance(
-        &mut self,
-        _: &RenderJob,
-        range: Range<u64>,
-        _: &mut Film,
-        _: &AtomicBool,
-    ) -> Result<Stats, RenderError> {
-        std::thread::sleep(PAUSE);
-        *self.traced.lock().unwrap() += range.end - range.start;
-        self.held.push(range);
-        Ok(Stats::default())
-    }
-
-    fn collect(&mut self, film: &mut Film) -> Result<Stats, RenderError> {
-        let mut stats = Stats::default();
-        for range in std::mem::take(&mut self.held) {
-            stats.add(&self.fake.accumulate(&job(2), range, film, &AtomicBool::new(false))?);
-        }
-        Ok(stats)
-    }
-}
-
 #[test]
 fn a_pause_brings_home_what_the_device_holds() {
     let traced = Arc::new(Mutex::new(0));
     let count = Arc::clone(&traced);
     let progressive = Progressive::with_factory(Box::new(move |choice| {
         let fake = Fake { pause: Duration::ZERO, ..Fake::new(choice.name()) };
-        Ok(Box::new(Holding { fake, held: Vec::new(), traced: Arc::clone(&count) }))
+        let count = Arc::clone(&count);
+        let add = move |range: &Range<u64>, _| *count.lock().unwrap() += range.end - range.start;
+        Ok(Box::new(Holding::new(fake, u32::MAX, add)))
     }));
     let mut progressive = progressive.unwrap();
     // With short passes, samples accumulate while the test waits.

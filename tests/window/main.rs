@@ -6,6 +6,11 @@ mod commands;
 mod common;
 mod crop;
 mod device;
+// Keys have other names on macOS.
+#[cfg(not(target_os = "macos"))]
+mod drawings;
+#[cfg(not(target_os = "macos"))]
+mod drawn;
 mod edits;
 mod extreme;
 mod faults;
@@ -14,6 +19,8 @@ mod first_steps;
 mod flights;
 mod frame;
 mod framing;
+#[path = "../golden/kept.rs"]
+mod golden;
 mod help;
 mod kept;
 mod menus;

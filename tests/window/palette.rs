@@ -2,7 +2,7 @@
 
 use crate::common::{SMALL, has_samples, hold, open, send, until};
 use eframe::egui::accesskit::Toggled;
-use eframe::egui::{Key, Modifiers, Rect, Role};
+use eframe::egui::{Event, Key, Modifiers, Rect, Role};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Show, SlotCommand, Theme, Window};
@@ -171,6 +171,26 @@ fn the_arrow_keys_choose_a_row() {
         assert_eq!(performed.as_ref(), Some(&names[expected]), "{keys:?}");
         assert!(!harness.state().has_dialog());
     }
+}
+
+/// A slow frame receives several presses at once.
+#[test]
+fn each_press_of_an_arrow_key_counts() {
+    let mut harness = opened();
+    let names = found(&mut harness, "theme");
+    type_into_palette(&mut harness, "theme");
+    let press = |key| Event::Key {
+        key,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: Modifiers::NONE,
+    };
+    harness.input_mut().events.extend([Key::ArrowDown, Key::ArrowDown].map(press));
+    harness.run_steps(1);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert_eq!(harness.state().performed().map(Command::name).as_ref(), Some(&names[2]));
 }
 
 #[test]

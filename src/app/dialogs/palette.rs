@@ -95,8 +95,8 @@ impl Palette {
         ui.set_width(ui.available_width());
         let (up, down, enter) = ui.input_mut(|input| {
             (
-                input.consume_key(Modifiers::NONE, Key::ArrowUp),
-                input.consume_key(Modifiers::NONE, Key::ArrowDown),
+                input.count_and_consume_key(Modifiers::NONE, Key::ArrowUp),
+                input.count_and_consume_key(Modifiers::NONE, Key::ArrowDown),
                 input.key_pressed(Key::Enter),
             )
         });
@@ -111,12 +111,7 @@ impl Palette {
         let is_enabled = |command| facts.disabled_reason(command).is_none();
         let found = matching(&self.text, listed(facts), is_enabled);
         let last = found.len().saturating_sub(1);
-        if down {
-            self.chosen = (self.chosen + 1).min(last);
-        }
-        if up {
-            self.chosen = self.chosen.saturating_sub(1);
-        }
+        self.chosen = (self.chosen + down).min(last).saturating_sub(up);
         let mut run = enter.then(|| found.get(self.chosen)).flatten().map(|(command, _)| *command);
         ui.add_space(6.0);
         let mut told = found.get(self.chosen).map(|(command, _)| *command);
@@ -128,7 +123,7 @@ impl Palette {
             }
             for (index, (command, name)) in found.iter().enumerate() {
                 let response = row(ui, facts, *command, name, index == self.chosen);
-                if index == self.chosen && (up || down) {
+                if index == self.chosen && up + down > 0 {
                     response.scroll_to_me(None);
                 }
                 if response.hovered() {

@@ -7,7 +7,7 @@ use super::answers::Answers;
 use super::model::checked::CheckedScene;
 use super::model::document::Document;
 use super::navigation;
-use crate::prepared::hierarchy::Hierarchy;
+use crate::prepared::hierarchy::{Effort, Hierarchy};
 use crate::scene::{Camera, Pick};
 use crate::stages::Shading;
 use eframe::egui::Context;
@@ -48,7 +48,7 @@ impl Surfaces {
                 let (scene, center) =
                     (Arc::clone(&document.checked), document.origin.recipe.camera.look_from);
                 let build = move || {
-                    let hierarchy = Hierarchy::build(&scene.scene().spheres, center);
+                    let hierarchy = Hierarchy::build(&scene.scene().spheres, center, Effort::Quick);
                     (scene, Tree { hierarchy, origin: center })
                 };
                 // Without a thread, every sphere is looked at.

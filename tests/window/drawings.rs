@@ -1,0 +1,320 @@
+//! What the window draws in each of its states, beside the kept texts in `tests/golden/drawn`.
+
+use crate::common::{SMALL, drag_from, has_samples, hold, middle, open_sized, send, until};
+use crate::drawn::{change, drawn};
+use crate::golden::{check, digest_of};
+use eframe::egui::{self, Key, Modifiers, Rect, Role, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use weekender::app::{Command, Show, SlotCommand, SlotNumber, Theme, Window};
+
+const SIZE: [f32; 2] = [1280.0, 800.0];
+
+/// Runs a test of this file in a process that finds no graphics adapter, so that every machine draws the same.
+fn alone(test: &str, draw: impl FnOnce()) {
+    if std::env::var("WGPU_BACKEND").is_ok_and(|backend| backend == "noop") {
+        return draw();
+    }
+    let mut again = std::process::Command::new(std::env::current_exe().unwrap());
+    again.args(["--exact", &format!("drawings::{test}"), "--nocapture"]).env("WGPU_BACKEND", "noop");
+    let output = again.output().unwrap();
+    let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+    assert!(output.status.success() && out.contains("1 passed"), "{out}{err}");
+}
+
+/// A window with a finished picture, which does not depend on the processor.
+fn finished(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
+    let arguments = format!("{arguments} --samples 4 --device cpu --isa portable --threads 1");
+    let mut harness = open_sized(&arguments, size);
+    until(&mut harness, "the end", |window| has_samples(4)(window) && window.status().phase.is_over());
+    harness.run_steps(60);
+    harness
+}
+
+/// The usual window, and what it draws.
+fn usual() -> (Harness<'static, Window>, Vec<String>) {
+    let harness = finished(SMALL, SIZE);
+    let before = drawn(&harness);
+    (harness, before)
+}
+
+/// Compares what has changed since `before`, after all movements have ended, with the kept text.
+fn keep(name: &str, before: &[String], harness: &mut Harness<'_, Window>) {
+    harness.run_steps(60);
+    check(&format!("drawn/{name}"), &change(before, &drawn(harness)));
+}
+
+/// Moves the pointer away.
+fn leave(harness: &mut Harness<'_, Window>) {
+    harness.event(egui::Event::PointerGone);
+    harness.step();
+}
+
+#[test]
+fn the_window() {
+    alone("the_window", || {
+        for (name, theme) in [("dark", Theme::Dark), ("light", Theme::Light)] {
+            let (mut harness, _) = usual();
+            send(&mut harness, Command::Theme(theme));
+            keep(name, &[], &mut harness);
+        }
+    });
+}
+
+#[test]
+fn a_narrow_window() {
+    alone("a_narrow_window", || {
+        keep("narrow", &[], &mut finished(SMALL, [640.0, 400.0]));
+    });
+}
+
+#[test]
+fn the_palette() {
+    alone("the_palette", || {
+        let (mut harness, before) = usual();
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
+        harness.run_steps(3);
+        harness.get_by_label("Command").type_text("th");
+        harness.run_steps(2);
+        harness.key_press(Key::ArrowDown);
+        keep("palette", &before, &mut harness);
+    });
+}
+
+#[test]
+fn dialogs() {
+    alone("dialogs", || {
+        for (name, command) in [
+            ("help", Command::Help),
+            ("first_steps", Command::FirstSteps),
+            ("stages", Command::Stages),
+            ("code", Command::Code),
+            ("show_me", Command::ShowMe),
+        ] {
+            let (mut harness, before) = usual();
+            send(&mut harness, command);
+            keep(name, &before, &mut harness);
+        }
+    });
+}
+
+#[test]
+fn a_presentation() {
+    alone("a_presentation", || {
+        let (mut harness, before) = usual();
+        send(&mut harness, Command::Present);
+        keep("presentation", &before, &mut harness);
+    });
+}
+
+#[test]
+fn views() {
+    alone("views", || {
+        let (mut harness, before) = usual();
+        for (name, show) in [
+            ("normals", Show::Normals),
+            ("bounces", Show::Bounces),
+            ("error", Show::Error),
+            ("luminance", Show::Luminance),
+        ] {
+            send(&mut harness, Command::Show(show));
+            until(&mut harness, name, |window| window.is_up_to_date());
+            keep(name, &before, &mut harness);
+        }
+    });
+}
+
+#[test]
+fn a_darker_picture() {
+    alone("a_darker_picture", || {
+        let (mut harness, before) = usual();
+        for _ in 0..3 {
+            send(&mut harness, Command::Darker);
+        }
+        keep("darker", &before, &mut harness);
+    });
+}
+
+#[test]
+fn values_of_pixels() {
+    alone("values_of_pixels", || {
+        let mut harness = finished("--stage glass-schlick --size 8x5", SIZE);
+        let before = drawn(&harness);
+        let at = middle(&harness);
+        harness.hover_at(at);
+        until(&mut harness, "the pixel's value", |window| window.inspected().is_some());
+        keep("pixels", &before, &mut harness);
+    });
+}
+
+#[test]
+fn paths_of_a_pixel() {
+    alone("paths_of_a_pixel", || {
+        let (mut harness, before) = usual();
+        let at = middle(&harness);
+        harness.event(egui::Event::PointerMoved(at));
+        harness.run_steps(2);
+        send(&mut harness, Command::ListPaths);
+        until(&mut harness, "sixteen paths", |window| window.listed_paths() == 16);
+        leave(&mut harness);
+        keep("paths", &before, &mut harness);
+        send(&mut harness, Command::NextRay);
+        keep("ray", &before, &mut harness);
+    });
+}
+
+#[test]
+fn two_stages_and_a_divider() {
+    alone("two_stages_and_a_divider", || {
+        let (mut harness, before) = usual();
+        send(&mut harness, Command::Wipe);
+        until(&mut harness, "both pictures", |window| window.has_other_picture());
+        // The noise decided where it was.
+        harness.run_steps(30);
+        let rect = harness.state().picture_rect();
+        let [from, to] = [harness.state().divider(), 0.5].map(|share| rect.lerp_inside(vec2(share, 0.5)));
+        drag_from(&mut harness, from, to - from);
+        leave(&mut harness);
+        keep("wipe", &before, &mut harness);
+        send(&mut harness, Command::WipeDifference);
+        keep("difference", &before, &mut harness);
+    });
+}
+
+#[test]
+fn kept_pictures() {
+    alone("kept_pictures", || {
+        let (mut harness, before) = usual();
+        for number in [SlotNumber::ALL[0], SlotNumber::ALL[1]] {
+            send(&mut harness, Command::Slot(SlotCommand::Keep));
+            until(&mut harness, "a kept picture", |window| window.slot(number).is_some());
+        }
+        send(&mut harness, Command::Slot(SlotCommand::Look(SlotNumber::ALL[1])));
+        keep("slots", &before, &mut harness);
+        send(&mut harness, Command::Slot(SlotCommand::LookLive));
+        send(&mut harness, Command::Slot(SlotCommand::Wipe));
+        keep("slot_wipe", &before, &mut harness);
+        send(&mut harness, Command::Slot(SlotCommand::OnlyNoise));
+        until(&mut harness, "a verdict", |window| window.only_noise().is_some());
+        keep("verdict", &before, &mut harness);
+    });
+}
+
+#[test]
+fn a_selected_sphere() {
+    alone("a_selected_sphere", || {
+        let (mut harness, before) = usual();
+        for (name, times) in [("sphere", 2), ("next_sphere", 1)] {
+            for _ in 0..times {
+                send(&mut harness, Command::NextSphere);
+            }
+            keep(name, &before, &mut harness);
+        }
+    });
+}
+
+#[test]
+fn a_marked_part() {
+    alone("a_marked_part", || {
+        let (mut harness, before) = usual();
+        send(&mut harness, Command::Crop);
+        let from = harness.state().picture_rect().lerp_inside(vec2(0.2, 0.3));
+        drag_from(&mut harness, from, vec2(200.0, 100.0));
+        leave(&mut harness);
+        keep("crop", &before, &mut harness);
+    });
+}
+
+#[test]
+fn bookmarks_and_the_pictures_size() {
+    alone("bookmarks_and_the_pictures_size", || {
+        let (mut harness, before) = usual();
+        send(&mut harness, Command::AddBookmark);
+        send(&mut harness, Command::AddBookmark);
+        send(&mut harness, Command::ActualSize);
+        keep("bookmarks", &before, &mut harness);
+    });
+}
+
+#[test]
+fn a_menu_of_the_picture() {
+    alone("a_menu_of_the_picture", || {
+        let (mut harness, before) = usual();
+        let pos = middle(&harness);
+        harness.event(egui::Event::PointerMoved(pos));
+        for pressed in [true, false] {
+            let (button, modifiers) = (egui::PointerButton::Secondary, Modifiers::NONE);
+            harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+            harness.step();
+        }
+        keep("picture_menu", &before, &mut harness);
+    });
+}
+
+/// The place of a menu's name in the bar.
+fn menu(harness: &Harness<'_, Window>, name: &str) -> egui::Pos2 {
+    let named = harness.get_all_by_label(name).map(|node| node.rect());
+    named.min_by(|a, b| a.top().total_cmp(&b.top())).unwrap().center()
+}
+
+#[test]
+fn menus() {
+    alone("menus", || {
+        let (mut harness, before) = usual();
+        for name in ["File", "Edit", "Camera", "Spheres", "View", "Slots", "Render", "Stage", "Help"] {
+            let at = menu(&harness, name);
+            hold(&mut harness, at, true);
+            hold(&mut harness, at, false);
+            keep(&format!("menu_{}", name.to_lowercase()), &before, &mut harness);
+            harness.key_press(Key::Escape);
+            harness.run_steps(5);
+        }
+    });
+}
+
+/// The pointer rests on each control in turn.
+#[test]
+fn tips() {
+    alone("tips", || {
+        let (mut harness, before) = usual();
+        let is_control =
+            |role| matches!(role, Role::Button | Role::SpinButton | Role::CheckBox | Role::ComboBox);
+        let nodes = harness.root().children_recursive();
+        let mut controls: Vec<(String, Rect)> = nodes
+            .filter(|node| is_control(node.accesskit_node().role()))
+            .filter_map(|node| Some((node.accesskit_node().label()?, node.rect())))
+            .collect();
+        controls.sort_by(|(_, a), (_, b)| (a.left(), a.top()).partial_cmp(&(b.left(), b.top())).unwrap());
+        let mut text = String::new();
+        for (name, rect) in controls {
+            harness.hover_at(rect.center());
+            harness.run_steps(40);
+            text.push_str(&format!("{name}\n{}", change(&before, &drawn(&harness))));
+        }
+        check("drawn/tips", &text);
+    });
+}
+
+/// There are too many shapes to list.
+#[test]
+fn steps_of_a_packet() {
+    alone("steps_of_a_packet", || {
+        let (mut harness, before) = usual();
+        send(&mut harness, Command::Packet);
+        harness.run_steps(60);
+        let change = change(&before, &drawn(&harness));
+        let text = format!("{} shapes, digest {}\n", change.lines().count(), digest_of(change.as_bytes()));
+        check("drawn/packet", &text);
+    });
+}
+
+#[test]
+fn stages_that_show_other_panels() {
+    alone("stages_that_show_other_panels", || {
+        let (_, usual) = usual();
+        for id in ["ppm-tiny", "metal-fuzzy", "defocus", "book"] {
+            let mut harness = finished(&format!("--stage {id} --size 32x18"), SIZE);
+            keep(&format!("stage_{}", id.replace('-', "_")), &usual, &mut harness);
+        }
+    });
+}
