@@ -128,6 +128,18 @@ fn a_backend_repeats_the_samples_of_a_picture_without_an_error_estimate() {
     assert!(found["rms"].as_f64().unwrap() < 0.004, "{found}");
 }
 
+/// Samples that do not begin with the first, unless others are asked for.
+#[test]
+fn a_backend_repeats_the_samples_of_a_film() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    render(at, "late.exr", &["--sample-range", "8..24"]);
+    let (code, text, errors) = compare(&["late.exr", "cpu"], at);
+    assert!(code == 0 && text.contains("equal to the bit"), "{text}{errors}");
+    let (code, text, errors) = compare(&["late.exr", "cpu", "--samples", "16"], at);
+    assert!(code == 0 && !text.contains("equal to the bit"), "{text}{errors}");
+}
+
 /// A PFM of 64x16 pixels whose first 60 columns are `value`.
 fn pfm(at: &Path, name: &str, value: f32) {
     let pixel = |i: usize| if i % 64 < 60 { value } else { 0.25 + i as f32 / 4096.0 };

@@ -51,6 +51,20 @@ fn a_panic_of_the_tracer_leaves_a_whole_picture_and_a_warning() {
     }
 }
 
+/// Such a stage has a single sample, which is in one half of the film.
+#[test]
+fn a_panic_is_told_in_a_stage_without_randomness() {
+    let directory = tempfile::tempdir().unwrap();
+    for stage in ["ppm-tiny", "sky"] {
+        let flags =
+            ["--batch", "--device", "cpu", "--stage", stage, "--simulate-panic", "0", "--out", "a.png"];
+        let output = weekender(directory.path(), &flags);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        assert!(said.contains("panicked") && said.contains("continues the same picture"), "{said}");
+    }
+}
+
 #[test]
 fn a_panic_of_the_tracer_is_told_in_an_animation_too() {
     let directory = tempfile::tempdir().unwrap();

@@ -190,8 +190,8 @@ impl<'a> Run<'a> {
     fn show(&mut self, frame: u32, status: &Status) {
         let done = self.rendered + self.kept;
         let count = self.options.frames.len() as u32;
-        let each = (self.rendered > 0).then(|| self.rendering.as_secs_f64() / f64::from(self.rendered));
-        self.display.update(u64::from(done), || so_far(frame, status.samples_per_pixel, [done, count], each));
+        let took = (self.rendering, self.rendered);
+        self.display.update(u64::from(done), || so_far(frame, status.samples_per_pixel, [done, count], took));
     }
 
     fn write(
@@ -254,11 +254,20 @@ impl<'a> Run<'a> {
     }
 }
 
-/// How far the animation is. `each` is the time that a frame takes, seconds, if one was rendered.
-fn so_far(frame: u32, samples: u64, [done, count]: [u32; 2], each: Option<f64>) -> String {
-    let left = each.map_or_else(String::new, |each| {
+/// How far the animation is: the frame in work and its samples, frames done and in total, and how long rendering took for
+/// how many frames.
+fn so_far(
+    frame: u32,
+    samples: u64,
+    [done, count]: [u32; 2],
+    (rendering, rendered): (Duration, u32),
+) -> String {
+    let left = if rendered > 0 {
+        let each = rendering.as_secs_f64() / f64::from(rendered);
         format!(", {} left", seconds(each * f64::from(count.saturating_sub(done))))
-    });
+    } else {
+        String::new()
+    };
     format!("frame {frame}: {done} of {count} frames done, {samples} spp{left}")
 }
 
@@ -323,7 +332,8 @@ mod tests {
 
     #[test]
     fn the_time_left_is_that_of_the_frames_that_are_not_done() {
-        assert_eq!(so_far(3, 4, [2, 6], None), "frame 3: 2 of 6 frames done, 4 spp");
-        assert_eq!(so_far(3, 4, [2, 6], Some(2.5)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
+        let told = |took| so_far(3, 4, [2, 6], took);
+        assert_eq!(told((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
+        assert_eq!(told((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
     }
 }

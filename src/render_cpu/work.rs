@@ -175,9 +175,14 @@ impl<'film> Work<'film> {
         self.blocks.len() as u64 * self.order.len() as u64
     }
 
-    /// Drops the last row, so that a kernel panics in the middle of the tile (fault injection).
+    /// Empties the last row of the half that the last block adds to, so that a kernel panics in the middle of the tile
+    /// (fault injection).
     pub fn sabotaged(mut self) -> Self {
-        self.rows.pop();
+        let half = self.blocks.last().map_or(0, |block| block.half);
+        let end = (half as usize + 1) * self.order.height as usize;
+        if let Some(row) = self.rows.get_mut(end.saturating_sub(1)) {
+            *row = &mut [];
+        }
         self
     }
 

@@ -182,6 +182,9 @@ mod tests {
         );
         assert_eq!(lines.next(), Some("    sse4.2, plain: off"));
         assert_eq!(row(&case(Verdict::Right)).lines().count(), 1);
+        let with_hits = |first_hits| row(&CaseReport { first_hits, ..case(Verdict::Right) });
+        assert!(with_hits(None).contains(" right ") && !with_hits(None).contains("WRONG"));
+        assert!(with_hits(Some(FirstHits { rays: 64, agree: 7 })).contains("WRONG"));
         assert_eq!(rounding(Paired::default()), "0 (0)");
     }
 

@@ -99,6 +99,14 @@ fn cases_of_the_stress_suite_are_as_kept() {
         let forms: Vec<String> =
             case.forms().iter().map(|form| format!("{} {}", form.name(), recipe(*form))).collect();
         writeln!(text, "{} {} [{}] {}", case.id, case.title(), case.expected, forms.join(", ")).unwrap();
+        let (unit, tolerance) = (case.unit, case.tolerance);
+        let watch = case.watch.as_ref().map(|watch| watch.look_for);
+        let stiff = digest_of(case.stiff.as_bytes());
+        writeln!(text, "  unit {unit:e}, tolerance {tolerance:.6e}, quick {}, {stiff}", case.is_quick)
+            .unwrap();
+        if let Some(watch) = watch {
+            writeln!(text, "  {watch}").unwrap();
+        }
     }
     check("stress_cases", &text);
 }

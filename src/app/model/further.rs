@@ -92,6 +92,11 @@ mod tests {
         assert_eq!((further.words.as_str(), further.stop.samples), ("200 spp", Some(200)));
         document.stop = Stop { seconds: Some(10.0), ..Stop::default() };
         assert_eq!(document.further(&done(EndReason::TimeLimit, 0.01)).unwrap().stop.seconds, Some(20.0));
+        // The last pass ended after the limit.
+        let elapsed = std::time::Duration::from_secs_f64(12.7);
+        let late = Status { elapsed, ..done(EndReason::TimeLimit, 0.01) };
+        let further = document.further(&late).unwrap();
+        assert_eq!((further.words.as_str(), further.stop.seconds), ("24 s", Some(24.0)));
         assert_eq!(document.further(&Status { phase: Phase::Tracing, ..Status::default() }), None);
         let tiny = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
         assert_eq!(tiny.further(&done(EndReason::Samples, 0.0)), None, "nothing in it is random");

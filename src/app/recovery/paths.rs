@@ -87,5 +87,7 @@ mod tests {
         assert!(!paths.are_ours(&locked, false), "its window may be running");
         film.set_modified(SystemTime::now() - 2 * OLD).unwrap();
         assert!(paths.are_ours(&locked, false));
+        File::create(&paths.note).unwrap();
+        assert!(!paths.are_ours(&locked, false), "the newer of two files counts");
     }
 }
