@@ -119,8 +119,8 @@ fn names_software(name: &str) -> bool {
 }
 
 /// All adapters, best first, of those graphics interfaces that the environment variable `WGPU_BACKEND` names, if it is
-/// set (`vulkan,gl`; `noop` finds none). GL is enumerated only if no other backend has a usable adapter that is `wanted`: it would
-/// list the same hardware again, and its libraries print warnings of their own.
+/// set (`vulkan,gl`; `noop` finds none). GL is enumerated only if no other backend has a usable adapter that is `wanted`:
+/// it would list the same hardware again, and its libraries print warnings of their own.
 pub fn all_adapters(wanted: impl Fn(&AdapterInfo) -> bool) -> Vec<(AdapterInfo, wgpu::Adapter)> {
     let allowed = wgpu::Backends::from_env().unwrap_or(wgpu::Backends::all());
     let mut adapters = adapters_of(wgpu::Backends::PRIMARY & allowed);

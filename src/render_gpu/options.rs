@@ -126,11 +126,20 @@ impl GpuOptions {
     }
 }
 
+/// What the environment allows, if it restricts the search for adapters.
+fn restriction() -> String {
+    let restriction = |backends| format!(" (WGPU_BACKEND allows only \"{backends}\")");
+    std::env::var("WGPU_BACKEND").map_or(String::new(), restriction)
+}
+
 /// Why no GPU is available for rendering.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 pub enum GpuError {
     /// The machine has no adapter.
-    #[error("no graphics adapter was found; install its Vulkan driver, or render on the CPU")]
+    #[error(
+        "no graphics adapter was found{}; install its Vulkan driver, or render on the CPU",
+        restriction()
+    )]
     None,
     /// No adapter matches the name.
     #[error("no adapter matches \"{wanted}\"; available adapters: {}", available.join("; "))]
