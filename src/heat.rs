@@ -155,4 +155,17 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn colours_between_two_neighbours_are_mixed_and_rounded() {
+        assert_eq!(colour_at(0.125), [30, 8, 64], "three quarters from the first to the second");
+        assert_eq!(colour_at(0.625), [199, 65, 74], "three quarters from the fourth to the fifth");
+        assert_eq!(HeatScale::OCCUPANCY.colour(0.625), colour_at(0.625));
+    }
+
+    #[test]
+    fn two_digits_of_a_number_count() {
+        let found = [1234.0, 20.0, 16.0, 9.6, 1.0, 0.25, 0.0304, 0.000_012_3, 3e-7].map(short);
+        assert_eq!(found, ["1234", "20", "16", "9.6", "1", "0.25", "0.03", "0.000012", "0"]);
+    }
 }

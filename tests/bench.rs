@@ -64,6 +64,10 @@ fn rows_have_sane_figures() {
                 assert!((1.0..24.0).contains(&rays), "{rays} rays a path");
             }
             if row["kind"] == "baseline" {
+                assert_eq!((&row["lanes_in_use"], &row["efficiency"]), (&Value::Null, &Value::Null));
+                for run in row["runs"].as_array().unwrap() {
+                    assert_eq!((&run["busy_lanes"], &run["offered_lanes"]), (&0.into(), &0.into()));
+                }
                 continue;
             }
             assert!((0.0..=1.0).contains(&number(row, "lanes_in_use")), "{row}");

@@ -1,4 +1,4 @@
-//! The program starts itself again if it has no runtime directory, and nobody notices.
+//! What the program makes of variables of the environment.
 #![cfg(target_os = "linux")]
 
 use std::os::unix::process::CommandExt;
@@ -16,4 +16,19 @@ fn without_a_runtime_directory_the_program_keeps_its_name_and_its_arguments() {
         let told = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success() && told.contains("Usage: tracer bench"), "{directory:?}: {told}");
     }
+}
+
+#[test]
+fn who_allows_no_backend_of_the_graphics_library_is_told_which_variable_did_it() {
+    let picture = std::env::temp_dir().join("weekender-environment-without-adapter.png");
+    let output = Command::new(env!("CARGO_BIN_EXE_weekender"))
+        .args(["--batch", "--device", "gpu", "--out"])
+        .arg(&picture)
+        .env("WGPU_BACKEND", "noop")
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{told}");
+    assert!(told.contains("no graphics adapter was found (WGPU_BACKEND allows only \"noop\")"), "{told}");
+    assert!(!picture.exists());
 }

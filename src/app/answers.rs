@@ -74,3 +74,37 @@ impl<T> Answer<T> {
         self.context.request_repaint();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::RawInput;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    #[test]
+    fn every_answer_arrives_and_wakes_the_window() {
+        let (context, answers) = (Context::default(), Answers::default());
+        let wakes = Arc::new(AtomicU32::new(0));
+        let count = Arc::clone(&wakes);
+        context.set_request_repaint_callback(move |_| _ = count.fetch_add(1, Ordering::Relaxed));
+        type Action = fn(Answer<u32>);
+        let actions: [(&str, Action); 3] = [
+            ("given", |answer| answer.give(1)),
+            ("one of several", |answer| answer.give_one(2)),
+            ("none", |answer| answer.wake()),
+        ];
+        for (name, act) in actions {
+            // A frame that asks for no other one.
+            for _ in 0..4 {
+                let _ = context.run_ui(RawInput::default(), |_| {});
+            }
+            let before = wakes.load(Ordering::Relaxed);
+            act(answers.answer(&context));
+            assert!(wakes.load(Ordering::Relaxed) > before, "{name}");
+        }
+        assert_eq!([answers.take(), answers.take(), answers.take()], [Some(1), Some(2), None]);
+        answers.ask("test", &context, || 3).unwrap();
+        assert_eq!(answers.wait(), Some(3));
+    }
+}

@@ -148,4 +148,111 @@ mod tests {
         assert_eq!(document.camera, first);
         assert!(!changes.can_undo(&document));
     }
+
+    /// A document of which something was changed, so that its film is another one.
+    fn change(document: &mut Document) {
+        document.camera.vfov_degrees += 1.0;
+    }
+
+    #[test]
+    fn changes_are_taken_back_and_made_again() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        assert!(!changes.follow(&context, &document, false), "nothing has changed");
+        let cameras: Vec<_> = (0..3)
+            .map(|_| {
+                let before = document.camera;
+                change(&mut document);
+                assert!(changes.follow(&context, &document, false));
+                assert!(!changes.follow(&context, &document, false), "not again");
+                before
+            })
+            .collect();
+        let last = document.camera;
+        assert!(changes.can_undo(&document) && !changes.can_redo(&document));
+        for camera in cameras.into_iter().rev() {
+            changes.undo(&mut document);
+            assert_eq!(document.camera, camera);
+            assert!(changes.follow(&context, &document, false));
+        }
+        assert!(!changes.can_undo(&document) && changes.can_redo(&document));
+        for _ in 0..3 {
+            changes.redo(&mut document);
+            changes.follow(&context, &document, false);
+        }
+        assert_eq!(document.camera, last);
+        assert!(!changes.can_redo(&document));
+    }
+
+    #[test]
+    fn a_change_that_needs_no_other_film_can_be_taken_back_too() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        document.stop.seconds = Some(7.0);
+        assert!(!changes.follow(&context, &document, false), "the same film goes on");
+        assert!(changes.can_undo(&document));
+        changes.undo(&mut document);
+        assert_eq!(document.stop.seconds, None);
+    }
+
+    #[test]
+    fn what_is_adopted_is_no_change_and_a_step_is_one() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        let first = document.camera;
+        change(&mut document);
+        changes.adopt(&document);
+        assert!(!changes.follow(&context, &document, false) && !changes.can_undo(&document));
+        let second = document.camera;
+        change(&mut document);
+        changes.step_to(&document);
+        assert!(!changes.follow(&context, &document, false) && changes.can_undo(&document));
+        changes.undo(&mut document);
+        assert!(document.camera == second && second != first);
+    }
+
+    #[test]
+    fn a_number_that_is_being_typed_is_one_step() {
+        let (context, mut document) = (Context::default(), Document::new(Origin::usual()));
+        let mut changes = Changes::new(document.clone());
+        let first = document.camera;
+        change(&mut document);
+        changes.follow(&context, &document, false);
+        for _ in 0..2 {
+            change(&mut document);
+            changes.follow(&context, &document, true);
+        }
+        changes.undo(&mut document);
+        assert_eq!(document.camera, first, "it goes on from the change before");
+    }
+
+    #[test]
+    fn a_move_lasts_for_a_moment_unless_it_is_ended() {
+        let mut changes = Changes::new(Document::new(Origin::usual()));
+        assert!(!changes.is_moving());
+        changes.note_move();
+        assert!(changes.is_moving() && changes.has_moved);
+        changes.is_in_gesture = true;
+        changes.end_move();
+        assert!(!changes.is_moving() && !changes.has_moved && !changes.is_in_gesture);
+        changes.moved = Instant::now().checked_sub(Duration::from_millis(190));
+        assert!(!changes.is_moving());
+    }
+
+    #[test]
+    fn a_size_that_follows_the_viewport_stays_when_a_change_is_taken_back() {
+        let mut document = Document::new(Origin::usual());
+        let mut state = document.clone();
+        document.set_size([64, 36]);
+        state.camera.vfov_degrees = 33.0;
+        restore(&mut document, &state);
+        assert_eq!((document.size(), document.camera.vfov_degrees), ([64, 36], 33.0));
+        state.give_size([7, 5]);
+        restore(&mut document, &state);
+        assert_eq!(document.size(), [7, 5], "a size of its own comes back");
+        document.has_own_size = false;
+        let other = Document::new(Origin::usual());
+        restore(&mut document, &other);
+        assert_eq!(document.size(), other.size(), "so does that of another picture");
+    }
 }

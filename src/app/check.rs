@@ -131,3 +131,73 @@ impl Check {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{Drawings, dressed};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn drawn(check: Check, size: [f32; 2]) -> Harness<'static, Check> {
+        let draw = |ui: &mut egui::Ui, check: &mut Check| check.ui(ui.ctx());
+        let mut harness = dressed(size).build_ui_state(draw, check);
+        harness.run_steps(5);
+        harness
+    }
+
+    /// A finding about a picture of this size.
+    fn finding(size: [u32; 2]) -> Shown {
+        let rgb8 = vec![100; (3 * size[0] * size[1]) as usize];
+        Shown {
+            path: "/of/mine.ppm".into(),
+            words: "The picture is that of stage sky.\n\nIts rows are upside down.\n\n".to_owned(),
+            size,
+            textures: [(); 3].map(|()| Texture::new(size, &rgb8, None)),
+        }
+    }
+
+    #[test]
+    fn the_check_of_a_picture_in_all_its_states() {
+        let mut drawings = Drawings::default();
+        let waiting = Check { waiting: Some("/of/mine.ppm".into()), ..Check::default() };
+        drawings.add("awaited", &drawn(waiting, [1280.0, 800.0]));
+        for (size, window) in
+            [([32, 18], [1280.0, 800.0]), ([9, 16], [1280.0, 800.0]), ([32, 18], [500.0, 400.0])]
+        {
+            let check = Check { shown: Some(finding(size)), ..Check::default() };
+            drawings.add(&format!("{size:?} in {window:?}"), &drawn(check, window));
+        }
+        drawings.keep("your_picture");
+    }
+
+    #[test]
+    fn a_finding_stays_until_it_is_closed() {
+        let check = Check { shown: Some(finding([32, 18])), ..Check::default() };
+        let mut harness = drawn(check, [1280.0, 800.0]);
+        assert!(harness.state().words().unwrap().starts_with("The picture is that of stage sky."));
+        harness.get_by_label("Close window").click();
+        harness.run_steps(3);
+        assert_eq!(harness.state().words(), None);
+    }
+
+    #[test]
+    fn only_the_last_picture_that_was_asked_about_is_told_of() {
+        let context = egui::Context::default();
+        let mut check = Check { number: 2, waiting: Some("second".into()), ..Check::default() };
+        let answer = |check: &Check, number, outcome| {
+            check.answers.answer(&context).give(Checked { number, path: "mine.ppm".into(), outcome });
+        };
+        let found = || Found { words: "mine".to_owned(), size: [1, 1], views: [(); 3].map(|()| vec![0; 3]) };
+        answer(&check, 1, Ok(found()));
+        assert!(check.follow().is_none() && check.waiting.is_some() && check.words().is_none());
+        answer(&check, 2, Err("it is damaged".to_owned()));
+        assert_eq!(check.follow(), Some(Err("it is damaged".to_owned())));
+        assert!(check.waiting.is_none() && check.words().is_none());
+        answer(&check, 2, Ok(found()));
+        assert_eq!(check.follow(), Some(Ok("mine.ppm".into())));
+        assert_eq!(check.words(), Some("mine"));
+        check.begin(&context, Path::new("/of/nothing.ppm"), None);
+        assert_eq!((check.number, check.waiting.as_deref()), (3, Some(Path::new("/of/nothing.ppm"))));
+    }
+}

@@ -19,6 +19,8 @@ pub fn corner_card(ui: &Ui, over: Rect, place: Place, title: &'static str, conte
         .pivot(Align2::RIGHT_TOP)
         .fixed_pos(over.right_top() + vec2(-MARGIN, MARGIN))
         .constrain_to(over)
+        // Otherwise cards higher than egui's default of 400 points scroll even where there is room.
+        .default_size(vec2(width, height))
         .show(ui.ctx(), |ui| {
             let frame = theme::float_frame(ui).inner_margin(INNER).corner_radius(8);
             frame.shadow(ui.visuals().window_shadow).show(ui, |ui| {

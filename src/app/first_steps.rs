@@ -114,3 +114,86 @@ fn hint(ui: &mut Ui, is_done: bool, text: &str) {
         }
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{Drawings, dressed, facts_of};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    struct Shown {
+        card: Card,
+        facts: Facts,
+        commands: Vec<Command>,
+    }
+
+    fn shown(words: &str, over: Rect) -> Harness<'static, Shown> {
+        let mut facts = facts_of(words);
+        facts.model.has_first_steps = true;
+        let draw = move |ui: &mut Ui, Shown { card, facts, commands }: &mut Shown| {
+            card.ui(ui, over, facts, commands);
+        };
+        let shown = Shown { card: Card::default(), facts, commands: Vec::new() };
+        let mut harness = dressed([700.0, 500.0]).build_ui_state(draw, shown);
+        harness.run_steps(3);
+        harness
+    }
+
+    const ROOM: Rect = Rect { min: egui::pos2(20.0, 10.0), max: egui::pos2(680.0, 490.0) };
+
+    #[test]
+    fn the_card_lists_what_to_try_in_the_stage_that_is_shown() {
+        let mut drawings = Drawings::default();
+        for words in ["--stage glass-schlick", "--stage ppm-tiny", "--stage sky", "--stage red-sphere"] {
+            drawings.add(words, &shown(words, ROOM));
+        }
+        for (name, over) in [
+            ("a narrow room", Rect::from_min_size(ROOM.min, vec2(220.0, 480.0))),
+            ("a low room", Rect::from_min_size(ROOM.min, vec2(660.0, 140.0))),
+            ("hardly any room", Rect::from_min_size(ROOM.min, vec2(60.0, 60.0))),
+        ] {
+            drawings.add(name, &shown("--stage glass-schlick", over));
+        }
+        let mut harness = shown("--stage glass-schlick", ROOM);
+        for step in Step::ALL {
+            harness.state_mut().facts.model.remembered.first_steps.note(step);
+            harness.run_steps(3);
+            drawings.add(&format!("{step:?} is done"), &harness);
+        }
+        assert!(harness.state().commands.is_empty(), "it says good-bye first");
+        drawings.add_tips(&mut harness);
+        harness.state_mut().facts.model.has_first_steps = false;
+        harness.run_steps(3);
+        drawings.add("closed", &harness);
+        drawings.keep("first_steps_card");
+    }
+
+    #[test]
+    fn buttons_lead_to_the_first_stage_and_close_the_card() {
+        let mut harness = shown("--stage glass-schlick", ROOM);
+        let first = &Stage::ALL[0];
+        harness.get_by_label(&format!("Start the book at {}", first.section)).click();
+        harness.run_steps(2);
+        assert_eq!(std::mem::take(&mut harness.state_mut().commands), [Command::Stage(first)]);
+        harness.get_by_label("Close the first steps").click();
+        harness.run_steps(2);
+        assert_eq!(harness.state().commands, [Command::FirstSteps]);
+        let harness = shown(&format!("--stage {}", first.id), ROOM);
+        assert!(harness.query_by_label_contains("Start the book").is_none(), "it is shown already");
+    }
+
+    #[test]
+    fn a_card_on_which_everything_is_done_closes_itself() {
+        let mut harness = shown("--stage glass-schlick", ROOM);
+        for step in Step::ALL {
+            harness.state_mut().facts.model.remembered.first_steps.note(step);
+        }
+        harness.state_mut().card.all_done = Instant::now().checked_sub(FAREWELL);
+        harness.step();
+        assert_eq!(harness.state().commands.last(), Some(&Command::FirstSteps));
+        harness.state_mut().facts.model.has_first_steps = false;
+        harness.step();
+        assert!(harness.state().card.all_done.is_none(), "the next time it stays as long");
+    }
+}

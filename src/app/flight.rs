@@ -80,9 +80,9 @@ pub fn keyframes(bookmarks: &[Bookmark]) -> Vec<Keyframe> {
 
 /// The first frame whose camera is not valid, and why.
 pub fn first_fault(keyframes: &[Keyframe]) -> Option<(u32, String)> {
-    let still = keyframes.first()?.camera;
-    let path = CameraPath::Keyframes { still, keyframes: keyframes.to_vec() };
-    (0..=keyframes.last()?.frame)
+    let last = keyframes.last()?;
+    let path = CameraPath::Keyframes { still: last.camera, keyframes: keyframes.to_vec() };
+    (0..=last.frame)
         .find_map(|frame| path.camera(frame).validate().err().map(|error| (frame, error.to_string())))
 }
 

@@ -249,18 +249,12 @@ mod tests {
     #[test]
     fn of_many_orders_the_last_one_is_traced() {
         let (mut layers, context) = (Layers::default(), Context::default());
-        let mut document = Document::new(Origin::usual());
-        (document.settings.width, document.settings.height) = (32, 18);
+        let mut document = small();
         for step in 0..20 {
             document.camera.vfov_degrees = 30.0 + f64::from(step);
             layers.follow(&context, Some(Layer::Normals), &document, false);
         }
-        let begin = Instant::now();
-        while layers.samples(Layer::Normals) < SAMPLES {
-            assert!(begin.elapsed() < Duration::from_secs(60), "the last one never came");
-            std::thread::sleep(Duration::from_millis(1));
-            layers.follow(&context, Some(Layer::Normals), &document, false);
-        }
+        finish(&mut layers, Layer::Normals, &document);
     }
 
     #[test]
@@ -296,6 +290,110 @@ mod tests {
                 assert_eq!(layers.value_at(pixel), Some((Layer::Normals, expected)), "{pixel:?}");
             }
             assert_eq!(layers.samples(Layer::Normals), u64::from(divisor == 1));
+        }
+    }
+
+    fn small() -> Document {
+        let mut document = Document::new(Origin::usual());
+        document.set_size([32, 18]);
+        document
+    }
+
+    /// Follows until the layer has all its samples.
+    fn finish(layers: &mut Layers, layer: Layer, document: &Document) {
+        let (begin, context) = (Instant::now(), Context::default());
+        while layers.samples(layer) < SAMPLES {
+            assert!(begin.elapsed() < Duration::from_secs(60), "it never came");
+            std::thread::sleep(Duration::from_millis(1));
+            layers.follow(&context, Some(layer), document, false);
+        }
+    }
+
+    #[test]
+    fn a_layer_is_ordered_when_it_or_its_picture_changes() {
+        let (mut layers, context, document) = (Layers::default(), Context::default(), small());
+        layers.follow(&context, None, &document, false);
+        assert_eq!(layers.number, 0);
+        finish(&mut layers, Layer::Normals, &document);
+        assert_eq!(layers.number, 1, "once");
+        assert!(layers.shown_mut(Layer::Normals).is_some() && layers.shown_mut(Layer::Albedo).is_none());
+        assert_eq!((layers.samples(Layer::Normals), layers.samples(Layer::Albedo)), (SAMPLES, 0));
+        layers.follow(&context, Some(Layer::Normals), &document, true);
+        assert_eq!(layers.number, 1, "a finished layer stays while something else moves");
+        finish(&mut layers, Layer::Albedo, &document);
+        assert_eq!(layers.number, 2);
+        let cancel = Arc::clone(&layers.cancel);
+        layers.follow(&context, None, &document, false);
+        assert!(cancel.load(Ordering::Relaxed) && layers.shown.is_none() && layers.ordered.is_none());
+        assert_eq!((layers.samples(Layer::Albedo), layers.value_at([0, 0])), (0, None));
+        finish(&mut layers, Layer::Albedo, &document);
+        let cancel = Arc::clone(&layers.cancel);
+        drop(layers);
+        assert!(cancel.load(Ordering::Relaxed), "the thread has nothing more to do");
+    }
+
+    #[test]
+    fn a_coarse_layer_is_seen_before_the_next_one_is_ordered() {
+        let (mut layers, context, mut document) = (Layers::default(), Context::default(), small());
+        // Nobody traces what is ordered.
+        let (sender, orders) = channel();
+        layers.orders = Some(sender);
+        let mut follow = |layers: &mut Layers, is_moving: bool| {
+            document.camera.vfov_degrees += 1.0;
+            layers.follow(&context, Some(Layer::Normals), &document, is_moving);
+            layers.number
+        };
+        assert_eq!(follow(&mut layers, true), 1);
+        assert_eq!(follow(&mut layers, true), 1, "the first has not been seen");
+        assert_eq!(follow(&mut layers, false), 2, "the move has ended");
+        assert_eq!(follow(&mut layers, true), 2);
+        let image = LayerImage::new(Layer::Normals, &small().job(1).unwrap());
+        let traced = Traced { number: 2, image, rgb8: vec![0; 32 * 18 * 3], divisor: 1 };
+        *layers.slot.lock().unwrap() = Some(traced);
+        assert_eq!(follow(&mut layers, true), 3);
+        let orders: Vec<Order> = orders.try_iter().collect();
+        assert_eq!(orders.iter().map(|order| order.is_coarse).collect::<Vec<_>>(), [true, false, true]);
+        let is_cancelled = |order: &Order| order.cancel.load(Ordering::Relaxed);
+        assert_eq!(orders.iter().map(is_cancelled).collect::<Vec<_>>(), [true, true, false]);
+    }
+
+    #[test]
+    fn what_an_earlier_order_has_traced_is_not_shown() {
+        let (mut layers, context, document) = (Layers::default(), Context::default(), small());
+        finish(&mut layers, Layer::Normals, &document);
+        let image = layers.shown.as_ref().unwrap().image.clone();
+        let rgb8 = coloured(Layer::Normals, &image, Transfer::Linear);
+        assert_eq!(rgb8.len(), 32 * 18 * 3);
+        for (number, is_shown) in [(layers.number - 1, false), (layers.number, true)] {
+            layers.shown = None;
+            let traced = Traced { number, image: image.clone(), rgb8: rgb8.clone(), divisor: 1 };
+            *layers.slot.lock().unwrap() = Some(traced);
+            layers.follow(&context, Some(Layer::Normals), &document, false);
+            assert_eq!(layers.shown.is_some(), is_shown);
+        }
+    }
+
+    #[test]
+    fn each_layer_has_its_colours() {
+        let document = small();
+        let job = document.job(1).unwrap();
+        for layer in [Layer::Normals, Layer::Albedo, Layer::RaysPerPath] {
+            let job = layer.job(&job).unwrap();
+            let mut image = LayerImage::new(layer, &job);
+            let recorder = PathRecorder::new(&job, Isa::Portable, None);
+            assert!(image.add_sample(&recorder, &AtomicBool::new(false)));
+            let rgb8 = coloured(layer, &image, Transfer::Gamma2);
+            for at in [[0, 0], [31, 0], [16, 9], [3, 17]] {
+                let start = 3 * (at[1] * 32 + at[0]) as usize;
+                let mean = image.mean(at);
+                let byte = |value: f64, transfer| to_byte(value, transfer, at[1] as usize, 18);
+                let expected = match layer {
+                    Layer::Normals => mean.map(|value| byte(value, Transfer::Linear)),
+                    Layer::Albedo => mean.map(|value| byte(value, Transfer::Gamma2)),
+                    Layer::RaysPerPath => HeatScale::RAYS.colour(mean[0]),
+                };
+                assert_eq!(rgb8[start..start + 3], expected, "{layer:?} {at:?}");
+            }
         }
     }
 }

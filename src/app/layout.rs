@@ -287,3 +287,85 @@ fn scrolling(ui: &mut egui::Ui, panel: egui::Panel, content: impl FnOnce(&mut eg
         });
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::kept::Kept;
+    use crate::app::model::slots::{Slot, SlotNumber};
+    use crate::app::model::view::With;
+    use crate::app::tests::window;
+    use crate::film::Film;
+    use std::sync::Arc;
+
+    const ONE: SlotNumber = SlotNumber::ALL[0];
+    const TWO: SlotNumber = SlotNumber::ALL[1];
+
+    /// A window with kept pictures of these sizes in its first slots.
+    fn with_slots(sizes: &[[u32; 2]]) -> Window {
+        let mut window = window("weekender --stage normals --size 16x9 --device cpu");
+        for (number, size) in SlotNumber::ALL.into_iter().zip(sizes) {
+            let mut document = window.document().clone();
+            document.give_size(*size);
+            let mut film = Film::new(size[0], size[1], 1);
+            film.record(0..1, 0).unwrap();
+            let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
+            window.model.view.slots.put(number, Slot { name: format!("of {}", size[0]), kept });
+        }
+        window
+    }
+
+    #[test]
+    fn a_slot_that_is_shown_or_subtracted_is_named() {
+        let mut window = with_slots(&[[16, 9], [16, 9]]);
+        let notice = |window: &Window| slot_notice(&window.facts());
+        assert_eq!(notice(&window), None);
+        window.model.view.look(Some(ONE));
+        assert_eq!(notice(&window).as_deref(), Some("slot 1: of 16 (Escape returns)"));
+        window.model.view.toggle(Mode::Difference, With::Slot(TWO));
+        assert_eq!(notice(&window).as_deref(), Some("A: slot 1: of 16    B: slot 2: of 16"));
+        window.model.view.toggle(Mode::Wipe, With::Slot(TWO));
+        assert_eq!(notice(&window), None, "the titles of a wipe say it");
+        window.model.view.look(None);
+        window.model.view.toggle(Mode::Difference, With::Stage);
+        assert_eq!(notice(&window), None);
+    }
+
+    #[test]
+    fn a_card_leaves_the_titles_free_where_it_would_cover_them() {
+        let mut window = with_slots(&[[16, 9]]);
+        let room = |height: f32| Rect::from_min_size(egui::pos2(10.0, 20.0), egui::vec2(320.0, height));
+        let below = |window: &Window, height: f32| window.below_titles(room(height), &window.facts());
+        let place = |window: &mut Window, top: f32| {
+            let at = room(180.0).translate(egui::vec2(0.0, top));
+            window.viewport.placement.place(at, egui::vec2(16.0, 9.0), 1.0);
+        };
+        place(&mut window, 0.0);
+        assert_eq!(below(&window, 400.0), room(400.0), "nothing has a title");
+        window.model.view.look(Some(ONE));
+        let lower = |by: f32, height: f32| Rect { min: egui::pos2(10.0, 20.0 + by), ..room(height) };
+        assert_eq!(below(&window, 400.0), lower(64.0, 400.0));
+        assert_eq!(below(&window, 193.0), lower(64.0, 193.0));
+        assert_eq!(below(&window, 192.0), room(192.0), "hardly anything would be left");
+        place(&mut window, 239.0);
+        assert_eq!(below(&window, 600.0), lower(303.0, 600.0));
+        place(&mut window, 240.0);
+        assert_eq!(below(&window, 600.0), room(600.0), "the titles are below the card");
+        place(&mut window, -50.0);
+        assert_eq!(below(&window, 400.0), lower(64.0, 400.0), "the titles are in sight");
+    }
+
+    #[test]
+    fn the_other_picture_is_told_at_the_same_place() {
+        let mut window = with_slots(&[[16, 9], [32, 18], [9, 9]]);
+        let other =
+            |window: &Window, at| other_pixel(&window.model.view, &window.second, window.document(), at);
+        assert_eq!(other(&window, [3, 2]), None);
+        window.model.view.toggle(Mode::Wipe, With::Slot(ONE));
+        assert_eq!(other(&window, [3, 2]), Some(OtherPixel { mean: [0.0; 3], scaled: None }));
+        window.model.view.toggle(Mode::Wipe, With::Slot(TWO));
+        assert_eq!(other(&window, [3, 4]), Some(OtherPixel { mean: [0.0; 3], scaled: Some([7, 9]) }));
+        window.model.view.toggle(Mode::Wipe, With::Slot(SlotNumber::ALL[2]));
+        assert_eq!(other(&window, [0, 2]), None, "beside the other picture");
+    }
+}

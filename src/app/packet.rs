@@ -194,3 +194,96 @@ fn paint(ui: &mut Ui, timelines: &[Timeline; 2]) {
         top += lanes as f32 * row + 4.0;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::app::tests::{Drawings, dressed};
+    use crate::stages::Stage;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    fn document(stage: &str) -> Document {
+        let mut document = Document::new(Origin::of_stage(Stage::find(stage).unwrap()));
+        document.set_size([32, 18]);
+        document
+    }
+
+    /// Waits for the timelines that have been asked for.
+    fn take(packet: &mut Packet) {
+        let traced = packet.answers.wait().unwrap();
+        packet.answers.answer(&egui::Context::default()).give(traced);
+    }
+
+    /// The panel with the timelines of a stage.
+    fn panel(stage: &str, lanes: usize, size: [f32; 2]) -> Harness<'static, (Packet, Vec<Command>)> {
+        let (mut packet, context) = (Packet::default(), egui::Context::default());
+        packet.follow(&context, &document(stage), Some(lanes), false);
+        take(&mut packet);
+        packet.follow(&context, &document(stage), Some(lanes), true);
+        let draw = |ui: &mut Ui, (packet, commands): &mut (Packet, Vec<Command>)| packet.ui(ui, commands);
+        let mut harness = dressed(size).build_ui_state(draw, (packet, Vec::new()));
+        harness.run_steps(3);
+        harness
+    }
+
+    #[test]
+    fn each_lane_has_a_row_and_each_step_a_column() {
+        let mut drawings = Drawings::default();
+        for (stage, lanes, size) in [
+            ("metal-fuzzy", 4, [700.0, 400.0]),
+            ("red-sphere", 2, [700.0, 400.0]),
+            ("glass-schlick", 1, [300.0, 250.0]),
+        ] {
+            drawings.add(&format!("{stage}, {lanes} lanes, {size:?}"), &panel(stage, lanes, size));
+        }
+        let mut empty = panel("red-sphere", 2, [700.0, 400.0]);
+        empty.state_mut().0 = Packet::default();
+        empty.run_steps(3);
+        drawings.add("nothing is recorded yet", &empty);
+        drawings.keep("packets");
+    }
+
+    #[test]
+    fn the_panel_has_a_button_that_closes_it() {
+        let mut harness = panel("red-sphere", 2, [700.0, 400.0]);
+        harness.get_by_label("Close").click();
+        harness.run_steps(2);
+        assert_eq!(harness.state().1, [Command::Packet]);
+    }
+
+    #[test]
+    fn timelines_are_recorded_once_for_each_picture() {
+        let (mut packet, context) = (Packet::default(), egui::Context::default());
+        let mut document = document("metal");
+        packet.follow(&context, &document, None, false);
+        assert!(packet.asked.is_none(), "the panel is not shown");
+        packet.follow(&context, &document, Some(4), true);
+        assert!(packet.asked.is_none(), "something is moving");
+        packet.follow(&context, &document, Some(4), false);
+        assert_eq!((packet.number, packet.steps()), (1, None));
+        take(&mut packet);
+        packet.follow(&context, &document, Some(4), false);
+        let [without, with] = packet.steps().unwrap();
+        assert!(packet.number == 1 && without >= with && with >= SAMPLES as usize, "{without} {with}");
+        packet.follow(&context, &document, Some(8), false);
+        assert_eq!(packet.number, 2, "other lanes");
+        document.settings.seed += 1;
+        packet.follow(&context, &document, Some(8), false);
+        assert_eq!(packet.number, 3, "another picture");
+        take(&mut packet);
+        packet.follow(&context, &document, None, false);
+        assert!(packet.steps().is_none() && packet.asked.is_none());
+    }
+
+    #[test]
+    fn lanes_trace_a_block_of_pixels_in_the_middle() {
+        let at = |lane, lanes| pixel_of(lane, lanes, [100, 60]);
+        assert_eq!([0, 1, 2, 3].map(|lane| at(lane, 4)), [[50, 30], [51, 30], [50, 31], [51, 31]]);
+        assert_eq!([0, 3, 4, 7].map(|lane| at(lane, 8)), [[50, 30], [53, 30], [50, 31], [53, 31]]);
+        assert_eq!([1, 15].map(|lane| at(lane, 16)), [[51, 30], [53, 33]]);
+        assert_eq!(at(0, 1), [50, 30]);
+        assert_eq!(pixel_of(15, 16, [4, 2]), [3, 1], "no pixel beyond the last");
+    }
+}

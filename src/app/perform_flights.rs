@@ -115,7 +115,14 @@ mod tests {
             pressed,
             modifiers,
         };
-        for event in [pressed(true, false), button(true), Event::Zoom(1.5)] {
+        let wheel = Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Line,
+            delta: egui::vec2(0.0, 1.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers,
+        };
+        for event in [pressed(true, false), button(true), Event::Zoom(1.5), wheel] {
             assert!(is_input(&event), "{event:?}");
         }
         for event in

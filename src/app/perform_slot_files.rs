@@ -269,4 +269,32 @@ mod tests {
             assert_eq!(window.model.view.slots.free().count(), free);
         }
     }
+
+    #[test]
+    fn a_list_of_pictures_that_are_gone_is_told_of_once() {
+        let directory = tempfile::tempdir().unwrap();
+        let files = holding(directory.path(), &[entry(Some(SlotNumber::ALL[2]), "gone", [4, 2])]);
+        std::fs::remove_file(files.slots().film("gone")).unwrap();
+        let mut window = window(STAGE);
+        window.begin_slots(&files, u64::MAX);
+        let told = window.messages();
+        let begin = "Not all kept pictures come back: the film of slot 3, picture gone, is missing";
+        assert!(told.len() == 1 && told[0].starts_with(begin), "{told:?}");
+        assert!(!files.slots().path().exists());
+    }
+
+    #[test]
+    fn a_picture_goes_to_its_own_slot_and_what_is_in_no_list_takes_what_is_left() {
+        let directory = tempfile::tempdir().unwrap();
+        let [one, two, three, ..] = SlotNumber::ALL;
+        let listed = [entry(Some(three), "c", [4, 2]), entry(Some(one), "a", [4, 2])];
+        let files = holding(directory.path(), &listed);
+        std::fs::write(files.slots().film("b"), "a film").unwrap();
+        let mut window = window(STAGE);
+        window.begin_slots(&files, u64::MAX);
+        let slots = &window.model.view.slots;
+        let awaited: Vec<_> = slots.awaited().map(|(number, coming)| (number, coming.id.as_str())).collect();
+        assert_eq!(awaited, [(one, "a"), (two, "b"), (three, "c")]);
+        assert!(window.messages().is_empty(), "{:?}", window.messages());
+    }
 }

@@ -104,6 +104,10 @@ fn visible(rect: Rect, area: Rect, size: [u32; 2]) -> Option<[[u32; 2]; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::Window;
+    use crate::app::kept::KeptThread;
+    use crate::app::model::view::ViewState;
+    use crate::app::tests::{Drawings, until, window};
     use egui::pos2;
 
     #[test]
@@ -115,5 +119,59 @@ mod tests {
         assert_eq!(visible(rect.translate(vec2(5000.0, 0.0)), area, [64, 36]), None, "out of sight");
         let right = rect.translate(vec2(-3000.0, 0.0));
         assert_eq!(visible(right, area, [64, 36]), Some([[62, 0], [64, 3]]), "no pixel beyond the last");
+    }
+
+    #[test]
+    fn each_pixel_has_its_numbers_in_its_middle() {
+        let area = Rect::from_min_max(pos2(8.0, 8.0), pos2(292.0, 192.0));
+        let rect = Rect::from_min_size(pos2(-40.0, -10.0), vec2(400.0, 240.0));
+        let means = vec![[0.0, 0.5, 123456.0], [0.1, 0.2, 0.3], [0.19, 0.19, 0.19], [0.21, 0.21, 0.21]];
+        let part = Part { first: [1, 1], width: 2, means };
+        let values = PixelValues { part: Some(part), ..PixelValues::default() };
+        let mut drawings = Drawings::default();
+        for exposure in [0.0, 1.0] {
+            let tone = Tone { exposure, ..Tone::default() };
+            let size = [5, 3];
+            let picture = crate::app::tests::part([300.0, 200.0], |ui| {
+                values.paint(ui, area, rect, size, &tone);
+            });
+            drawings.add(&format!("{exposure} stops"), &picture);
+        }
+        let tone = Tone::default();
+        let small = crate::app::tests::part([300.0, 200.0], |ui| {
+            values.paint(ui, area, rect, [10, 6], &tone);
+        });
+        drawings.add("pixels without room", &small);
+        drawings.keep("pixel_values");
+    }
+
+    #[test]
+    fn the_numbers_of_visible_pixels_are_asked_for_once() {
+        let mut window = window("weekender --stage normals --size 8x5 --samples 1 --device cpu --threads 1");
+        let context = egui::Context::default();
+        let is_done = |window: &Window| {
+            window.status().phase.is_over() && window.shown().is_some_and(|(_, divisor)| divisor == 1)
+        };
+        until(&mut window, &context, "the end", is_done);
+        let (thread, view) = (KeptThread::default(), ViewState::default());
+        let subject = Subject::new(&view, (window.document(), &window.main), None, &thread);
+        let mut values = PixelValues::default();
+        let rect = Rect::from_min_size(pos2(0.0, 0.0), vec2(800.0, 500.0));
+        let area = Rect::from_min_size(pos2(150.0, 250.0), vec2(200.0, 200.0));
+        values.follow(&subject, rect, Some(area), &context);
+        let asked = values.asked;
+        assert_eq!(asked.map(|(.., pixels)| pixels), Some([[1, 2], [4, 5]]));
+        let part = values.answers.wait().unwrap();
+        assert_eq!((part.first, part.width, part.means.len()), ([1, 2], 3, 9));
+        let (sender, receiver) = std::sync::mpsc::channel();
+        subject.inspect(move |film| {
+            let _ = sender.send([2, 3, 4].map(|y| [1, 2, 3].map(|x| film.mean(y * 8 + x))));
+        });
+        assert_eq!(part.means, receiver.recv().unwrap().concat());
+        values.part = Some(part);
+        values.follow(&subject, rect, Some(area), &context);
+        assert!(values.asked == asked && values.answers.take().is_none(), "nothing has changed");
+        values.follow(&subject, rect, None, &context);
+        assert!(values.part.is_none() && values.asked.is_none(), "no picture is shown");
     }
 }

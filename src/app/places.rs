@@ -88,3 +88,53 @@ pub fn next(context: &Context, last: Option<Place>, model: &Model) -> Option<Pla
     });
     place
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{facts_of, part};
+
+    /// The places that the keyboard goes through, from the first one to the picture.
+    fn all(model: &Model) -> Vec<Place> {
+        let mut seen = Vec::new();
+        let mut last = None;
+        let _ = part([200.0, 100.0], |ui| {
+            if !seen.is_empty() {
+                return;
+            }
+            loop {
+                // What has the focus now is within that place.
+                ui.memory_mut(|memory| memory.request_focus(Id::unique("a control")));
+                last = next(ui.ctx(), last, model);
+                match last {
+                    Some(place) => seen.push(place),
+                    None => break,
+                }
+            }
+            assert!(ui.memory(|memory| memory.focused().is_none()), "the picture has no focus");
+        });
+        seen
+    }
+
+    #[test]
+    fn the_keyboard_goes_through_what_is_shown() {
+        let mut model = facts_of("--stage metal --size 32x18").model;
+        let usual = [Place::Menu, Place::Controls, Place::Info];
+        assert_eq!(all(&model), usual);
+        let remembered = &mut model.remembered;
+        (remembered.has_plot, remembered.has_code, remembered.has_packet) = (true, true, true);
+        let with_more = [Place::Menu, Place::Controls, Place::Info, Place::Plot, Place::Code, Place::Packet];
+        assert_eq!(all(&model), with_more);
+        model.has_first_steps = true;
+        assert_eq!(all(&model)[..2], [Place::FirstSteps, Place::Menu]);
+        model.has_recovered = true;
+        assert_eq!(all(&model)[..2], [Place::Recovered, Place::Menu]);
+        (model.has_first_steps, model.has_recovered) = (false, false);
+        model.remembered.has_controls = false;
+        model.remembered.has_info = false;
+        assert_eq!(all(&model), [Place::Menu, Place::Plot, Place::Code, Place::Packet]);
+        model.remembered.has_panels = false;
+        model.has_recovered = true;
+        assert_eq!(all(&model), [Place::Recovered]);
+    }
+}

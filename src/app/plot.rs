@@ -297,95 +297,9 @@ pub fn csv(history: &[HistoryPoint]) -> String {
 
 /// A label of a logarithmic axis.
 fn power(exponent: f64, unit: &str) -> String {
-    let decade = 10_f64.powf((exponent + 1e-6).floor());
+    let decade = 10_f64.powf(exponent.floor());
     format!("{}{unit}", compact((10_f64.powf(exponent) / decade).round() * decade))
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn point(backend: &'static str, samples: u64, trace_seconds: f64) -> HistoryPoint {
-        let rmse_estimate = 0.1 / (samples as f64).sqrt();
-        HistoryPoint {
-            backend,
-            samples_per_pixel: samples,
-            trace_seconds,
-            rmse_estimate,
-            rel_mse_estimate: 0.1,
-        }
-    }
-
-    #[test]
-    fn each_backend_has_a_curve_that_joins_the_one_before() {
-        let history = [point("cpu", 2, 1.0), point("cpu", 4, 2.0), point("gpu", 8, 2.1)];
-        let found = curves(&history);
-        assert_eq!(
-            found.iter().map(|(name, points)| (*name, points.len())).collect::<Vec<_>>(),
-            [("cpu", 2), ("gpu", 2)]
-        );
-        assert_eq!(found[0].1[1], found[1].1[0]);
-        assert_eq!(csv(&history).lines().count(), 4);
-        assert!(csv(&history).ends_with("gpu,8,2.1,0.035355339059327376,0.1\n"), "{}", csv(&history));
-    }
-
-    #[test]
-    fn a_scale_has_a_line_for_each_power_of_ten_and_stays_finite() {
-        let marks = |low: f64, high: f64| decades(GridInput { bounds: (low, high), base_step_size: 1.0 });
-        let found = marks(-3.2, 1.5);
-        let whole: Vec<f64> =
-            found.iter().map(|mark| mark.value).filter(|value| value.fract() == 0.0).collect();
-        assert_eq!(whole, [-3.0, -2.0, -1.0, 0.0, 1.0]);
-        assert!(found.iter().all(|mark| (-3.2..=1.5).contains(&mark.value)));
-        for (low, high) in [(-1.0, f64::INFINITY), (-1e300, 1e300), (f64::NAN, 1.0), (0.0, 1e9)] {
-            assert!(marks(low, high).is_empty(), "{low} to {high}");
-        }
-    }
-
-    #[test]
-    fn a_dot_tells_its_samples() {
-        let history = [point("cpu", 4, 2.0)];
-        let [x, y] = logarithms(&history[0]);
-        assert_eq!(hover_words(&history, [x, y]), "4 samples per pixel\n2.000 s\nerror 0.05000");
-        assert_eq!(hover_words(&history, [x, y + 1.0]), "2.000 s\nerror 0.50000");
-    }
-
-    #[test]
-    fn a_target_that_is_dragged_has_two_digits() {
-        assert_eq!([0.002_134, 0.0999, 1.0].map(two_digits), [0.0021, 0.1, 1.0]);
-    }
-
-    /// The texts that are drawn, with the lower left corner of each.
-    fn texts(draw: impl FnMut(&mut Ui)) -> Vec<(String, egui::Pos2)> {
-        let harness = egui_kittest::Harness::builder().with_size([600.0, 300.0]).build_ui(draw);
-        let mut texts = Vec::new();
-        for clipped in &harness.output().shapes {
-            if let egui::Shape::Text(text) = &clipped.shape {
-                let corner = text.pos + egui::vec2(0.0, text.galley.size().y);
-                texts.push((text.galley.text().to_owned(), corner));
-            }
-        }
-        texts
-    }
-
-    #[test]
-    fn several_curves_are_named_above_their_middles() {
-        let history = vec![point("cpu", 4, 1.0), point("cpu", 16, 4.0)];
-        let mut status = Status { history, ..Status::default() };
-        let named = |status: &Status| {
-            let texts = texts(|ui| plot(ui, &mut None, status));
-            ["cpu", "gpu"].map(|name| texts.iter().any(|(text, _)| text == name))
-        };
-        assert_eq!(named(&status), [false; 2], "one curve needs no name");
-        status.history.push(point("gpu", 64, 8.0));
-        assert_eq!(named(&status), [true; 2]);
-        let mut middle = egui::Pos2::ZERO;
-        let texts = texts(|ui| {
-            let ends = [[1.0, -1.0], [3.0, -4.0]];
-            let shown = Plot::new("named").show(ui, |plot| name_curve(plot, "cpu", &ends, Color32::RED));
-            middle = shown.transform.position_from_point(&PlotPoint::new(2.0, -2.5));
-        });
-        let (_, corner) = texts.iter().find(|(text, _)| text == "cpu").unwrap();
-        assert!(corner.distance(middle) < 1.0, "{corner} {middle}");
-    }
-}
+mod tests;

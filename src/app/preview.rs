@@ -139,7 +139,9 @@ fn coarsest(document: &Document) -> u32 {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
+    use crate::render::Stats;
     use crate::stages::Stage;
+    use std::time::Duration;
 
     fn document(id: &str, size: [u32; 2]) -> Document {
         let mut document = Document::new(Origin::of_stage(Stage::find(id).unwrap()));
@@ -206,5 +208,35 @@ mod tests {
         assert_eq!(previews.first_look(&between), None);
         previews.render_speed = Some(1e9);
         assert_eq!(previews.first_look(&document("book", [1600, 900])), None);
+    }
+
+    #[test]
+    fn speeds_are_those_of_the_last_render_and_the_last_preview() {
+        let mut previews = Previews::default();
+        let document = document("book", [1000, 400]);
+        previews.note_speed(&Status::default());
+        assert_eq!(previews.render_speed, None, "nothing has been traced");
+        let (trace, stats) = (Duration::from_secs(2), Stats { paths: 8_000_000, ..Stats::default() });
+        previews.note_speed(&Status { trace, stats, ..Status::default() });
+        assert_eq!(previews.render_speed, Some(4e6));
+        // 60,000 samples in a twentieth of a second, at three tenths of the speed of a render.
+        assert_eq!(previews.choose(&document), Preview { divisor: 6, samples: 4 });
+        assert!(!previews.is_moving());
+        let moving = previews.follow_move(&document);
+        assert!(previews.is_moving());
+        previews.pictured(&document, moving.divisor, 1e5, 0.06);
+        assert_eq!(previews.follow_move(&document), moving, "fast enough");
+        previews.pictured(&document, moving.divisor, 1e5, 0.0);
+        assert_eq!(previews.speed, Some(1e8), "no time is shorter than a millisecond");
+        previews.end_move();
+        assert!(!previews.is_moving());
+    }
+
+    #[test]
+    fn the_coarsest_preview_leaves_a_hundred_pixels_or_an_eighth() {
+        for (size, divisor) in [([1000, 400], 10), ([700, 400], 8), ([100, 900], 9), ([80, 60], 8)] {
+            assert_eq!(coarsest(&document("book", size)), divisor, "{size:?}");
+            assert_eq!(longer_side(&document("book", size)), size[0].max(size[1]));
+        }
     }
 }

@@ -172,8 +172,10 @@ mod tests {
     use super::*;
     use crate::app::tests::window;
     use crate::film::Film;
+    use crate::recipe::Recipe;
     use crate::render::BackendInfo;
     use crate::saved::SavedFilm;
+    use eframe::egui::Context;
 
     #[test]
     fn a_film_is_not_resumed_after_the_picture_was_changed() {
@@ -215,5 +217,81 @@ mod tests {
         assert_eq!(device_after(gpu, 0, &status("cpu", &["gpu"])), (cpu, 1));
         assert_eq!(device_after(gpu, 1, &status("cpu", &["gpu"])), (gpu, 1), "it is tried again");
         assert_eq!(device_after(cpu, 0, &status("cpu", &["cpu"])), (cpu, 0), "its plainer code goes on");
+    }
+
+    #[test]
+    fn what_was_written_or_read_is_told_and_remembered() {
+        let (mut window, context) = (window("weekender --stage normals --size 16x9"), Context::default());
+        let path = |name: &str| PathBuf::from("/of").join(name);
+        window.files.saved.answer(&context).give(Ok(path("a.png")));
+        window.files.saved.answer(&context).give(Ok(path("b.CSV")));
+        window.files.saved.answer(&context).give(Err("there is no room".to_owned()));
+        window.files.resumed.answer(&context).give(Err("there is no film".to_owned()));
+        window.files.references.answer(&context).give(Err("it is not a film".to_owned()));
+        let reason = "it cannot be read".to_owned();
+        let not_opened = NotOpened { path: path("not there.png"), reason, is_picture: true };
+        window.files.opened.answer(&context).give(Err(not_opened));
+        let copied =
+            (egui::ColorImage::from_rgb([1, 1], &[0; 3]), "picture: 1x1, 4 samples per pixel".to_owned());
+        window.files.copied.answer(&context).give(copied);
+        window.receive(&context);
+        let told = [
+            "Saved /of/a.png",
+            "Saved /of/b.CSV",
+            "Not saved: there is no room",
+            "Not opened: it cannot be read",
+            "Copied the picture: 1x1, 4 samples per pixel",
+            "Not resumed: there is no film",
+            "Reference not loaded: it is not a film",
+        ];
+        assert_eq!(window.messages(), told);
+        assert_eq!(window.model.remembered.recent, [path("a.png")], "a plot cannot be opened");
+        assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")));
+        window.remember_directory(Path::new("c.png"));
+        assert_eq!(window.model.remembered.directory, Some(PathBuf::from("/of")), "it names no folder");
+    }
+
+    #[test]
+    fn a_reference_of_another_size_waits_for_the_picture_to_get_that_size() {
+        for (size, is_shown) in [([16, 9], true), ([16, 10], false), ([15, 9], false)] {
+            let mut window = window("weekender --stage normals --size 16x9");
+            let [width, height] = size;
+            let means = vec![[0.0; 3]; (width * height) as usize];
+            let reference = ReferenceMeans { width, height, means, identity: None };
+            window.take_reference(PathBuf::from("/of/a.exr"), reference);
+            assert!(window.model.view.reference.is_some());
+            let commands = if is_shown { vec![Command::Show(Show::Difference)] } else { vec![] };
+            assert_eq!(window.commands, commands, "{size:?}");
+            let told = window.messages();
+            let expected =
+                if is_shown { "Showing the difference from /of/a.exr" } else { "No difference yet" };
+            assert!(told[0].starts_with(expected), "{told:?}");
+            assert!(
+                is_shown || told[0].contains(&format!("{width}x{height} and the picture is 16x9")),
+                "{told:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_is_opened_keeps_its_size_and_a_picture_its_end() {
+        let recipe = Recipe::builtin("three-spheres").unwrap();
+        for (content, samples) in [
+            (Content::Scene, None),
+            (Content::Picture { samples: Some(7) }, Some(7)),
+            (Content::Picture { samples: None }, None),
+        ] {
+            let mut window = window("weekender --stage normals --size 16x9");
+            let is_scene = matches!(content, Content::Scene);
+            let path = PathBuf::from("/of/mine.toml");
+            let (recipe, job) = (recipe.clone(), recipe.job().unwrap());
+            window.show_opened(Opened { path: path.clone(), recipe, job, stage: None, content });
+            let document = window.document();
+            assert!(document.has_own_size);
+            assert_eq!(document.stop.samples, samples);
+            assert_eq!(document.origin.source == Source::File(path.clone()), is_scene);
+            assert_eq!(window.model.remembered.recent, [path]);
+            assert_eq!(window.messages(), ["Opened /of/mine.toml"]);
+        }
     }
 }

@@ -142,7 +142,9 @@ fn verdict(present: &Present, settled: Duration, is_by_hand: bool, changes: usiz
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
+    use crate::app::tests::{Drawings, dressed, leave};
     use crate::stages::Stage;
+    use egui_kittest::kittest::Queryable;
 
     const YOUNG: Present = Present { is_documents: true, seconds: 2.0, is_needed: false };
     const LONG: Duration = Duration::from_secs(1);
@@ -196,5 +198,84 @@ mod tests {
         sizer.fitting = Some(([160, 90], settled));
         assert_eq!(follow(&mut sizer, [160, 9000]), [160, 90]);
         assert_eq!(sizer.offer(), None);
+    }
+
+    fn ago(seconds: u64) -> Instant {
+        Instant::now().checked_sub(Duration::from_secs(seconds)).unwrap()
+    }
+
+    /// The size after a frame with a room of 320 by 9000 pixels, of a picture that has had another size.
+    fn followed(sizer: &mut Sizer, sizing: Sizing, present: &Present) -> [u32; 2] {
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.set_size([160, 90]);
+        sizer.follow(&Context::default(), &mut document, (sizing, [320, 9000]), present);
+        document.size()
+    }
+
+    #[test]
+    fn a_size_is_followed_once_it_has_stayed_the_same() {
+        let settled = |size| Sizer { fitting: Some((size, ago(1))), ..Sizer::default() };
+        for (size, expected) in [([320, 180], [320, 180]), ([300, 169], [160, 90])] {
+            let mut sizer = settled(size);
+            assert_eq!(followed(&mut sizer, Sizing::Viewport, &YOUNG), expected, "{size:?} has fitted");
+            assert_eq!(sizer.fitting.unwrap().0, [320, 180]);
+            assert_eq!(sizer.changes.len(), usize::from(expected == [320, 180]));
+            assert_eq!(sizer.offer(), None);
+        }
+        let mut sizer = settled([320, 180]);
+        sizer.offer = Some([1, 1]);
+        let old = Present { seconds: 99.0, ..YOUNG };
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90]);
+        assert_eq!((sizer.offer(), sizer.changes.len()), (Some([320, 180]), 0));
+        sizer.ask();
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [320, 180], "whatever is lost");
+        assert_eq!((sizer.offer(), sizer.changes.len()), (None, 0));
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, &old), [160, 90], "once");
+    }
+
+    #[test]
+    fn the_books_size_and_that_of_another_picture_are_taken_at_once() {
+        let another = Present { is_documents: false, ..YOUNG };
+        let mut sizer = Sizer::default();
+        assert_eq!(followed(&mut sizer, Sizing::Viewport, &another), [320, 180]);
+        assert_eq!(sizer.changes.len(), 0, "the picture is new anyway");
+        let old = Present { seconds: 99.0, ..YOUNG };
+        assert_eq!(followed(&mut Sizer::default(), Sizing::Book, &old), [400, 225]);
+    }
+
+    #[test]
+    fn changes_of_long_ago_are_forgotten() {
+        for (seconds, expected) in [(15, [320, 180]), (13, [160, 90])] {
+            let changes = (0..6).map(|_| ago(seconds)).collect();
+            let mut sizer = Sizer { fitting: Some(([320, 180], ago(1))), changes, ..Sizer::default() };
+            assert_eq!(followed(&mut sizer, Sizing::Viewport, &YOUNG), expected, "{seconds} s ago");
+            assert_eq!(sizer.changes.len(), if seconds == 15 { 1 } else { 6 });
+        }
+    }
+
+    #[test]
+    fn ten_seconds_of_tracing_are_given_up_and_no_more() {
+        let after = |seconds| verdict(&Present { seconds, ..YOUNG }, SETTLE, false, 0);
+        assert_eq!([10.0, 10.5].map(after), [Verdict::Change, Verdict::Keep]);
+        let nearly = Duration::from_millis(249);
+        assert_eq!(verdict(&YOUNG, nearly, false, 0), Verdict::Wait(Duration::from_millis(1)));
+        assert_eq!(verdict(&YOUNG, SETTLE, true, 0), Verdict::Wait(SETTLE));
+    }
+
+    #[test]
+    fn the_offer_is_above_the_axes_and_gives_its_command() {
+        let mut drawings = Drawings::default();
+        let sizer = Sizer { offer: Some([1037, 583]), ..Sizer::default() };
+        let over = Rect::from_min_max(egui::pos2(40.0, 30.0), egui::pos2(600.0, 390.0));
+        let draw = move |ui: &mut Ui, commands: &mut Vec<Command>| sizer.ui(ui, over, commands);
+        let mut harness = dressed([640.0, 400.0]).build_ui_state(draw, Vec::new());
+        harness.run_steps(2);
+        leave(&mut harness);
+        drawings.add("the offer", &harness);
+        drawings.add_tips(&mut harness);
+        harness.get_by_label("Render at 1037x583").click();
+        harness.run_steps(2);
+        assert_eq!(*harness.state(), [Command::Size(Sizing::Viewport)]);
+        drawings.keep("size_offer");
     }
 }

@@ -122,3 +122,88 @@ fn has_moved(ui: &Ui, here: Option<&'static Stage>) -> bool {
         before.is_some_and(|before| before != now)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{Drawings, dressed, facts_of, leave};
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
+
+    struct List {
+        facts: Facts,
+        thumbnails: Thumbnails,
+        commands: Vec<Command>,
+    }
+
+    fn list(words: &str, height: f32) -> Harness<'static, List> {
+        let list = List { facts: facts_of(words), thumbnails: Thumbnails::default(), commands: Vec::new() };
+        let draw = |ui: &mut Ui, List { facts, thumbnails, commands }: &mut List| {
+            ui.set_width(WIDTH);
+            super::ui(ui, thumbnails, facts, commands);
+        };
+        dressed([400.0, height]).build_ui_state(draw, list)
+    }
+
+    fn show(harness: &mut Harness<'_, List>, words: &str) {
+        harness.state_mut().facts = facts_of(words);
+        harness.run_steps(4);
+    }
+
+    #[test]
+    fn the_list_opens_at_the_stage_that_is_shown_and_follows_it() {
+        let mut drawings = Drawings::default();
+        for height in [250.0, 500.0, 1000.0] {
+            let mut harness = list("--stage glass-schlick --size 32x18", height);
+            harness.run_steps(4);
+            drawings.add(&format!("{height} points high"), &harness);
+            show(&mut harness, "--stage ppm-tiny");
+            drawings.add("the first stage", &harness);
+            show(&mut harness, "--stage book");
+            drawings.add("the last stage", &harness);
+            show(&mut harness, "--scene field:20");
+            drawings.add("no stage", &harness);
+        }
+        drawings.keep("stage_list");
+    }
+
+    #[test]
+    fn a_row_shows_that_it_can_be_clicked_and_has_a_tip() {
+        let mut drawings = Drawings::default();
+        let mut harness = list("--stage glass-schlick --size 32x18", 500.0);
+        harness.run_steps(4);
+        leave(&mut harness);
+        drawings.add("the pointer is elsewhere", &harness);
+        let names = ["metal", "glass-schlick"].map(|id| Command::Stage(Stage::find(id).unwrap()).name());
+        drawings.add_tips_of(&mut harness, &names.each_ref().map(String::as_str));
+        drawings.keep("stage_list_tips");
+        let other = Command::Stage(Stage::find("hollow-glass").unwrap());
+        harness.get_by_label(&other.name()).click();
+        harness.run_steps(2);
+        assert_eq!(harness.state().commands, [other]);
+    }
+
+    #[test]
+    fn arrows_go_through_the_list_as_far_as_it_goes_and_enter_chooses() {
+        let last = Stage::ALL.len() - 1;
+        for (words, keys, expected) in [
+            ("--stage glass-schlick --size 32x18", [(Key::ArrowDown, 2), (Key::ArrowUp, 1)], 1),
+            ("--stage ppm-tiny", [(Key::ArrowUp, 3), (Key::ArrowDown, 0)], 0),
+            ("--stage book", [(Key::ArrowDown, 3), (Key::ArrowUp, 0)], 0),
+        ] {
+            let mut harness = list(words, 500.0);
+            harness.run_steps(4);
+            let here = harness.state().facts.document().stage().unwrap().index();
+            for (key, count) in keys {
+                for _ in 0..count {
+                    harness.key_press(key);
+                    harness.run_steps(3);
+                }
+            }
+            harness.key_press(Key::Enter);
+            harness.run_steps(3);
+            let chosen = &Stage::ALL[(here + expected).min(last)];
+            assert_eq!(harness.state().commands, [Command::Stage(chosen)], "{words}");
+        }
+    }
+}

@@ -247,11 +247,12 @@ pub fn grouped(n: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tests::{Drawings, part as dressed, rest_at};
     use crate::film::ErrorEstimate;
     use crate::render::Stats;
     use egui::Rect;
+    use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
-    use egui_kittest::{Harness, SnapshotOptions};
     use std::time::Duration;
 
     #[test]
@@ -337,15 +338,20 @@ mod tests {
     }
 
     #[test]
-    fn the_bar_looks_as_it_did() {
-        let status = status_of(parts().to_vec());
-        let mut harness = Harness::builder().with_size([1296.0, 40.0]).wgpu().build_ui(|ui| {
-            crate::app::theme::install(ui.ctx());
-            bar(ui, &of(&status));
-        });
-        harness.run_steps(2);
-        let options = SnapshotOptions::new().threshold(2.0).max_failed_pixels(100_usize);
-        harness.snapshot_options("status_bar", &options);
+    fn the_bar_gives_each_figure_its_place_and_its_tip() {
+        let mut status = status_of(parts().to_vec());
+        (status.rejected_samples, status.doubt) = (12345, Some("few pixels".to_owned()));
+        let mut drawings = Drawings::default();
+        for (width, next) in [(1296.0, None), (1600.0, Some(Device::Gpu)), (640.0, None)] {
+            let mut harness = dressed([width, 140.0], |ui| bar(ui, &Bar { next, ..of(&status) }));
+            drawings.add(&format!("{width} points"), &harness);
+            let figures = harness.get_all_by_role(egui::Role::Label).map(|node| node.rect().center());
+            for (index, at) in figures.collect::<Vec<_>>().into_iter().enumerate() {
+                rest_at(&mut harness, at);
+                drawings.add(&format!("figure {index}"), &harness);
+            }
+        }
+        drawings.keep("status_bar");
     }
 
     #[test]

@@ -100,4 +100,44 @@ mod tests {
         assert!((brighter - 0.5).abs() < 0.02, "no place is better than the middle: {brighter}");
         assert_eq!(grey.most_different_column(&Texture::new([1, 1], &[0; 3], None)), None);
     }
+
+    #[test]
+    fn a_divider_leaves_a_sixth_of_each_picture_and_looks_at_a_sixteenth_around() {
+        let row = |shade: &dyn Fn(usize) -> u8| {
+            let rgb8: Vec<u8> = (0..96).flat_map(|x| [shade(x); 3]).collect();
+            Texture::new([96, 1], &rgb8, None)
+        };
+        let grey = row(&|_| 100);
+        let at = |shade: &dyn Fn(usize) -> u8| {
+            let share = grey.most_different_column(&row(shade))?;
+            Some((share * 192.0).round() / 2.0)
+        };
+        // Columns 16 to 79 can have the divider; what is at the edge is seen from six columns away.
+        assert_eq!(at(&|x| if x < 4 { 200 } else { 100 }), None, "too near to the edge");
+        assert_eq!(at(&|x| if x == 10 { 200 } else { 100 }), Some(16.5));
+        assert_eq!(at(&|x| if x == 85 { 200 } else { 100 }), Some(79.5));
+        assert_eq!(at(&|x| if x == 86 { 200 } else { 100 }), None);
+        // Of all columns that see one that differs, the one nearest to the middle.
+        assert_eq!(at(&|x| if x == 30 { 0 } else { 100 }), Some(36.5));
+        assert_eq!(at(&|x| if x == 60 { 0 } else { 100 }), Some(54.5));
+    }
+
+    #[test]
+    fn a_pixel_has_its_colour_and_a_new_picture_the_same_texture() {
+        let context = Context::default();
+        let mut first = Texture::new([2, 2], &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], None);
+        assert_eq!(
+            [[0, 0], [1, 0], [0, 1]].map(|at| first.colour(at)),
+            [[1, 2, 3], [4, 5, 6], [7, 8, 9]].map(Some)
+        );
+        assert_eq!([[2, 0], [0, 2]].map(|at| first.colour(at)), [None; 2]);
+        let (square, smooth) = (TextureOptions::NEAREST, TextureOptions::LINEAR);
+        let id = first.id(&context, square);
+        let known = |id| context.tex_manager().read().meta(id).map(|meta| (meta.size, meta.options));
+        assert_eq!(known(id), Some(([2, 2], square)));
+        assert_eq!(first.id(&context, smooth), id);
+        let mut second = Texture::new([1, 3], &[0; 9], Some(first));
+        assert_eq!(known(id).map(|(size, _)| size), Some([1, 3]), "it is uploaded at once");
+        assert_eq!(second.id(&context, smooth), id);
+    }
 }

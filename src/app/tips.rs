@@ -83,3 +83,72 @@ fn explain_around(
     }
     response
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{Drawings, part, rest_at};
+    use eframe::egui::{Button, UiBuilder, pos2, vec2};
+
+    /// What is drawn while the pointer rests on a button in a panel of a window of 600x300 points.
+    fn tip(
+        panel: Rect,
+        is_enabled: bool,
+        explain: impl Fn(&Ui, Response) -> Response,
+        drawings: &mut Drawings,
+    ) {
+        let mut harness = part([600.0, 300.0], |ui| {
+            let mut within = ui.new_child(UiBuilder::new().max_rect(panel));
+            within.set_clip_rect(panel);
+            let button = Button::new("press").min_size(vec2(40.0, 20.0));
+            let response = within.add_enabled(is_enabled, button);
+            explain(&within, response);
+        });
+        harness.run_steps(2);
+        let center = panel.min + vec2(15.0, 10.0);
+        rest_at(&mut harness, center);
+        drawings.add(&format!("{panel}, enabled: {is_enabled}"), &harness);
+    }
+
+    #[test]
+    fn tips_stand_where_there_is_room() {
+        let mut drawings = Drawings::default();
+        for (name, side, panel) in [
+            ("at the right", Side::Beside, Rect::from_min_max(pos2(8.0, 20.0), pos2(200.0, 280.0))),
+            ("at the left", Side::Beside, Rect::from_min_max(pos2(450.0, 20.0), pos2(592.0, 280.0))),
+            (
+                "narrow, at the wider side",
+                Side::Beside,
+                Rect::from_min_max(pos2(160.0, 20.0), pos2(420.0, 280.0)),
+            ),
+            ("nowhere", Side::Beside, Rect::from_min_max(pos2(130.0, 20.0), pos2(470.0, 280.0))),
+            ("below", Side::Below, Rect::from_min_max(pos2(100.0, 8.0), pos2(500.0, 40.0))),
+            ("above", Side::Above, Rect::from_min_max(pos2(100.0, 250.0), pos2(500.0, 292.0))),
+        ] {
+            drawings.tell(name);
+            for is_enabled in [true, false] {
+                let words = |ui: &Ui, response| explain(ui, response, side, "What it does", Some("why not"));
+                tip(panel, is_enabled, words, &mut drawings);
+            }
+        }
+        let panel = Rect::from_min_max(pos2(8.0, 20.0), pos2(200.0, 280.0));
+        for (help, reason) in [("", None), ("", Some("why not")), ("What it does", None)] {
+            for is_enabled in [true, false] {
+                drawings.tell(&format!("{help}, {reason:?}"));
+                let words = |ui: &Ui, response| explain(ui, response, Side::Beside, help, reason);
+                tip(panel, is_enabled, words, &mut drawings);
+            }
+        }
+        drawings.tell("beside a column");
+        let column = Rangef::new(0.0, 150.0);
+        tip(
+            panel,
+            true,
+            |_, response| explain_in_column(response, column, "What it does", None),
+            &mut drawings,
+        );
+        drawings.tell("beside its panel");
+        tip(panel, true, |ui, response| beside(ui, response, "What it does"), &mut drawings);
+        drawings.keep("tips_of_parts");
+    }
+}

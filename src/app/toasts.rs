@@ -108,6 +108,8 @@ impl Toasts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tests::{Drawings, part};
+    use eframe::egui::{Rect, pos2, vec2};
     use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
@@ -122,5 +124,57 @@ mod tests {
         harness.get_all_by_label("×").nth(1).unwrap().click();
         harness.run_steps(2);
         assert_eq!(harness.state().texts().collect::<Vec<_>>(), ["first", "third"]);
+    }
+
+    #[test]
+    fn messages_are_stacked_over_the_lower_edge() {
+        let mut drawings = Drawings::default();
+        for [width, height] in [[600.0, 400.0], [300.0, 400.0], [130.0, 400.0]] {
+            let over = Rect::from_min_size(pos2(8.0, 8.0), vec2(width, height - 20.0));
+            let mut toasts = Toasts::default();
+            let mut harness = part([width + 16.0, height], |ui| {
+                if toasts.0.is_empty() {
+                    toasts.good("Saved /of/a.png");
+                    toasts.add(
+                        "Not opened: there is no such file, so nothing was opened".to_owned(),
+                        Tone::Bad,
+                    );
+                }
+                toasts.ui(ui, over);
+            });
+            harness.run_steps(3);
+            drawings.add(&format!("{width} points"), &harness);
+            drawings.add_tips(&mut harness);
+        }
+        drawings.keep("toasts");
+    }
+
+    #[test]
+    fn a_message_is_told_once_and_the_newest_is_the_last() {
+        let mut toasts = Toasts::default();
+        for text in ["first", "second", "first"] {
+            toasts.good(text);
+        }
+        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["second", "first"]);
+        toasts.switched("Error plot", true);
+        toasts.switched("Axes", false);
+        toasts.switched("Error plot", false);
+        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["second", "first", "Axes off", "Error plot off"]);
+        assert!(toasts.0.iter().all(|toast| toast.tone == Tone::Good));
+    }
+
+    #[test]
+    fn failures_stay_longer() {
+        let ages = [(4.0, Tone::Good), (11.0, Tone::Bad), (15.0, Tone::Bad)];
+        let toast = |(seconds, tone)| Toast {
+            text: format!("{seconds}"),
+            tone,
+            since: Instant::now().checked_sub(Duration::from_secs_f64(seconds)).unwrap(),
+        };
+        let mut toasts = Toasts(ages.into_iter().map(toast).collect());
+        let context = egui::Context::default();
+        let over = Rect::from_min_size(pos2(0.0, 0.0), vec2(600.0, 400.0));
+        let _ = context.run_ui(egui::RawInput::default(), |ui| toasts.ui(ui, over));
+        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["11"]);
     }
 }

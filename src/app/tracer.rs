@@ -336,14 +336,35 @@ impl Tracer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::render_cpu::CpuOptions;
 
     #[test]
     fn a_preview_stays_until_the_picture_is_clear_or_late() {
         let picture =
             |samples_per_pixel| Picture { run: 1, width: 1, height: 1, samples_per_pixel, rgb8: vec![0; 3] };
         let soon = Duration::from_millis(100);
-        assert!(is_confetti(&picture(2), soon));
+        assert!(is_confetti(&picture(2), soon) && is_confetti(&picture(7), soon));
         assert!(!is_confetti(&picture(8), soon));
-        assert!(!is_confetti(&picture(2), PREVIEW_LIMIT));
+        let [early, late] = [499, 500].map(Duration::from_millis);
+        assert!(is_confetti(&picture(2), early) && !is_confetti(&picture(2), late));
+    }
+
+    #[test]
+    fn passes_are_short_while_something_moves_and_few_during_a_pause() {
+        let document = Document::new(Origin::usual());
+        let backend = BackendChoice::Cpu(CpuOptions::default());
+        let plan = |stop, is_moving, is_held, preview| {
+            let view = View::Picture;
+            Want { document: &document, backend: &backend, stop, view, is_moving, is_paused: false }
+                .plan(is_held, preview)
+        };
+        let stop = Stop::at_samples(100);
+        let still = plan(stop, false, false, Preview::NONE);
+        assert_eq!((still.pass_target, still.stop, still.preview), (Duration::from_millis(40), stop, None));
+        let moving = plan(stop, true, false, Preview { divisor: 2, samples: 4 });
+        assert_eq!((moving.pass_target, moving.preview), (Duration::from_millis(10), Some(4)));
+        let held = |stop| plan(stop, false, true, Preview::NONE).stop.samples;
+        assert_eq!([stop, Stop::at_samples(3), Stop::default()].map(held), [Some(8), Some(3), Some(8)]);
     }
 }

@@ -122,8 +122,8 @@ impl Keeper {
         words
     }
 
-    /// Waits until the current checkpoint is written.
-    pub(super) fn finish(&mut self) {
+    /// Waits until the current checkpoint is written. Returns the samples per pixel in the file, if there is one.
+    pub(super) fn finish(mut self) -> Option<u64> {
         self.snapshots = None;
         if let Some(thread) = self.thread.take() {
             // A panic there has already been reported, and the film is written once more anyway.
@@ -132,10 +132,6 @@ impl Keeper {
         while let Ok(outcome) = self.outcomes.try_recv() {
             self.note(outcome);
         }
-    }
-
-    /// Samples per pixel in the file, if it has been written.
-    pub(super) fn kept(&self) -> Option<u64> {
         self.kept
     }
 
@@ -167,10 +163,10 @@ mod tests {
         // The film has one sample per pixel.
         (keeper.asked, keeper.is_under_way) = (1, true);
         let told = keeper.note(Outcome { samples: None, words: Some("the disk is full".to_owned()) });
-        assert_eq!((told.as_deref(), keeper.kept()), (Some("the disk is full"), None));
+        assert_eq!((told.as_deref(), keeper.kept), (Some("the disk is full"), None));
         assert!(keeper.asked < 1 && !keeper.is_under_way);
         assert_eq!(keeper.note(Outcome { samples: Some(1), words: None }), None);
-        assert_eq!(keeper.kept(), Some(1));
+        assert_eq!(keeper.kept, Some(1));
     }
 
     #[test]
@@ -188,7 +184,7 @@ mod tests {
         while seen.len() < 3 && begin.elapsed() < Duration::from_secs(60) {
             let status = progressive.wait(Duration::from_millis(20));
             assert_eq!(keeper.look(&progressive, &status), None);
-            if let Some(kept) = keeper.kept()
+            if let Some(kept) = keeper.kept
                 && seen.last() != Some(&kept)
             {
                 seen.push(kept);
@@ -199,7 +195,7 @@ mod tests {
         assert_eq!(seen.len(), 3, "{seen:?}");
         assert!(begin.elapsed() >= 2 * render.every, "there is a pause between two writings");
         drop(progressive);
-        keeper.finish();
+        assert!(keeper.finish() >= seen.last().copied());
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
     }
 }

@@ -200,9 +200,7 @@ impl Begun<'_> {
         let writing = self.interrupt.while_writing(names.join(" and "));
         let film = progressive.take_film();
         let begin = Instant::now();
-        if let Some(keeper) = &mut keeper {
-            keeper.finish();
-        }
+        let kept = keeper.and_then(Keeper::finish);
         let mut written = match &film {
             Some(film) if film.sample_count() > 0 => {
                 files::write(render, self.places, film, &status, seconds_before, |path| {
@@ -223,7 +221,6 @@ impl Begun<'_> {
         if matches!(status.phase, Phase::Failed(_)) {
             journal::write_report();
         }
-        let kept = keeper.and_then(|keeper| keeper.kept());
         let outcome = outcome(render, &status, film.as_ref(), &written, kept);
         (Summary::new(render, &status, film.as_ref(), written.files, begin.elapsed()), outcome)
     }

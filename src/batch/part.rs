@@ -90,8 +90,6 @@ fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode
         print_beside(batch.json.as_ref(), &words).map_err(Failure::Run)?;
         return Ok(ExitCode::SUCCESS);
     }
-    // What was put aside is no longer in its place.
-    let places = if found.is_none() { batch.renders.iter().map(Places::of).collect() } else { places };
     render_all(batch, &places, found)
 }
 

@@ -293,4 +293,68 @@ mod tests {
         let reason = found[2].row.skipped.as_deref().unwrap();
         assert!(reason.contains("no-such-GPU") || reason.contains("no graphics adapter"), "{reason}");
     }
+
+    #[test]
+    fn a_warm_up_takes_more_and_more_samples_until_its_speed_is_meaningful() {
+        let all = |counts: &[u64]| counts.iter().map(|count| ("", 0..*count)).collect::<Vec<_>>();
+        for (samples, limit_seconds, asked, chosen) in [
+            // A hundredth of a second per sample: the third run takes more than a fifth of a second.
+            (64, 10.0, &[2, 8, 32][..], 64),
+            (20, 10.0, &[2, 8, 20], 20),
+            (8, 10.0, &[2, 8], 8),
+            (1, 10.0, &[1], 1),
+            // If a run may take less than that, it is enough: here an eighth of a second, into which 8 samples fit.
+            (64, 0.125, &[2, 8, 32], 8),
+            (64, 0.05, &[2, 8], 4),
+        ] {
+            let fake = Fake { per_sample: Duration::from_millis(10), ..Fake::default() };
+            let found = Arc::clone(&fake.asked);
+            let mut cpu = candidate(Kind::Scalar, fake);
+            cpu.warm_up(&job(), samples, limit_seconds, &NEVER).unwrap();
+            assert_eq!(*found.lock().unwrap(), all(asked), "{samples} in {limit_seconds} s");
+            assert_eq!((cpu.row.samples_per_pixel, cpu.row.runs.len()), (chosen, 0));
+            cpu.measure(&job(), &NEVER).unwrap();
+            assert_eq!(found.lock().unwrap().last(), Some(&("", 0..chosen)));
+            let run = cpu.row.runs[0];
+            assert_eq!((run.paths, run.seconds), (10 * chosen, 0.01 * chosen as f64));
+        }
+    }
+
+    #[test]
+    fn a_run_has_as_many_samples_as_the_time_allows() {
+        for (samples, least, seconds_per_sample, limit_seconds, expected) in [
+            (8, 2, 0.5, 4.0, 8),
+            (8, 2, 0.5, 3.9, 4),
+            (10, 4, 1.0, 7.0, 4),
+            (12, 2, 1.0, 7.0, 6),
+            (64, 2, 1.0, 0.5, 2),
+            (1, 2, 1.0, 0.5, 1),
+        ] {
+            let found = affordable(samples, least, seconds_per_sample, limit_seconds);
+            assert_eq!(found, expected, "{samples} of {seconds_per_sample} s in {limit_seconds} s");
+        }
+    }
+
+    #[test]
+    fn every_level_has_its_lanes_and_the_best_one_all_threads() {
+        for isa in Isa::available() {
+            let line = format!("weekender bench --scene metals --isa {isa} --threads 2 --size 8x4");
+            let Request::Bench(options) = cli::parse(line.split(' ').map(Into::into)).unwrap() else {
+                panic!("no benchmark")
+            };
+            let found = candidates(&options, "metals", &job(), &Err(BaselineError::Unfit("not wanted")));
+            let mut expected = vec![(Kind::Baseline, 1, 1)];
+            expected.extend(isa.lane_counts().iter().map(|lanes| match lanes {
+                1 => (Kind::Scalar, 1, 1),
+                lanes => (Kind::Packets, *lanes, 1),
+            }));
+            expected.push((Kind::Threads, 1, 2));
+            if isa != Isa::Portable {
+                expected.push((Kind::Threads, isa.native_lanes(), 2));
+            }
+            let rows = found.iter().map(|found| &found.row).filter(|row| row.kind != Kind::Gpu);
+            let rows: Vec<_> = rows.map(|row| (row.kind, row.lanes, row.threads)).collect();
+            assert_eq!(rows, expected, "{isa}");
+        }
+    }
 }

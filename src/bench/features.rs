@@ -229,6 +229,8 @@ mod tests {
     use super::super::fake::Fake;
     use super::*;
     use crate::cli::{self, Request};
+    use std::sync::Arc;
+    use std::time::Duration;
 
     fn options(words: &str) -> BenchOptions {
         let line = format!("weekender bench --features --scene metals --isa portable --size 8x4 {words}");
@@ -240,7 +242,11 @@ mod tests {
 
     /// Measures a scene in two pairs of runs of two samples.
     fn measured(own: Fake, general: Fake) -> (DeviceFigures, Result<(), Cancelled>) {
-        let options = options("--samples 2 --runs 2 --progress off");
+        measured_with("--samples 2 --runs 2 --progress off", own, general)
+    }
+
+    fn measured_with(words: &str, own: Fake, general: Fake) -> (DeviceFigures, Result<(), Cancelled>) {
+        let options = options(words);
         let renderers: [Box<dyn Renderer>; 2] = [Box::new(own), Box::new(general)];
         let pair = Pair { name: "fake".to_owned(), renderers: Ok(renderers) };
         let mut progress = Progress::new(options.progress, 3);
@@ -281,5 +287,59 @@ mod tests {
         assert!(outcome.is_ok() && device.rows.is_empty());
         let reason = device.skipped.unwrap();
         assert!(reason.contains("no-such-GPU") || reason.contains("no graphics adapter"), "{reason}");
+    }
+
+    #[test]
+    fn kernels_take_turns_at_going_first_after_a_warm_up() {
+        let per_sample = Duration::from_millis(10);
+        for (words, warm_up, samples) in [
+            // The third run takes more than a quarter of the second that a run may take.
+            ("--samples 64 --run-limit 1 --runs 3 --progress off", &[2_u64, 8, 32][..], 64_u64),
+            ("--samples 64 --run-limit 0.3 --runs 3 --progress off", &[2, 8], 16),
+            ("--samples 6 --run-limit 1 --runs 3 --progress off", &[2, 6], 6),
+        ] {
+            let own = Fake { name: "own", per_sample, ..Fake::default() };
+            let asked = Arc::clone(&own.asked);
+            let general = Fake { name: "general", per_sample: 2 * per_sample, asked, ..Fake::default() };
+            let asked = Arc::clone(&own.asked);
+            let (device, outcome) = measured_with(words, own, general);
+            assert!(outcome.is_ok());
+            let turns = ["general", "own", "general", "general", "own", "own", "general"];
+            let expected: Vec<_> = warm_up
+                .iter()
+                .map(|count| ("own", 0..*count))
+                .chain(turns.into_iter().map(|name| (name, 0..samples)))
+                .collect();
+            assert_eq!(*asked.lock().unwrap(), expected, "{words}");
+            let row = &device.rows[0];
+            assert_eq!((row.samples_per_pixel, row.own_runs.len(), row.general_runs.len()), (samples, 3, 3));
+            assert_eq!(row.gain.map(|gain| gain.median), Some(2.0));
+            assert_eq!(row.same_bits, Some(true));
+        }
+    }
+
+    #[test]
+    fn films_that_differ_once_are_not_the_same() {
+        // Run 0 is the warm-up.
+        for rejects_in in [1, 2] {
+            let general = Fake { rejects_in: Some(rejects_in), ..Fake::default() };
+            let (device, outcome) = measured(Fake::default(), general);
+            assert!(outcome.is_ok());
+            assert_eq!(device.rows[0].same_bits, Some(false), "run {rejects_in}");
+            let told = check(&[device]).unwrap_err().to_string();
+            assert!(told.contains("different films of metals (fake); please report"), "{told}");
+        }
+        let not_compared = measured(Fake { fails_after: Some(0), ..Fake::default() }, Fake::default()).0;
+        assert_eq!(not_compared.rows[0].same_bits, None);
+        assert!(check(&[not_compared, measured(Fake::default(), Fake::default()).0]).is_ok());
+    }
+
+    #[test]
+    fn what_no_kernel_has_is_not_left_out() {
+        let own = Fake { name: "own", leaves_out: vec!["lens", "glass"], ..Fake::default() };
+        let general = Fake { name: "general", leaves_out: vec!["glass"], ..Fake::default() };
+        let row = measured(own, general).0.rows.remove(0);
+        assert_eq!((row.kernel.as_str(), row.left_out.as_slice()), ("kernel of own", &["lens"][..]));
+        assert_eq!((row.name.as_str(), row.width, row.height, row.is_stage), ("metals", 8, 4, false));
     }
 }

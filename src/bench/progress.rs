@@ -7,7 +7,8 @@ use std::time::Duration;
 /// The number of finished runs.
 pub struct Progress {
     display: Display,
-    done: u64,
+    /// How many runs are finished.
+    pub done: u64,
 }
 
 impl Progress {

@@ -77,3 +77,42 @@ fn run(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{self, Request};
+
+    fn options() -> BenchOptions {
+        let line = "weekender bench --scale 1..30 --isa portable --threads 1 --runs 3 --size 8x4 --samples 4";
+        match cli::parse(line.split(' ').map(Into::into)).unwrap() {
+            Request::Bench(options) => *options,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_field_has_its_times_its_bytes_and_its_speed() {
+        let options = options();
+        let mut progress = Progress::new(options.progress, 3);
+        let field = measure(&options, 30, &mut progress, &AtomicBool::new(false)).unwrap().unwrap();
+        assert_eq!(progress.done, 3);
+        assert_eq!(field.spheres, 30);
+        assert!((2..=4).contains(&field.samples_per_pixel));
+        assert!(field.generate_seconds > 0.0 && field.build_seconds > 0.0);
+        let scene = field.scene_bytes_per_sphere / size_of::<Sphere>() as f64;
+        assert!((1.0..4.0).contains(&scene), "{scene} times the bytes of a sphere");
+        let tables = field.table_bytes_per_sphere;
+        assert!((40.0..1000.0).contains(&tables), "{tables} bytes a sphere");
+        let [paths, rays] = [field.paths_per_second, field.rays_per_second].map(Option::unwrap);
+        assert!(0.0 < paths.median && paths.median <= rays.median);
+    }
+
+    #[test]
+    fn a_field_that_is_cancelled_has_no_figures() {
+        let options = options();
+        let mut progress = Progress::new(options.progress, 3);
+        let found = measure(&options, 30, &mut progress, &AtomicBool::new(true)).unwrap();
+        assert!(found.is_none() && progress.done == 0);
+    }
+}

@@ -99,7 +99,6 @@ fn png(figure: &Figure) -> Result<Vec<u8>, String> {
     let mut bytes = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(::png::ColorType::Rgb);
-    encoder.set_depth(::png::BitDepth::Eight);
     let write = |encoder: ::png::Encoder<_>| {
         let mut writer = encoder.write_header()?;
         writer.write_image_data(&pixels)?;

@@ -72,3 +72,89 @@ fn misfit(test: &BlockTest, values: &[[f64; 3]], expected: &Expected, width: usi
     }
     sum / (3 * test.blocks.len().max(1)) as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kept;
+    use crate::stages::{Stage, Transfer};
+    use std::fmt::Write;
+
+    fn right(transfer: Transfer) -> Hypothesis {
+        let mut recipe = Stage::find("sky").unwrap().recipe();
+        recipe.rules.transfer = transfer;
+        Hypothesis::right(&recipe)
+    }
+
+    /// Compares bytes with linear values; both are functions of column and row.
+    fn compared(
+        [width, height]: [u32; 2],
+        transfer: Transfer,
+        bytes: impl Fn(u32, u32) -> [u8; 3],
+        linear: impl Fn(u32, u32) -> [f64; 3],
+    ) -> Compared {
+        let places = || (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let bytes = places().map(|(x, y)| bytes(x, y)).collect();
+        let pixels = places().map(|(x, y)| linear(x, y)).collect();
+        let mine = Mine { width, height, bytes, format: "P3", damages: Vec::new() };
+        compare(&mine, right(transfer), Expected { pixels })
+    }
+
+    fn misfit(bytes: impl Fn(u32, u32) -> [u8; 3], linear: impl Fn(u32, u32) -> [f64; 3]) -> f64 {
+        compared([16, 8], Transfer::Linear, bytes, linear).misfit
+    }
+
+    #[test]
+    fn the_misfit_is_the_squared_error_beyond_noise_as_it_is_displayed() {
+        let close =
+            |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        let middle = |byte: f64| (byte + 0.5) / 256.0;
+        close(misfit(|_, _| [153; 3], |_, _| [0.5; 3]), (middle(153.0) - 0.5).powi(2) / 2.0);
+        // In the dark, errors count as at 0.02.
+        close(misfit(|_, _| [2; 3], |_, _| [0.01; 3]), (middle(2.0) - 0.01).powi(2) / 0.08);
+        // Noise of a block is what its pixels are apart; the mean of 64 pixels has a 64th of its variance.
+        let chequers = |x: u32, y: u32| [[140, 160][((x + y) % 2) as usize]; 3];
+        let (mean, apart) = (middle(150.0) - 0.5, 10.0_f64 / 256.0);
+        close(misfit(chequers, |_, _| [0.5; 3]), (mean * mean - apart * apart / 63.0) / 2.0);
+        // Two blocks of 8 columns, and three channels.
+        let linear = |x: u32| if x < 8 { [0.25, 0.5, 0.125] } else { [0.75, 0.0625, 0.5] };
+        let bytes = |x: u32| -> [u8; 3] { if x < 8 { [80, 120, 40] } else { [200, 10, 130] } };
+        let part = |x: u32, channel: usize| {
+            let expected = linear(x)[channel];
+            (middle(f64::from(bytes(x)[channel])) - expected).powi(2) / (4.0 * expected)
+        };
+        let all: f64 = [0, 8].into_iter().flat_map(|x| (0..3).map(move |c| part(x, c))).sum();
+        close(misfit(|x, _| bytes(x), |x, _| linear(x)), all / 6.0);
+        // What is brighter or darker than bytes can tell is no error.
+        close(misfit(|_, _| [255, 0, 255], |_, _| [2.0, 0.0, 1.0]), 0.0);
+    }
+
+    #[test]
+    fn each_row_has_its_own_curve() {
+        let bytes = |_: u32, y: u32| if y < 8 { [64; 3] } else { [128; 3] };
+        let found = compared([16, 16], Transfer::LinearAboveGamma2, bytes, |_, _| [0.25; 3]);
+        assert!(found.misfit < 1e-5 && found.is_noise, "{}", found.misfit);
+    }
+
+    #[test]
+    fn verdicts_on_noise_are_as_kept() {
+        let noise = |x: u32, y: u32, c: u32| {
+            let [word, ..] = crate::sampling::pcg4d([x, y, c, 5]);
+            (word >> 27) as u8
+        };
+        let everywhere_or_in_a_block: [fn(u32, u32) -> bool; 2] = [|_, _| true, |x, y| x < 8 && y < 8];
+        let mut text = String::new();
+        for more in 0..24 {
+            for is_in in everywhere_or_in_a_block {
+                let bytes = |x: u32, y: u32| {
+                    let more = if is_in(x, y) { more } else { 0 };
+                    [0, 1, 2].map(|c| 100 + more + noise(x, y, c))
+                };
+                let found = compared([48, 32], Transfer::Linear, bytes, |_, _| [116.0 / 256.0; 3]);
+                write!(text, "{more}: {:.6e} {}; ", found.misfit, found.is_noise).unwrap();
+            }
+            text.push('\n');
+        }
+        kept::check("check_noise", &text);
+    }
+}

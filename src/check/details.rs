@@ -157,4 +157,64 @@ mod tests {
         let of_255 = Hypothesis::of(Mistake::TimesInteger, &recipe).remove(0);
         assert_eq!(found(&of_255), Some(Mistake::TimesInteger));
     }
+
+    /// What is found at edges if `planted` was made, and what if nothing was.
+    fn found_at_edges(id: &str, size: [u32; 2], planted: Mistake) -> [Option<Mistake>; 2] {
+        let mut recipe = Stage::find(id).unwrap().recipe();
+        [recipe.settings.width, recipe.settings.height] = size;
+        let mut studio = Studio::new(&recipe).unwrap();
+        let effort = Effort { fast: 64, plain: 16 };
+        let right = Hypothesis::right(studio.recipe());
+        let expected = studio.render(&right, effort).unwrap();
+        let planted = Hypothesis::of(planted, studio.recipe()).remove(0);
+        let wrong = studio.render(&planted, effort).unwrap();
+        [shown(&planted, &wrong, size), shown(&right, &expected, size)].map(|mine| {
+            let compared = compare(&mine, right.clone(), expected.clone());
+            let found = by_pixels(&mine, &mut studio, &compared, effort).unwrap();
+            found.and_then(|found| found.hypothesis.mistake)
+        })
+    }
+
+    #[test]
+    fn a_mistake_of_pixels_is_found_at_edges_and_nowhere_else() {
+        for planted in Mistake::ALL.into_iter().filter(|mistake| mistake.is_of_pixels()) {
+            assert_eq!(found_at_edges("antialiased", [64, 36], planted), [Some(planted), None]);
+        }
+        // The sky changes too slowly to tell a shift of half a pixel from another light.
+        assert_eq!(found_at_edges("sky", [32, 18], Mistake::HalfPixelUp), [None, None]);
+    }
+
+    #[test]
+    fn nearly_all_bytes_of_a_truncated_picture_are_ends_though_few_should_be() {
+        let right = Hypothesis::right(&Stage::find("sky").unwrap().recipe());
+        let is_found = |ends: usize, white: usize| {
+            let byte =
+                |index: usize| if index < ends { [0, 255, 1, 254][index % 4] } else { [2, 253][index % 2] };
+            let bytes = (0..100).map(|pixel| [0, 1, 2].map(|channel| byte(3 * pixel + channel))).collect();
+            let mine = Mine { width: 10, height: 10, bytes, format: "P3", damages: Vec::new() };
+            let pixels = (0..100).map(|pixel| [if pixel < white { 1.0 } else { 0.5 }; 3]).collect();
+            is_truncated(&mine, &compare(&mine, right.clone(), Expected { pixels }))
+        };
+        assert!(is_found(300, 0) && is_found(297, 0) && !is_found(296, 0));
+        assert!(is_found(300, 49) && !is_found(300, 50));
+    }
+
+    #[test]
+    fn a_thousand_values_are_needed_to_see_a_factor_of_255() {
+        let recipe = Stage::find("lambertian-gamma").unwrap().recipe();
+        let right = Hypothesis::right(&recipe);
+        let of_255 = Hypothesis::of(Mistake::TimesInteger, &recipe).remove(0);
+        let found = |pixels: u32, from: f64, to: f64| {
+            let value = |index: u32| from + (to - from) * f64::from(index * 7919 % 12_289) / 12_289.0;
+            let linear =
+                (0..pixels).map(|pixel| [0, 1, 2].map(|channel| value(3 * pixel + channel))).collect();
+            let expected = Expected { pixels: linear };
+            let mine = shown(&of_255, &expected, [pixels, 1]);
+            times_integer(&mine, &compare(&mine, right.clone(), expected)).is_some()
+        };
+        assert!(!found(333, 0.1, 0.9) && found(334, 0.1, 0.9));
+        // What is too dark or cut off tells nothing.
+        assert!(!found(2000, 0.0, 0.049) && found(2000, 0.051, 0.2));
+        assert!(!found(2000, 0.981, 1.2) && found(2000, 0.8, 0.979));
+    }
 }

@@ -105,3 +105,58 @@ pub fn recipe_of(stage: &Stage, width: u32, height: u32) -> Recipe {
     (recipe.settings.width, recipe.settings.height) = (width.max(1), height.max(1));
     recipe
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rough_difference_is_that_of_means_over_squares() {
+        let hypothesis = Hypothesis::of(Mistake::GammaEarly, &Stage::find("sky").unwrap().recipe()).remove(0);
+        // Three columns and two rows of squares of two pixels; each square is 48 levels off in one channel.
+        let linear = |place: usize| 0.1 * (place + 1) as f64;
+        let byte = |place: usize| hypothesis.byte_of(linear(place), 0, 2);
+        let expected = Expected { pixels: (0..6).map(|place| [linear(place); 3]).collect() };
+        let bytes = (0..6 * 4)
+            .map(|index| {
+                let (x, y) = (index % 6, index / 6);
+                let near = byte(y / 2 * 3 + x / 2);
+                // Four values with the mean of their square.
+                let own = if (x + y) % 2 == 0 { near - 5 } else { near + 5 };
+                [own, own - 48, own]
+            })
+            .collect();
+        let mine = Mine { width: 6, height: 4, bytes, format: "P3", damages: Vec::new() };
+        let found = rough_difference(&mine, 2, &hypothesis, &expected);
+        assert!((found - 48.0 / 256.0 / 3.0_f64.sqrt()).abs() < 1e-12, "{found}");
+    }
+
+    #[test]
+    fn of_stages_that_show_the_same_the_one_whose_width_is_nearer_is_tried() {
+        let ids = |width| distinct(width).into_iter().map(|stage| stage.id).collect::<Vec<_>>();
+        for (one, other) in [("diffuse", "diffuse-limited"), ("ppm-tiny", "ppm-gradient")] {
+            for width in [1, 16, 300, 4000] {
+                let is_tried = |id: &str| ids(width).contains(&id);
+                let distance = |id: &str| Stage::find(id).unwrap().recipe().settings.width.abs_diff(width);
+                let [a, b] = [one, other].map(is_tried);
+                if a != b {
+                    let (tried, left_out) = if a { (one, other) } else { (other, one) };
+                    assert!(distance(tried) <= distance(left_out), "{tried} at {width}");
+                }
+                assert!(a || b, "{one} {other} at {width}");
+            }
+        }
+        assert_eq!((ids(16).contains(&"ppm-tiny"), ids(4000).contains(&"ppm-tiny")), (true, false));
+        assert!(!ids(400).contains(&"book"));
+    }
+
+    #[test]
+    fn a_picture_has_at_least_a_pixel() {
+        let stage = Stage::find("sky").unwrap();
+        let size = |width, height| {
+            let settings = recipe_of(stage, width, height).settings;
+            [settings.width, settings.height]
+        };
+        assert_eq!((size(0, 3), size(7, 0)), ([1, 3], [7, 1]));
+    }
+}

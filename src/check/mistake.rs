@@ -364,4 +364,36 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_bubble_is_a_smaller_sphere_of_air_around_the_middle_of_a_sphere_of_glass() {
+        use glam::DVec3;
+        use std::sync::Arc;
+        let (glass, air) = (1.5, 1.0 / 1.5);
+        let found = |spheres: &[(f64, f64, f64)]| {
+            let mut recipe = Stage::find("metal").unwrap().recipe();
+            let scene = Arc::make_mut(&mut recipe.scene);
+            scene.spheres.clear();
+            let matte = scene.add_material("m", Material::Lambertian { albedo: DVec3::ONE });
+            for (index, (x, radius, refraction_index)) in spheres.iter().copied().enumerate() {
+                let clear = Material::Dielectric { refraction_index };
+                let material = if refraction_index > 0.0 {
+                    scene.add_material(format!("{index}"), clear)
+                } else {
+                    matte
+                };
+                scene.add_sphere(DVec3::X * x, radius, material);
+            }
+            bubble(&recipe)
+        };
+        assert_eq!(found(&[(0.0, 0.5, glass), (0.0, 0.4, air)]), Some(1));
+        assert_eq!(found(&[(1.0, 0.4, air), (0.0, 0.4, air), (0.0, 0.5, glass)]), Some(1));
+        assert_eq!(found(&[(0.0, 0.4, air)]), None, "alone");
+        assert_eq!(found(&[(0.0, 0.4, glass), (0.0, 0.4, air)]), None, "as large");
+        assert_eq!(found(&[(0.0, 0.3, glass), (0.0, 0.4, air)]), None, "larger");
+        assert_eq!(found(&[(0.1, 0.5, glass), (0.0, 0.4, air)]), None, "beside the middle");
+        assert_eq!(found(&[(0.0, 0.5, 0.0), (0.0, 0.4, air)]), None, "in matte");
+        assert_eq!(found(&[(0.0, 0.5, glass), (0.0, 0.4, 1.0)]), None, "of nothing");
+        assert_eq!(found(&[(0.0, 0.5, glass), (0.0, 0.4, glass)]), None, "of glass");
+    }
 }

@@ -19,3 +19,29 @@ pub fn pictures(mine: &Mine, finding: &Finding) -> [Vec<[u8; 3]>; 3] {
     let difference = difference.collect();
     [mine.bytes.clone(), ours, difference]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::compared::compare;
+    use crate::check::hypothesis::{Expected, Hypothesis};
+    use crate::stages::{Stage, Transfer};
+
+    #[test]
+    fn the_difference_is_the_root_mean_square_of_the_channels() {
+        let stage = Stage::find("sky").unwrap();
+        let mut recipe = stage.recipe();
+        recipe.rules.transfer = Transfer::LinearAboveGamma2;
+        let bytes = vec![[64, 64, 64], [64, 79, 64], [128, 128, 128], [0, 255, 128]];
+        let mine = Mine { width: 2, height: 2, bytes: bytes.clone(), format: "P3", damages: Vec::new() };
+        let expected = Expected { pixels: vec![[0.25; 3]; 4] };
+        let right = compare(&mine, Hypothesis::right(&recipe), expected);
+        let [shown, ours, difference] = pictures(&mine, &Finding { stage, right, mistake: None });
+        assert_eq!(shown, bytes);
+        // The upper row is linear, the lower row the square root.
+        assert_eq!(ours, [[64; 3], [64; 3], [128; 3], [128; 3]]);
+        let colour = |squares: f64| HeatScale::ERROR.colour((squares / 3.0).sqrt() / 255.0);
+        let squares = [0.0, 15.0_f64.powi(2), 0.0, 128.0_f64.powi(2) + 127.0_f64.powi(2)];
+        assert_eq!(difference, squares.map(colour));
+    }
+}

@@ -248,3 +248,63 @@ pub(super) fn bench(raw: RawBench) -> Result<BenchOptions, CliError> {
     }
     Ok(options)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Request, parse};
+
+    fn options(words: &str) -> BenchOptions {
+        let line = format!("weekender bench --scene metals --isa portable --threads 1 {words}");
+        match parse(line.split(' ').map(Into::into)).unwrap() {
+            Request::Bench(options) => *options,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn samples_are_those_of_the_scene_or_a_power_of_two_that_can_be_paid_for() {
+        let mut recipe = Recipe::builtin("metals").unwrap();
+        let mut samples = |words: &str, wanted: u64| {
+            recipe.samples_per_pixel = wanted;
+            options(words).samples_of(&recipe)
+        };
+        // 75 million paths are 75 samples of each of a million pixels, and with --quick 3.
+        for (wanted, expected) in [(1, 1), (74, 74), (75, 75), (76, 64), (1000, 64)] {
+            assert_eq!(samples("--size 1000x1000", wanted), expected, "{wanted}");
+        }
+        for (wanted, expected) in [(2, 2), (3, 3), (4, 2)] {
+            assert_eq!(samples("--size 1000x1000 --quick", wanted), expected, "{wanted}");
+        }
+        assert_eq!(samples("--size 1800x1700 --quick", 5), 1, "less than one");
+        assert_eq!(samples("--size 1800x1700 --quick --samples 9", 5), 9);
+        assert_eq!(samples("--features", 5), SAMPLE_LIMIT);
+        assert_eq!(samples("--features --samples 9", 5), 9);
+        (recipe.settings.width, recipe.settings.height) = (1000, 1000);
+        recipe.samples_per_pixel = 76;
+        assert_eq!(options("--quick --runs 1").samples_of(&recipe), 2, "the scene's own size");
+    }
+
+    #[test]
+    fn runs_have_a_number_and_a_time_limit() {
+        for (words, runs, limit) in [
+            ("--progress off", 5, 10.0),
+            ("--quick", 3, 1.0),
+            ("--features", 5, 0.4),
+            ("--features --quick", 3, 0.1),
+            ("--quick --runs 7 --run-limit .5", 7, 0.5),
+        ] {
+            let options = options(words);
+            assert_eq!((options.runs, options.run_limit_seconds), (runs, limit), "{words}");
+        }
+    }
+
+    #[test]
+    fn a_picture_keeps_its_shape_when_it_is_narrowed() {
+        for (own, height) in [((400, 225), 113), ((400, 224), 112), ((200, 7), 7), ((100, 7), 14)] {
+            assert_eq!(scaled_height(own), height, "{own:?}");
+        }
+        assert_eq!(scaled_height((SIZE_LIMIT, 1)), 1);
+        assert_eq!(scaled_height((1, SIZE_LIMIT)), SIZE_LIMIT);
+    }
+}

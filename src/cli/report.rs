@@ -315,3 +315,67 @@ fn report_scenes(
         None => Ok(scenes),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::{Request, parse};
+
+    fn options(words: &str) -> ReportOptions {
+        let line = format!("weekender report --out r {words}");
+        match parse(line.split(' ').map(Into::into)).unwrap() {
+            Request::Report(options) => *options,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_gpu_that_is_named_is_measured_even_if_there_is_none() {
+        let names = |words: &str| {
+            let backends = options(words).backends;
+            assert!(backends.contains(&("gpu".to_owned(), ReportBackend::Renderer(gpu()))), "{backends:?}");
+            backends.into_iter().map(|(name, _)| name).collect::<Vec<_>>()
+        };
+        assert_eq!(names("--adapter some"), ["cpu", "scalar", "gpu", "c89"]);
+        assert_eq!(names("--adapter some --calibration"), ["cpu", "gpu"]);
+        assert_eq!(names("--adapter some --backends portable,gpu"), ["portable", "gpu"]);
+    }
+
+    fn gpu() -> BackendChoice {
+        BackendChoice::Gpu(GpuOptions::of_adapter(Some("some")))
+    }
+
+    #[test]
+    fn an_adapter_needs_a_gpu_among_the_backends_or_as_the_reference() {
+        let line = "weekender report --out r --backends portable --adapter some";
+        let parsed = |line: &str| parse(line.split(' ').map(Into::into));
+        let told = parsed(line).unwrap_err().to_string();
+        assert!(told.contains("--adapter") && told.contains("gpu in --backends"), "{told}");
+        let Request::Report(options) = parsed(&format!("{line} --reference-backend gpu")).unwrap() else {
+            panic!("no report")
+        };
+        let name = "gpu".to_owned();
+        assert_eq!(options.reference, ReferenceChoice::Make { name, choice: gpu(), samples: 4096 });
+    }
+
+    #[test]
+    fn the_reference_has_several_times_the_samples_within_the_limit() {
+        for (words, expected) in [
+            ("--max-samples 64", 256),
+            ("--max-samples 64 --calibration", 1024),
+            ("--max-samples 4294967296", SAMPLE_LIMIT),
+            ("--max-samples 64 --reference-samples 100", 100),
+        ] {
+            let found = options(&format!("--backends portable --scenes metals {words}")).reference;
+            assert!(matches!(found, ReferenceChoice::Make { samples, .. } if samples == expected), "{words}");
+        }
+    }
+
+    #[test]
+    fn the_own_target_comes_first_and_only_once() {
+        let targets = |words: &str| options(&format!("--backends portable --scenes metals {words}")).targets;
+        assert_eq!(targets("--seeds 3"), [0.01, 0.001]);
+        assert_eq!(targets("--target .02"), [0.02, 0.01, 0.001]);
+        assert_eq!(targets("--target .001"), [0.001, 0.01]);
+    }
+}

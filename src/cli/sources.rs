@@ -82,3 +82,38 @@ fn of_film(path: &Path) -> Result<ChosenRecipe, CliError> {
     let saved = Saved::describe(path)?;
     Ok(ChosenRecipe { recipe: saved.recipe()?, stage: saved.stage() })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wide_picture_is_narrowed_unless_its_size_was_given() {
+        let narrowed = |size, raw_size| {
+            let mut recipe = Recipe::builtin(DEFAULT_SCENE).unwrap();
+            (recipe.settings.width, recipe.settings.height) = size;
+            narrow(&mut recipe, &RawPicture { size: raw_size, ..RawPicture::default() }, 100);
+            (recipe.settings.width, recipe.settings.height)
+        };
+        for (size, expected) in [
+            ((99, 50), (99, 50)),
+            ((100, 50), (100, 50)),
+            ((101, 50), (100, 50)),
+            ((400, 222), (100, 56)),
+            ((400, 221), (100, 55)),
+            ((1000, 1), (100, 1)),
+        ] {
+            assert_eq!(narrowed(size, None), expected, "{size:?}");
+            assert_eq!(narrowed(size, Some(size)), size);
+        }
+    }
+
+    #[test]
+    fn a_name_has_its_ending_in_any_case() {
+        let check = |name: &str| check_ending("--log", Path::new(name), "the log", ".log");
+        assert!(check("a.log").is_ok() && check("b/a.b.LOG").is_ok());
+        for name in ["a", "log", ".log", "a.logs", "a.log.txt", "a.log/b"] {
+            assert!(check(name).is_err(), "{name}");
+        }
+    }
+}

@@ -255,4 +255,56 @@ mod tests {
         let unit = 1.0 / FIXED_POINT_SCALE;
         assert_eq!(radiance_amount([0.0, unit, unit], [unit, 0.0, unit]), 0.0);
     }
+
+    #[test]
+    fn a_path_leaves_a_sphere_as_its_material_and_next_ray_say() {
+        let job = job();
+        let scene = job.scene();
+        let of = |test: fn(&Material) -> bool| {
+            scene.spheres.iter().position(|sphere| test(scene.material_of(sphere))).expect("a sphere")
+        };
+        let matte = of(|material| matches!(material, Material::Lambertian { .. }));
+        let metal = of(|material| matches!(material, Material::Metal { .. }));
+        let glass = of(|material| matches!(material, Material::Dielectric { .. }));
+        // A ray downwards meets the top of the sphere; the next one starts there.
+        let found = |sphere: usize, next: Option<[f64; 3]>, bounce: usize| {
+            let center = scene.spheres[sphere].center;
+            let top = (center + scene.spheres[sphere].radius * glam::DVec3::Y).to_array();
+            let hit = RecordedHit { sphere, distance: 1.0, position: Some(top) };
+            let ray = |direction, hit| RecordedRay { origin: top, direction, throughput: [1.0; 3], hit };
+            let mut rays = vec![ray([0.0, -1.0, 0.0], Some(hit)); bounce + 1];
+            rays.extend(next.map(|direction| ray(direction, None)));
+            departure(&job, &PathRecord { rays, radiance: [0.0; 3] }, bounce)
+        };
+        let (up, down) = (Some([0.6, 0.8, 0.0]), Some([0.6, -0.8, 0.0]));
+        assert_eq!(found(matte, up, 0), Some(Departure::Scattered));
+        assert_eq!(found(metal, up, 0), Some(Departure::Reflected));
+        assert_eq!(found(glass, up, 0), Some(Departure::Reflected));
+        assert_eq!(found(glass, down, 0), Some(Departure::Refracted));
+        assert_eq!(found(metal, None, 0), Some(Departure::Absorbed));
+        assert_eq!(found(matte, None, 0), Some(Departure::Shown));
+        let last = job.settings().max_depth as usize - 1;
+        assert_eq!(found(metal, None, last), Some(Departure::CutOff));
+        assert_eq!(found(metal, None, last - 1), Some(Departure::Absorbed));
+        assert_eq!(departure(&job, &path(), 1), None, "the sky");
+        assert_eq!(departure(&job, &path(), 2), None, "nothing");
+    }
+
+    #[test]
+    fn differences_are_relative_to_the_larger_value() {
+        assert_eq!([share(0.0, 0.0), share(1.0, 0.0), share(1.0, 4.0)], [0.0, f64::INFINITY, 0.25]);
+        assert_eq!(share(f64::NAN, 1.0), f64::INFINITY);
+        assert_eq!(vector_share([1.0, -4.0, 2.0], [1.0, -3.0, 0.0], 0.0), 0.5);
+        assert_eq!(vector_share([1.0, -4.0, 2.0], [1.0, -3.0, 0.0], 1.0), 0.25);
+        assert_eq!(vector_share([1.0, -4.0, 2.0], [1.0, -3.0, 0.0], 3.0), 0.0);
+        // Places are as exact as the farthest one that the path has come from.
+        let mut far = path();
+        far.rays[0].origin = [0.0, 8.0, 0.0];
+        let mut moved = far.clone();
+        moved.rays[1].origin = [0.0, 2.0, 0.0];
+        assert_eq!(amount(&job(), [&far, &moved], 1, Quantity::Origin), 0.25);
+        assert_eq!(amount(&job(), [&far, &moved], 0, Quantity::Origin), 0.0);
+        moved.rays[1].origin = [0.0, 16.0, 0.0];
+        assert_eq!(amount(&job(), [&far, &moved], 1, Quantity::Origin), 1.0);
+    }
 }

@@ -113,3 +113,42 @@ impl Told<'_> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+    use crate::record::RecordedHit;
+
+    #[test]
+    fn a_ray_that_just_misses_what_the_other_hits_is_told() {
+        let job = Recipe::find("three-spheres").unwrap().job().unwrap();
+        let sphere = job.scene().spheres[1];
+        let path = |beside: f64, hit| {
+            let origin = sphere.center + sphere.radius * DVec3::new(beside, 0.0, 9.0);
+            let ray = RecordedRay {
+                origin: origin.to_array(),
+                direction: [0.0, 0.0, -1.0],
+                throughput: [1.0; 3],
+                hit,
+            };
+            PathRecord { rays: vec![ray], radiance: [0.0; 3] }
+        };
+        let hitting = path(0.999, Some(RecordedHit { sphere: 1, distance: 1.0, position: None }));
+        let told = |beside: f64, is_swapped: bool| {
+            let missing = path(beside, None);
+            let paths = if is_swapped { [&missing, &hitting] } else { [&hitting, &missing] };
+            let told = Told { job: &job, names: ["cpu", "gpu"], paths, tolerance: 1e-3 };
+            told.sentence(&Difference { bounce: 0, quantity: Quantity::Object, amount: f64::INFINITY })
+        };
+        assert!(told(1.005, false).ends_with(", gpu the sky; gpu misses that sphere by 5e-3 of its radius"));
+        let swapped = told(1.005, true);
+        assert!(
+            swapped.contains("cpu meets the sky, gpu sphere 1 (") && swapped.contains("; cpu misses"),
+            "{swapped}"
+        );
+        for beside in [0.5, 1.011, 3.0] {
+            assert!(!told(beside, false).contains("misses"), "{beside}");
+        }
+    }
+}

@@ -229,3 +229,146 @@ impl Step {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::Stage;
+    use std::f64::consts::FRAC_1_SQRT_2;
+
+    const GLASS: Material = Material::Dielectric { refraction_index: 1.5 };
+
+    /// The top of a sphere.
+    fn top(is_outside: bool) -> Hit {
+        Hit { sphere: 0, point: DVec3::ZERO, normal: DVec3::Y, is_outside }
+    }
+
+    fn laws(dielectric: DielectricLaws) -> Rules {
+        Rules { dielectric, ..Rules::FINISHED }
+    }
+
+    /// What glass may do with a ray that comes down at 45 degrees: the refracted direction and the reflectance.
+    fn glass(dielectric: DielectricLaws, is_outside: bool) -> (Option<DVec3>, f64) {
+        let down = DVec3::new(FRAC_1_SQRT_2, -FRAC_1_SQRT_2, 0.0);
+        match lobe_of(&GLASS, &laws(dielectric), &top(is_outside), down, None, 0.5) {
+            Lobe::Glass { mirrored, refracted, reflectance, coin, refracts } => {
+                assert!(
+                    mirrored.distance(DVec3::new(FRAC_1_SQRT_2, FRAC_1_SQRT_2, 0.0)) < 1e-15,
+                    "{mirrored}"
+                );
+                assert_eq!((coin, refracts), (0.5, false));
+                (refracted, reflectance)
+            }
+            lobe => panic!("{lobe:?}"),
+        }
+    }
+
+    #[test]
+    fn glass_bends_and_reflects_as_the_laws_say() {
+        use DielectricLaws::{RefractOnly, Schlick, TotalReflection};
+        // The sine is divided by 1.5: its square is 2/9.
+        let bent = DVec3::new((2.0_f64 / 9.0).sqrt(), -(7.0_f64 / 9.0).sqrt(), 0.0);
+        let schlick = 0.04 + 0.96 * (1.0 - FRAC_1_SQRT_2).powi(5);
+        for (laws, expected) in [(RefractOnly, 0.0), (TotalReflection, 0.0), (Schlick, schlick)] {
+            let (refracted, reflectance) = glass(laws, true);
+            assert!(refracted.is_some_and(|found| found.distance(bent) < 1e-15), "{refracted:?}");
+            assert!((reflectance - expected).abs() < 1e-15, "{laws:?}: {reflectance}");
+        }
+        // From inside, the square of the sine would be 9/8.
+        for (laws, expected) in [(RefractOnly, 0.0), (TotalReflection, 1.0), (Schlick, 1.0)] {
+            assert_eq!(glass(laws, false), (None, expected), "{laws:?}");
+        }
+    }
+
+    #[test]
+    fn the_next_ray_tells_whether_glass_refracted() {
+        let rules = laws(DielectricLaws::Schlick);
+        for (next, expected) in [(DVec3::NEG_Y, true), (DVec3::Y, false)] {
+            let lobe = lobe_of(&GLASS, &rules, &top(true), DVec3::NEG_Y, Some(next), 0.5);
+            assert!(matches!(lobe, Lobe::Glass { refracts, .. } if refracts == expected), "{lobe:?}");
+        }
+    }
+
+    #[test]
+    fn a_normal_is_on_the_side_that_the_ray_comes_from() {
+        let sphere = Sphere { center: DVec3::ZERO, radius: 2.0, material: 0 };
+        for (direction, normal, is_outside) in
+            [(DVec3::NEG_Y, DVec3::Y, true), (DVec3::Y, DVec3::NEG_Y, false)]
+        {
+            let hit = hit_of(&sphere, 7, 2.0 * DVec3::Y, direction);
+            assert_eq!((hit.sphere, hit.point, hit.normal), (7, 2.0 * DVec3::Y, normal));
+            assert_eq!(hit.is_outside, is_outside);
+        }
+    }
+
+    fn said(stage: &str, direction: DVec3, is_outside: bool, event: Event) -> String {
+        let job = Stage::find(stage).unwrap().recipe().job().unwrap();
+        let (origin, throughput) = (DVec3::ZERO, DVec3::ONE);
+        Step { origin, direction, throughput, hit: Some(top(is_outside)), event }.sentence(&job)
+    }
+
+    #[test]
+    fn angles_are_those_to_the_normal() {
+        let mirror = |direction| {
+            let lobe = Lobe::Metal { mirrored: DVec3::Y, fuzz: 0.0 };
+            said("metal", direction, true, Event::Scattered(lobe))
+        };
+        let at_60 = DVec3::new(0.75_f64.sqrt(), -0.5, 0.0);
+        assert_eq!(
+            mirror(at_60),
+            "Mirror: the ray arrives at 60° to the normal and leaves at the same angle."
+        );
+        // Rounding may make a unit vector a little longer.
+        let along = 1.000_001 * DVec3::NEG_Y;
+        assert_eq!(
+            mirror(along),
+            "Mirror: the ray arrives at 0° to the normal and leaves at the same angle."
+        );
+        let fuzzy = Event::Scattered(Lobe::Metal { mirrored: DVec3::Y, fuzz: 0.3 });
+        assert_eq!(
+            said("metal", at_60, true, fuzzy),
+            "Metal: the ray is mirrored at 60°, then moved by a random vector of length 0.3, its fuzz."
+        );
+    }
+
+    #[test]
+    fn glass_names_its_angles_and_its_chance() {
+        let at_60 = DVec3::new(0.75_f64.sqrt(), -0.5, 0.0);
+        let told = |stage: &str, is_outside, refracted: Option<DVec3>, refracts| {
+            let (mirrored, reflectance, coin) = (DVec3::Y, 0.125, 0.75);
+            let lobe = Lobe::Glass { mirrored, refracted, reflectance, coin, refracts };
+            said(stage, at_60, is_outside, Event::Scattered(lobe))
+        };
+        let outside = "Glass: the ray arrives from outside, at 60°.";
+        let straight = Some(1.000_001 * DVec3::NEG_Y);
+        let at_30 = Some(DVec3::new(0.5, -(0.75_f64.sqrt()), 0.0));
+        for (stage, refracted, refracts, end) in [
+            (
+                "glass-schlick",
+                at_30,
+                true,
+                "Schlick says 12.5 % reflect; the coin is 0.750: refracted, to 30°.",
+            ),
+            (
+                "glass-schlick",
+                straight,
+                true,
+                "Schlick says 12.5 % reflect; the coin is 0.750: refracted, to 0°.",
+            ),
+            ("glass-schlick", at_30, false, "Schlick says 12.5 % reflect; the coin is 0.750: reflected."),
+            ("glass-tir", at_30, true, "It is refracted, to 30°."),
+            ("glass-tir", None, false, "Snell's law has no solution: total reflection."),
+            (
+                "glass-refract",
+                None,
+                true,
+                "Snell's law has no solution; this stage refracts all the same, wrongly.",
+            ),
+        ] {
+            assert_eq!(told(stage, true, refracted, refracts), format!("{outside} {end}"));
+        }
+        assert!(
+            told("glass-tir", false, None, false).starts_with("Glass: the ray arrives from inside, at 60°.")
+        );
+    }
+}

@@ -98,4 +98,20 @@ mod tests {
         }
         assert_eq!(fingerprints.of(&Recipe { name: "other".to_owned(), ..recipe }).unwrap(), own);
     }
+
+    #[test]
+    fn the_small_picture_counts_besides_the_recipe() {
+        let mut fingerprints = Fingerprints::new().unwrap();
+        let recipe = Quality::Quick.recipe(Stage::find("metal").unwrap());
+        let mut text = Checksum::default();
+        text.text(file::to_toml(&recipe).as_bytes());
+        assert_ne!(fingerprints.of(&recipe).unwrap(), text.finish());
+    }
+
+    #[test]
+    fn a_very_flat_picture_has_a_fingerprint() {
+        let mut recipe = Quality::Quick.recipe(Stage::find("metal").unwrap());
+        (recipe.settings.width, recipe.settings.height) = (4 * WIDTH, 1);
+        assert_eq!(Fingerprints::new().unwrap().of(&recipe).unwrap().len(), 16);
+    }
 }

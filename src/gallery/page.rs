@@ -4,6 +4,7 @@ use super::quality::is_about_pixels;
 use super::{Figure, Panel, Stills};
 use crate::stages::{BOOK_URL, Stage};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::collections::BTreeSet;
 
 const STYLE: &str = include_str!("../../assets/gallery/style.css");
 
@@ -107,10 +108,8 @@ fn shown_panel(panel: &Panel, is_labelled: bool, stills: &Stills) -> Markup {
 }
 
 fn footer(stills: &Stills) -> Markup {
-    let mut backends: Vec<&str> = stills.all().iter().map(|still| still.backend.as_str()).collect();
-    backends.dedup();
-    backends.sort_unstable();
-    backends.dedup();
+    let backends: BTreeSet<&str> = stills.all().iter().map(|still| still.backend.as_str()).collect();
+    let backends: Vec<&str> = backends.into_iter().collect();
     html! {
         p {
             "Times are those of tracing alone. The error is the root of the mean squared error in linear radiance, \
@@ -147,5 +146,35 @@ mod tests {
         assert_eq!(page.matches("Not rendered yet").count(), panels - 2);
         assert!(page.contains("880 × 495 pixels, 1024 samples per pixel"));
         assert!(!page.contains("<script") && !page.contains("style=\""));
+    }
+
+    #[test]
+    fn chapters_have_their_figures_and_pictures_their_labels() {
+        let mut stills = Stills::default();
+        for (id, backend) in [("metal", "gpu x"), ("metal-fuzzy", "cpu y"), ("book", "gpu x")] {
+            let stage = Stage::find(id).unwrap();
+            let still = Still::new(stage, &Quality::Full.recipe(stage), String::new());
+            stills.set(Still { backend: backend.to_owned(), ..still });
+        }
+        let page = page(&stills);
+        let chapters: BTreeSet<&str> = Figure::ALL.iter().map(|figure| figure.stage().chapter()).collect();
+        for chapter in &chapters {
+            assert_eq!(page.matches(&format!("<section id=\"chapter-{chapter}\">")).count(), 1, "{chapter}");
+        }
+        assert_eq!(page.matches("<section ").count(), chapters.len());
+        assert_eq!(page.matches("<li>").count(), chapters.len());
+        let version = env!("CARGO_PKG_VERSION");
+        assert!(page.contains(&format!("<p>Rendered by Weekender {version} (cpu y; gpu x).</p>")), "{page}");
+        // Metal is shown alone and beside its fuzzy neighbour; only there it needs a label.
+        let metal =
+            "880 × 495 pixels, 1024 samples per pixel, at most 50 rays per path; less than 0.1 s, no noise";
+        assert_eq!(page.matches(&format!("<p class=\"facts\">{metal}</p>")).count(), 1, "{page}");
+        let labelled = page.matches("<p class=\"facts\"><strong>").count();
+        assert_eq!((labelled, page.matches("<img ").count()), (2, 4));
+        let few: Vec<&str> = page.split("<div class=\"panel pixels\" data-stage=\"").skip(1).collect();
+        assert!(matches!(few.as_slice(), [one] if one.starts_with("ppm-tiny\"")), "{few:?}");
+        let count = |panels: usize| Figure::ALL.iter().filter(|figure| figure.panels.len() == panels).count();
+        assert_eq!(page.matches("<div class=\"panels\">").count(), count(1));
+        assert_eq!(page.matches("<div class=\"panels two\">").count(), count(2));
     }
 }

@@ -139,4 +139,12 @@ mod tests {
         );
         assert!(ids(&["quux-corge"]).unwrap_err().to_string().ends_with("weekender --list shows the stages"));
     }
+
+    #[test]
+    fn a_finished_still_is_told_on_one_line() {
+        let stage = Stage::find("metal").unwrap();
+        let mut still = Still::new(stage, &Quality::Full.recipe(stage), String::new());
+        still.trace_seconds = 2.5;
+        assert_eq!(line(&still), "metal                880x495, 1024 spp,           2.5 s, no noise\n");
+    }
 }

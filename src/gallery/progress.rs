@@ -69,6 +69,7 @@ fn words(work: &Work<'_>, elapsed: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::ErrorEstimate;
     use crate::progressive::Status;
     use crate::stages::Stage;
 
@@ -86,5 +87,21 @@ mod tests {
         };
         assert_eq!(said(0.25), "2 of 9, ppm-tiny: 16 of 64 spp, 3 min 00 s left");
         assert_eq!(said(0.01), "2 of 9, ppm-tiny: 16 of 64 spp", "too early to tell");
+    }
+
+    #[test]
+    fn the_time_left_is_told_from_a_fiftieth_of_the_work_on() {
+        let mut status = Status::default();
+        let said = |status: &Status, share| {
+            let work = Work { stage: &Stage::ALL[0], number: 1, count: 1, status, share };
+            words(&work, Duration::from_secs(1))
+        };
+        status.phase = Phase::Preparing;
+        assert_eq!(said(&status, 0.02), "1 of 1, ppm-tiny: preparing the scene, 49.0 s left");
+        assert_eq!(said(&status, 0.019), "1 of 1, ppm-tiny: preparing the scene");
+        status.phase = Phase::Tracing;
+        (status.samples_per_pixel, status.planned_samples_per_pixel) = (4, 8);
+        status.error = Some(ErrorEstimate { rmse: 0.0123, rmse_deviation: 0.0, rel_mse: 0.0 });
+        assert_eq!(said(&status, 1.0), "1 of 1, ppm-tiny: 4 of 8 spp, error 1.2e-2, 0.0 s left");
     }
 }

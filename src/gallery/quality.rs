@@ -91,4 +91,15 @@ mod tests {
         assert_eq!(sizes("sky"), [(480, 270, 1), (880, 495, 1)]);
         assert_eq!(sizes("antialiased"), [(480, 270, 64); 2]);
     }
+
+    #[test]
+    fn only_the_smallest_picture_is_enlarged() {
+        let enlarged = Stage::ALL.iter().filter(|stage| is_about_pixels(stage));
+        assert_eq!(enlarged.map(|stage| stage.id).collect::<Vec<_>>(), ["ppm-tiny"]);
+        let mut stage = *Stage::find("sky").expect("a stage");
+        stage.setup.width = 99;
+        assert!(is_about_pixels(&stage));
+        stage.setup.width = 100;
+        assert!(!is_about_pixels(&stage));
+    }
 }

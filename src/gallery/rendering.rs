@@ -147,13 +147,18 @@ fn tasks(order: &Order<'_>, stills: &Stills) -> anyhow::Result<Vec<Task>> {
             continue;
         }
         recipe.job()?.check_memory(1)?;
-        let settings = &recipe.settings;
-        let paths = f64::from(settings.width) * f64::from(settings.height) * recipe.samples_per_pixel as f64;
-        let is_crowd = recipe.scene.spheres.len() >= MANY_SPHERES;
-        let cost = paths * if is_crowd { COST_OF_MANY } else { 1.0 };
+        let cost = cost(&recipe);
         tasks.push(Task { stage, recipe, fingerprint, cost });
     }
     Ok(tasks)
+}
+
+/// How long a still takes, in paths among few spheres.
+fn cost(recipe: &Recipe) -> f64 {
+    let settings = &recipe.settings;
+    let paths = f64::from(settings.width) * f64::from(settings.height) * recipe.samples_per_pixel as f64;
+    let is_crowd = recipe.scene.spheres.len() >= MANY_SPHERES;
+    paths * if is_crowd { COST_OF_MANY } else { 1.0 }
 }
 
 /// The part of a still that is done, 0 to 1.
@@ -238,5 +243,78 @@ impl<'a> Studio<'a> {
             checksum: still::checksum(&path)?,
             ..Still::new(task.stage, recipe, task.fingerprint.clone())
         }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render_cpu::CpuOptions;
+
+    #[test]
+    fn a_path_among_many_spheres_costs_more() {
+        let cost_of = |count: usize| {
+            // A field has the ground besides.
+            let mut recipe = Recipe::builtin(&format!("field:{}", count - 1)).unwrap();
+            assert_eq!(recipe.scene.spheres.len(), count);
+            (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (4, 3, 2);
+            cost(&recipe)
+        };
+        assert_eq!([15, 16, 17].map(cost_of), [24.0, 120.0, 120.0]);
+    }
+
+    #[test]
+    fn progress_is_the_part_of_the_planned_samples() {
+        for (done, planned, expected) in [(0, 0, 0.0), (0, 1, 0.0), (1, 1, 1.0), (1, 4, 0.25), (4, 4, 1.0)] {
+            let status =
+                Status { samples_per_pixel: done, planned_samples_per_pixel: planned, ..Status::default() };
+            assert_eq!(progress_of(&status), expected, "{done} of {planned}");
+        }
+    }
+
+    #[test]
+    fn all_stills_together_are_the_whole_work() {
+        let directory = tempfile::tempdir().unwrap();
+        let stages = ["ppm-tiny", "aliased"].map(|id| Stage::find(id).unwrap());
+        let backend = BackendChoice::Cpu(CpuOptions { threads: Some(1), ..CpuOptions::default() });
+        let order = Order {
+            directory: directory.path(),
+            stages: &stages,
+            quality: Quality::Quick,
+            backend: &backend,
+        };
+        let (mut shares, mut works, mut finished, mut warned) =
+            (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        let mut look = |event: Event<'_>| match event {
+            Event::Rendering(Work { stage, number, count, share, .. }) => {
+                works.push((stage.id, *number, *count));
+                shares.push(*share);
+            }
+            Event::Finished(still) => finished.push((still.stage.clone(), shares.last().copied())),
+            Event::Warning(words) => warned.push(words.to_owned()),
+        };
+        std::fs::write(directory.path().join(INDEX), "{").unwrap();
+        let interrupt = Interrupt::unheard();
+        let outcome = render(&order, &interrupt, &mut look).unwrap();
+        assert_eq!((outcome.rendered, outcome.kept, outcome.missing), (2, 0, 0));
+        let again = render(&order, &interrupt, &mut look).unwrap();
+        assert_eq!((again.rendered, again.kept, again.missing), (0, 2, 0));
+        assert_eq!(again.stills, outcome.stills);
+
+        works.dedup();
+        assert_eq!(works, [("ppm-tiny", 1, 2), ("aliased", 2, 2)]);
+        assert!(shares.is_sorted(), "{shares:?}");
+        // 16 x 9 and 480 x 270 pixels, one sample each.
+        let first = 144.0 / (144.0 + 129_600.0);
+        let expected = [("ppm-tiny".to_owned(), Some(first)), ("aliased".to_owned(), Some(1.0))];
+        assert_eq!(finished, expected);
+        assert!(matches!(warned.as_slice(), [one] if one.contains(INDEX)), "{warned:?}");
+    }
+
+    #[test]
+    fn a_failure_after_the_first_still_leaves_what_is_finished() {
+        assert!(matches!(broke_off(anyhow!("full"), 0), Failure::Run(error) if error.to_string() == "full"));
+        let Failure::BrokeOff(error) = broke_off(anyhow!("full"), 1) else { panic!("not broken off") };
+        assert_eq!(format!("{error:#}"), "broke off after 1 pictures, which are kept: full");
     }
 }

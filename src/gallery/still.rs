@@ -271,4 +271,20 @@ mod tests {
         let sky = self::still("sky").settings_words();
         assert_eq!(sky, "880 × 495 pixels, 1 ray through the centre of each pixel");
     }
+
+    #[test]
+    fn an_error_has_its_deviation_only_if_there_is_one() {
+        let words = |rmse_estimate, rmse_deviation| {
+            Still { rmse_estimate, rmse_deviation, ..still("metal") }.error_words()
+        };
+        assert_eq!(words(Some(0.0), Some(0.0)), "no noise");
+        assert_eq!(words(Some(0.25), Some(0.0)), "error 2.5e-1 ± 0.1 %");
+        assert_eq!(words(Some(0.25), None), "no noise");
+    }
+
+    #[test]
+    fn a_time_is_told_from_a_tenth_of_a_second_on() {
+        let words = |trace_seconds| Still { trace_seconds, ..still("metal") }.time_words();
+        assert_eq!([0.099, 0.1, 0.12].map(words), ["less than 0.1 s", "0.1 s", "0.1 s"]);
+    }
 }

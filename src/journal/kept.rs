@@ -73,4 +73,20 @@ mod tests {
         assert!(text.contains("line 999\nö") && !text.contains("line 64\n"));
         assert_eq!(text.lines().last().unwrap().len(), LINE_LIMIT);
     }
+
+    #[test]
+    fn lines_are_counted_from_the_first_that_is_left_out() {
+        let mut lines = Lines { first: Vec::new(), latest: VecDeque::new(), left_out: 0 };
+        for number in 0..FIRST + LATEST {
+            lines.keep(number.to_string());
+        }
+        let all: Vec<String> = (0..256).map(|number| number.to_string()).collect();
+        assert_eq!(lines.text(), all.join("\n"));
+        lines.keep("256".to_owned());
+        let text = lines.text();
+        assert!(
+            text.contains("\n63\n... 1 lines left out ...\n65\n") && text.ends_with("\n255\n256"),
+            "{text}"
+        );
+    }
 }

@@ -44,7 +44,6 @@ fn encode(
 ) -> io::Result<()> {
     let mut encoder = ::png::Encoder::new(writer, size[0], size[1]);
     encoder.set_color(::png::ColorType::Rgb);
-    encoder.set_depth(::png::BitDepth::Eight);
     let count = u32::try_from(frames.len()).map_err(io::Error::other)?;
     encoder.set_animated(count, 0)?;
     encoder.set_frame_delay(rate.seconds, rate.frames)?;

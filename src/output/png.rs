@@ -77,7 +77,6 @@ fn encode<W: Write>(
 ) -> io::Result<()> {
     let mut encoder = ::png::Encoder::new(writer, width, height);
     encoder.set_color(::png::ColorType::Rgb);
-    encoder.set_depth(::png::BitDepth::Eight);
     encoder.set_compression(match form {
         PngForm::Fast => ::png::Compression::Fast,
         PngForm::Small => ::png::Compression::Balanced,

@@ -4,6 +4,7 @@ use super::division::Division;
 use super::error::PlanError;
 use super::manifest::{Plan, Work};
 use crate::film::SampleRanges;
+use crate::render::SAMPLE_LIMIT;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -83,8 +84,10 @@ impl Work for Samples {
         if next != self.samples[1] || self.parts.is_empty() {
             return Err(format!("its parts end at sample {next}, but it has {}", self.samples[1]));
         }
-        let all = self.samples[0]..self.samples[1];
-        SampleRanges::default().insert(all).map_err(|error| error.to_string())
+        if next > SAMPLE_LIMIT {
+            return Err(format!("its parts end at sample {next}, but a film has at most {SAMPLE_LIMIT}"));
+        }
+        Ok(())
     }
 }
 
@@ -100,5 +103,80 @@ impl Plan<Samples> {
     /// [`PlanError::NoPart`].
     pub fn part(&self, number: u64) -> Result<&Part, PlanError> {
         self.index(number).map(|index| &self.manifest.work.parts[index])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn work(samples: [u64; 2], parts: &[[u64; 2]]) -> Samples {
+        let part = |samples: &[u64; 2]| Part { file: "part.exr".to_owned(), samples: *samples };
+        Samples { samples, block: 1, parts: parts.iter().map(part).collect() }
+    }
+
+    #[test]
+    fn parts_follow_each_other_from_the_first_sample_to_the_last() {
+        for parts in [&[[3, 9]][..], &[[3, 4], [4, 9]], &[[3, 5], [5, 6], [6, 9]]] {
+            assert_eq!(work([3, 9], parts).check(), Ok(()), "{parts:?}");
+        }
+        for (parts, told) in [
+            (&[[3_u64, 8]][..], "its parts end at sample 8, but it has 9"),
+            (&[], "its parts end at sample 3, but it has 9"),
+            (&[[3, 10]], "its parts end at sample 10, but it has 9"),
+            (&[[2, 9]], "part 0 has the samples 2..9, but 3 comes next"),
+            (&[[4, 9]], "part 0 has the samples 4..9, but 3 comes next"),
+            (&[[3, 5], [6, 9]], "part 1 has the samples 6..9, but 5 comes next"),
+            (&[[3, 5], [4, 9]], "part 1 has the samples 4..9, but 5 comes next"),
+            (&[[3, 5], [5, 5], [5, 9]], "part 1 has the samples 5..5, but 5 comes next"),
+            (&[[3, 5], [5, 4], [4, 9]], "part 1 has the samples 5..4, but 5 comes next"),
+        ] {
+            assert_eq!(work([3, 9], parts).check(), Err(told.to_owned()));
+        }
+        assert!(work([3, 3], &[]).check().is_err(), "no parts");
+    }
+
+    #[test]
+    fn parts_end_at_the_largest_sample_of_a_film() {
+        let last = |end: u64| work([0, end], &[[0, 7], [7, end]]).check();
+        assert_eq!(last(SAMPLE_LIMIT), Ok(()));
+        assert!(last(SAMPLE_LIMIT + 1).unwrap_err().ends_with("at most 4294967296"));
+    }
+
+    #[test]
+    fn a_part_tells_what_a_film_lacks_and_has_too_much() {
+        let part = Part { file: "part.exr".to_owned(), samples: [4, 12] };
+        for (ranges, missing, is_too_much) in [
+            (&[[4_u64, 12]][..], 0, false),
+            (&[], 8, false),
+            (&[[4, 5]], 7, false),
+            (&[[11, 12]], 7, false),
+            (&[[5, 7], [9, 10]], 5, false),
+            (&[[3, 5]], 7, true),
+            (&[[11, 13]], 7, true),
+            (&[[5, 6], [12, 13]], 7, true),
+            (&[[0, 20]], 0, true),
+        ] {
+            let mut found = SampleRanges::default();
+            ranges.iter().for_each(|[start, end]| found.insert(*start..*end).unwrap());
+            assert_eq!(
+                (part.missing(&found), part.is_exceeded_by(&found)),
+                (missing, is_too_much),
+                "{found}"
+            );
+        }
+    }
+
+    #[test]
+    fn names_of_parts_are_equally_long() {
+        let names = |count: u64| {
+            let parts = (0..count).map(|start| start..start + 1).collect();
+            let work = Samples::new(&(0..count), &Division { block: 1, parts });
+            (work.samples, work.parts[0].file.clone(), work.parts[count as usize - 1].clone())
+        };
+        let part = |file: &str, samples| Part { file: file.to_owned(), samples };
+        assert_eq!(names(1), ([0, 1], "part-0.exr".to_owned(), part("part-0.exr", [0, 1])));
+        assert_eq!(names(10), ([0, 10], "part-0.exr".to_owned(), part("part-9.exr", [9, 10])));
+        assert_eq!(names(11), ([0, 11], "part-00.exr".to_owned(), part("part-10.exr", [10, 11])));
     }
 }

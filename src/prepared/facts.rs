@@ -321,4 +321,76 @@ mod tests {
         assert_eq!(facts.covered, (6..10_000).collect::<Vec<_>>());
         assert!(facts.layers.is_empty());
     }
+
+    #[test]
+    fn in_a_full_cell_a_sphere_is_compared_with_the_next_larger_one_only() {
+        for (count, layers) in [(2, 1), (63, 63 * 62 / 2), (64, 64 * 63 / 2), (65, 64), (100, 99)] {
+            let around = DVec3::splat(0.5);
+            let facts = Facts::of(&scene((0..count).map(|i| (around, 1.0 + 1e-5 * f64::from(i)))));
+            assert_eq!(facts.layers.len(), layers, "{count}");
+            let next = |layer: &ThinLayer| layer.spheres[1] == layer.spheres[0] + 1;
+            assert_eq!(
+                facts.layers.iter().filter(|layer| next(layer)).count(),
+                count as usize - 1,
+                "{count}"
+            );
+            assert_eq!(facts.covered, [0_u32; 0], "{count}");
+        }
+    }
+
+    #[test]
+    fn a_layer_is_as_thick_as_its_surfaces_are_apart() {
+        let layer = |a: (f64, f64), b: (f64, f64)| {
+            let facts = Facts::of(&scene([a, b].map(|(x, radius)| (DVec3::new(x, 0.5, 0.5), radius))));
+            facts.layers.first().map(|layer| [layer.thickness, layer.opening].map(|x| (x * 1024.0).round()))
+        };
+        let unit = 1.0 / 1024.0;
+        assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 4.0 * unit)), Some([4.0, 4.0]));
+        assert_eq!(layer((0.5, 1.0), (0.5 + unit, 1.0 - 4.0 * unit)), Some([5.0, 3.0]));
+        assert_eq!(layer((0.5, 1.0), (0.5 + 4.0 * unit, 1.0 + unit)), Some([5.0, 0.0]));
+        // A layer is thinner than a hundredth of the smaller radius.
+        assert_eq!(layer((0.5, 1.0), (0.5 + 10.2 * unit, 1.0)), Some([10.0, 0.0]));
+        assert_eq!(layer((0.5, 1.0), (0.5 + 10.3 * unit, 1.0)), None);
+        assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 10.2 * unit)), None);
+        assert_eq!(layer((0.5, 1.0), (0.5, 1.0 - 10.1 * unit)), Some([10.0, 10.0]));
+    }
+
+    #[test]
+    fn layers_of_covered_spheres_are_those_of_the_first() {
+        let (outer, inner) = ((DVec3::splat(0.5), 1.0), (DVec3::splat(0.5), 0.999));
+        let facts = Facts::of(&scene([outer, inner, outer, inner]));
+        assert_eq!(facts.covered, [2, 3]);
+        assert!(facts.covers(2) && !facts.covers(1));
+        let pairs: Vec<[u32; 2]> = facts.layers.iter().map(|layer| layer.spheres).collect();
+        assert_eq!(pairs, [[0, 1]]);
+    }
+
+    #[test]
+    fn cells_beyond_a_border_are_near_it() {
+        for (number, next) in [
+            (5.0, Some(4.0)),
+            (5.019, Some(4.0)),
+            (5.021, None),
+            (5.5, None),
+            (5.979, None),
+            (5.981, Some(6.0)),
+            (-1.01, Some(-1.0)),
+            (-1.99, Some(-3.0)),
+        ] {
+            let own = f64::floor(number);
+            assert_eq!(cells_near(number), [Some(own), next], "{number}");
+        }
+        let count = |x: f64, y: f64, z: f64, radius: f64| {
+            let sphere = Sphere { center: DVec3::new(x, y, z), radius, material: 0 };
+            marks_beyond_borders(&sphere).len()
+        };
+        assert_eq!(count(0.5, 0.5, 0.5, 1.0), 0);
+        assert_eq!(count(0.01, 0.5, 0.5, 1.0), 1);
+        assert_eq!(count(0.01, 0.99, 0.5, 1.0), 3);
+        assert_eq!(count(0.01, 0.99, 5.0, 1.0), 7);
+        // The size is near a border, too: log2(radius) + 0.37 is 0.99.
+        let radius = 0.62_f64.exp2();
+        assert_eq!(count(0.5, 0.5, 0.5, radius), 1);
+        assert_eq!(count(0.5, 0.5, 0.01, radius), 1 + 2);
+    }
 }

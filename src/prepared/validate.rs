@@ -309,6 +309,7 @@ mod tests {
                 ("features are", |prepared| prepared.features.two_root = false),
                 ("features are", |prepared| prepared.features.opaque_count += 1),
                 ("samples", |prepared| prepared.block_limit = 3),
+                ("samples", |prepared| prepared.block_limit = 256),
                 ("order of the scene", |prepared| prepared.groups.two_root.reverse()),
                 ("but should be", |prepared| prepared.scene_index.swap(0, 1)),
                 ("squared radius", |prepared| prepared.two_root[0][3] = -0.25),
@@ -319,6 +320,7 @@ mod tests {
                 ("is glass and is not", |prepared| prepared.records[0].0[10] = 1.5),
                 ("has no radius", |prepared| prepared.records[0].0[8] = 0.0),
                 ("unit vector's part", |prepared| prepared.records[0].0[7] = 1.5),
+                ("unit vector's part", |prepared| prepared.records[0].0[7] = -1.5),
                 ("shading record of sphere", |prepared| prepared.records[0].0[4] = f32::NAN),
             ],
         );

@@ -210,4 +210,57 @@ mod tests {
         assert_eq!(fitted.contributions, [part(8, 40), part(4, 10)]);
         assert_eq!(fitted.trace, Duration::from_secs(50));
     }
+
+    #[test]
+    fn a_status_that_fits_its_film_stays_as_it_is() {
+        let info = |name| BackendInfo { name, device: String::new(), lanes: 8, threads: 1 };
+        let part = |name, samples_per_pixel| Contribution { backend: info(name), samples_per_pixel };
+        let mut status = Status {
+            backend: Some(info("cpu")),
+            contributions: vec![part("gpu", 30), part("cpu", 10)],
+            trace: Duration::from_secs(40),
+            ..Status::default()
+        };
+        let film = |samples: u64| {
+            let mut film = Film::new(1, 1, 1);
+            film.record(0..samples, 0).unwrap();
+            film
+        };
+        assert_eq!(status.added(), 40);
+        assert_eq!(status.of_film(&film(60), 20), status);
+        // A film that was read earlier has less of the backend at work.
+        let earlier = status.of_film(&film(54), 20);
+        assert_eq!(earlier.contributions, [part("gpu", 30), part("cpu", 4)]);
+        assert_eq!(earlier.trace, Duration::from_secs(34));
+        let much_earlier = status.of_film(&film(40), 20);
+        assert_eq!(much_earlier.contributions, [part("gpu", 30), part("cpu", 0)]);
+        // A backend that has added nothing yet is not the one at work.
+        status.backend = Some(info("reference"));
+        let later = status.of_film(&film(64), 20);
+        assert_eq!(later.contributions, [part("gpu", 30), part("cpu", 14)]);
+        let nothing = Status::default();
+        assert_eq!(nothing.of_film(&film(8), 4), nothing);
+    }
+
+    #[test]
+    fn phases_that_are_over_do_not_work() {
+        for (phase, is_working, is_over) in [
+            (Phase::Idle, false, false),
+            (Phase::Preparing, true, false),
+            (Phase::Tracing, true, false),
+            (Phase::Paused, false, false),
+            (Phase::Done(EndReason::Samples), false, true),
+            (Phase::Failed(String::new()), false, true),
+        ] {
+            assert_eq!((phase.is_working(), phase.is_over()), (is_working, is_over), "{phase:?}");
+        }
+    }
+
+    #[test]
+    fn what_was_said_is_not_said_again() {
+        let mut status = Status::default();
+        status.say(vec!["a".to_owned(), "b".to_owned()]);
+        status.say(vec!["b".to_owned(), "c".to_owned(), "c".to_owned()]);
+        assert_eq!(status.messages, ["a", "b", "c"]);
+    }
 }

@@ -144,3 +144,42 @@ fn sixteen<S: Instructions, const PARTS: u32>(simd: S) -> Kernel<f32> {
         )
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_smallest_kernel_that_suffices_is_offered() {
+        let needs = [OPAQUE, GLASS, parts::LENS, FINISHED, parts::RULES];
+        for (isa, lanes, expected) in [
+            (Isa::Portable, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
+            (Isa::Sse42, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
+            (Isa::Sse42, 4, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
+            (Isa::Neon, 4, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
+            (Isa::Sse42, 8, [GENERAL; 5]),
+            (Isa::Avx2, 1, [GLASS, GLASS, GENERAL, GENERAL, GENERAL]),
+            (Isa::Avx2, 4, [GENERAL; 5]),
+            (Isa::Avx2, 8, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
+            (Isa::Avx2, 16, [GENERAL; 5]),
+            (Isa::Avx512, 8, [GENERAL; 5]),
+            (Isa::Avx512, 16, [OPAQUE, GLASS, FINISHED, FINISHED, GENERAL]),
+        ] {
+            assert_eq!(needs.map(|needed| offered(isa, lanes, needed)), expected, "{isa}, {lanes} lanes");
+        }
+        assert!(within(GLASS, FINISHED) && within(OPAQUE, OPAQUE) && !within(FINISHED, GLASS));
+    }
+
+    #[test]
+    fn a_level_has_kernels_for_its_lanes_only() {
+        for isa in Isa::available() {
+            let lanes: Vec<usize> = (0..=32).filter(|lanes| kernel(isa, *lanes, GENERAL).is_some()).collect();
+            let expected: &[usize] = match isa {
+                Isa::Portable => &[1],
+                Isa::Sse42 | Isa::Neon => &[1, 4, 8],
+                Isa::Avx2 | Isa::Avx512 => &[1, 4, 8, 16],
+            };
+            assert_eq!(lanes, expected, "{isa}");
+        }
+    }
+}

@@ -58,3 +58,50 @@ impl From<&CwBvhNode> for GpuCwbvhNode {
         bytemuck::cast(*node)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+
+    #[test]
+    fn tiles_are_square_where_the_picture_has_room() {
+        for (width, height, expected) in [
+            (100, 100, [8, 8]),
+            (5, 100, [8, 8]),
+            (4, 100, [4, 16]),
+            (3, 100, [4, 16]),
+            (2, 100, [2, 32]),
+            (1, 100, [1, 64]),
+            (100, 5, [8, 8]),
+            (100, 4, [16, 4]),
+            (100, 3, [16, 4]),
+            (100, 2, [32, 2]),
+            (100, 1, [64, 1]),
+            (33, 1, [64, 1]),
+            (32, 1, [32, 2]),
+            (1, 1, [1, 64]),
+        ] {
+            assert_eq!(tile_size(width, height), expected, "{width}x{height}");
+        }
+    }
+
+    #[test]
+    fn a_job_has_the_spheres_in_their_order() {
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height, recipe.settings.seed) = (100, 3, 9);
+        let prepared = PreparedScene::<f32>::new(&recipe.job().unwrap());
+        let job = GpuJob::new(&prepared, 5);
+        assert_eq!((job.width, job.height, job.tile_width, job.node_count), (100, 3, 16, 5));
+        assert_eq!((job.seed, job.max_depth, job.extent), (9, recipe.settings.max_depth, 0.0));
+        let listed = [&prepared.opaque[..], &prepared.two_root[..]].concat();
+        let counts = [job.opaque_count, job.two_root_count, job.anchored_count].map(|count| count as usize);
+        assert_eq!(counts, [prepared.opaque.len(), prepared.two_root.len(), prepared.anchored.len()]);
+        assert!(prepared.opaque.len() > 1 && prepared.two_root.len() > 1, "the order matters");
+        assert_eq!(job.few_spheres[..listed.len()], listed);
+        assert!(job.few_spheres[listed.len()..].iter().all(|row| *row == [0.0; 4]));
+        let field = Recipe::find("field:60").unwrap().job().unwrap();
+        let prepared = PreparedScene::<f32>::new(&field);
+        assert_eq!(Some(GpuJob::new(&prepared, 0).extent), prepared.hierarchy.map(|h| h.extent));
+    }
+}

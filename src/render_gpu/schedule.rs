@@ -155,4 +155,50 @@ mod tests {
         budget.learn(before / 8, Duration::from_secs(1));
         assert_eq!(budget.paths(), before / 16);
     }
+
+    #[test]
+    fn a_budget_learns_from_each_dispatch() {
+        // The target is 50 ms, and the budget before is 4096 paths.
+        for (paths, milliseconds, expected) in [
+            (4096, 50, 4096),
+            (4096, 25, 8192),
+            (4096, 5, 16_384),
+            (4096, 0, 16_384),
+            (4096, 80, 2560),
+            (4096, 100, 2048),
+            (4096, 101, 2048),
+            (4096, 1000, 2048),
+            (3000, 1000, 1500),
+            (8192, 1000, 2048),
+            (8192, 50, 8192),
+            // A dispatch of less than half of the budget lowers it only if it was too slow.
+            (2048, 50, 2048),
+            (2047, 50, 4096),
+            (1000, 10, 5000),
+            (100, 1000, 64),
+        ] {
+            let mut budget = Budget::new(Duration::from_millis(50));
+            assert_eq!(budget.paths(), 4096);
+            budget.learn(paths, Duration::from_millis(milliseconds));
+            assert_eq!(budget.paths(), expected, "{paths} paths in {milliseconds} ms");
+        }
+    }
+
+    #[test]
+    fn blocks_are_taken_whole_where_there_is_room() {
+        let mut blocks = Blocks::of_range(0..64, &settings(false), 32);
+        let counts = |(taken, total): (Vec<GpuBlock>, u64)| -> (Vec<u32>, u64) {
+            (taken.iter().map(|block| block.count).collect(), total)
+        };
+        // Of a block that is too large, a power of two is taken; the rest is left in parts that double.
+        assert_eq!(counts(blocks.take(7)), (vec![4], 4));
+        assert_eq!(counts(blocks.take(4)), (vec![4], 4));
+        assert_eq!(counts(blocks.take(23)), (vec![8], 8));
+        assert_eq!(counts(blocks.take(0)), (vec![1], 1));
+        assert_eq!(counts(blocks.take(1000)), (vec![1, 2, 4, 8, 32], 47));
+        assert_eq!(counts(blocks.take(1000)), (vec![], 0));
+        let mut many = Blocks::of_range(0..2 * BLOCK_LIMIT as u64, &settings(false), 1);
+        assert_eq!(many.take(u64::MAX).0.len(), BLOCK_LIMIT);
+        assert_eq!(many.take(10).0.len(), 10);
+    }
 }

@@ -17,3 +17,27 @@ pub(super) fn turns_over_lists(features: &Features, prepared: &PreparedScene<f32
     let listed = if is_in_hierarchy { 0 } else { prepared.opaque.len() + prepared.two_root.len() };
     (prepared.anchored.len() + listed) as u64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+    use crate::stages::Rules;
+
+    #[test]
+    fn a_ray_tests_all_spheres_that_are_in_no_hierarchy() {
+        let turns = |name: &str, surface: SurfaceRule| {
+            let mut recipe = Recipe::find(name).unwrap();
+            recipe.rules = Rules { surface, ..recipe.rules };
+            let prepared = PreparedScene::<f32>::new(&recipe.job().unwrap());
+            let listed = prepared.opaque.len() + prepared.two_root.len();
+            let turns = turns_over_lists(&prepared.features, &prepared) as usize;
+            (turns - prepared.anchored.len(), listed)
+        };
+        assert_eq!(turns("field:60", SurfaceRule::Exact).0, 0);
+        for (name, surface) in [("three-spheres", SurfaceRule::Exact), ("field:60", SurfaceRule::Book)] {
+            let (turns, listed) = turns(name, surface);
+            assert!(turns == listed && listed > 3, "{name}: {turns} {listed}");
+        }
+    }
+}

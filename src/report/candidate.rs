@@ -246,6 +246,7 @@ mod tests {
     /// A second of the device's clock passes in every call.
     #[derive(Default)]
     struct Clocked {
+        is_prepared: bool,
         clock: Duration,
         traced: Vec<Range<u64>>,
     }
@@ -260,6 +261,7 @@ mod tests {
         }
 
         fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+            self.is_prepared = true;
             Ok(())
         }
 
@@ -270,6 +272,7 @@ mod tests {
             film: &mut Film,
             _: &AtomicBool,
         ) -> Result<Stats, RenderError> {
+            assert!(self.is_prepared, "the time of preparing is no time of tracing");
             self.clock += Duration::from_secs(1);
             self.traced.push(range.clone());
             film.record(range, 2)?;
@@ -295,5 +298,30 @@ mod tests {
         assert_eq!(measured(2), (2, 0.25, Some(1.0), 2));
         assert_eq!(measured(4), (4, 0.5, Some(2.0), 4));
         assert_eq!(clocked.traced, [0..1, 0..2, 2..4]);
+    }
+
+    #[test]
+    fn a_measurement_ends_when_it_is_told_to() {
+        let limits = Limits { seconds: 1e9, samples: 64 };
+        let asked = std::cell::Cell::new(0);
+        let go_on = || asked.replace(asked.get() + 1) < 3;
+        let mut taken = Vec::new();
+        let points = powers_of_two(limits, &go_on, |samples| {
+            taken.push(samples);
+            Ok(Some(Measured {
+                samples,
+                trace_seconds: 1.0,
+                wall_seconds: 1.0,
+                device_seconds: None,
+                mse: 0.0,
+                rel_mse: 0.0,
+                flip: 0.0,
+                mse_estimate: None,
+                rejected: 0,
+            }))
+        });
+        assert!(points.unwrap().is_none());
+        assert_eq!(taken, [1, 2, 4]);
+        assert!(powers_of_two(limits, &|| true, |_| Ok(None)).unwrap().is_none());
     }
 }

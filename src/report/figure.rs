@@ -222,4 +222,35 @@ mod tests {
             .collect();
         assert_eq!(names, [("a", 2), ("b", 1), ("c", 1)]);
     }
+
+    #[test]
+    fn a_target_or_floor_outside_the_chart_is_not_drawn() {
+        let names = |data: &Data, curves: &[CurveSummary], target: f64| -> Vec<String> {
+            let chart = chart("book", data, curves, target);
+            chart.series.into_iter().map(|series| series.name).collect()
+        };
+        let curves = [curve("book")];
+        let all = ["4x the time, half the error", "target: 0.5", "", "rounding", "cpu, sobol"];
+        assert_eq!(names(&data(), &curves, 0.5), all);
+        for target in [0.17, 1.0, 2.0] {
+            assert_eq!(names(&data(), &curves, target), [all[0], all[3], all[4]], "{target}");
+        }
+        let mut low = data();
+        low.rounding[0].floor = Some(0.17);
+        assert_eq!(names(&low, &curves, 0.5), [all[0], all[1], all[2], all[4]]);
+        low.rounding[0].floor = None;
+        assert_eq!(names(&low, &curves, 0.5), [all[0], all[1], all[2], all[4]]);
+        // A time that is only expected is not marked.
+        let mut expected = curve("book");
+        expected.times[0] = Some(Crossing { time: 9.0, is_extrapolated: true });
+        assert_eq!(names(&data(), &[expected], 0.5), [all[0], all[1], all[3], all[4]]);
+    }
+
+    #[test]
+    fn a_chart_without_errors_has_no_limits() {
+        let mut curve = curve("book");
+        curve.points.iter_mut().for_each(|point| point.rmse = 0.0);
+        let chart = chart("book", &data(), &[curve], 0.5);
+        assert_eq!((chart.x.limits, chart.y.limits), (None, None));
+    }
 }

@@ -10,6 +10,8 @@ mod reference;
 mod rounding;
 mod summary;
 mod table;
+#[cfg(test)]
+mod tests;
 
 use crate::backends;
 use crate::chart;

@@ -264,4 +264,41 @@ mod tests {
         assert!((errors.rel_mse - 0.0625 / 0.26).abs() < 1e-9, "{errors:?}");
         assert!(errors.flip > 0.0, "{errors:?}");
     }
+
+    #[test]
+    fn passes_grow_and_progress_is_told_between_them() {
+        let (_directory, path) = place();
+        let mut told = Vec::new();
+        let go_on = |share: f64| {
+            told.push(share);
+            true
+        };
+        make(&path, &small(), &cpu(None), 512, go_on).unwrap().unwrap();
+        assert!(told.len() < 64, "{told:?}");
+        assert_eq!((told[0], told[1]), (0.0, 2.0 / 512.0));
+        assert!(told.is_sorted_by(|a, b| a < b) && told.iter().all(|share| *share < 1.0), "{told:?}");
+        // A film that is large enough is not rendered again.
+        let mut calls = 0;
+        let again = make(&path, &small(), &cpu(None), 512, |_| {
+            calls += 1;
+            true
+        });
+        assert_eq!((again.unwrap().unwrap().used.samples, calls), (512, 0));
+    }
+
+    #[test]
+    fn what_is_shown_decides_how_different_pictures_look() {
+        let pixels = [[0.25; 3], [4.0; 3], [-1.0; 3], [0.0; 3]];
+        let equals = |transfer: Transfer, shown: [f64; 4]| {
+            let shown = shown.map(|x| [x; 3]);
+            appearance(&pixels, transfer, 2, 2).difference(&Appearance::of(2, &shown)) < 1e-9
+        };
+        assert!(equals(Transfer::Linear, [0.25, 1.0, 0.0, 0.0]));
+        assert!(equals(Transfer::Gamma2, [0.5, 1.0, 0.0, 0.0]));
+        assert!(!equals(Transfer::Gamma2, [0.25, 1.0, 0.0, 0.0]));
+        let pixels = [[0.25; 3]; 4];
+        let split = appearance(&pixels, Transfer::LinearAboveGamma2, 2, 2);
+        let expected = Appearance::of(2, &[[0.25; 3], [0.25; 3], [0.5; 3], [0.5; 3]]);
+        assert!(split.difference(&expected) < 1e-9);
+    }
 }

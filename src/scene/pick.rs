@@ -148,4 +148,30 @@ mod tests {
         assert_eq!(Camera::BOOK.depth_of(DVec3::new(5.0, 5.0, -2.0)), 2.0);
         assert_eq!(Camera::BOOK.place_of(DVec3::Z, 1.0), None);
     }
+
+    #[test]
+    fn a_surface_at_the_eye_is_not_seen() {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        scene.add_sphere(DVec3::ZERO, 1.0, grey);
+        let above = |below: f64| scene.pick(DVec3::Y * (1.0 - below), DVec3::Y).is_some();
+        assert_eq!([0.0, 0.9e-9, 1.1e-9, 0.5].map(above), [false, false, true, true]);
+        // Rays that just miss the ball, and that just do not.
+        let beside = |x: f64| scene.pick(DVec3::new(x, 0.0, 5.0), DVec3::NEG_Z).is_some();
+        assert_eq!([0.0, 0.999, 1.001, -0.999, -1.001].map(beside), [true, true, false, true, false]);
+    }
+
+    #[test]
+    fn of_two_hits_at_the_same_distance_the_first_of_the_scene_is_seen() {
+        let mut scene = two();
+        scene.spheres.push(scene.spheres[1]);
+        for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {
+            let mut nearest = NearestHit::default();
+            assert_eq!(nearest.distance(), f64::INFINITY);
+            order.into_iter().for_each(|sphere| nearest.take(&scene, sphere, DVec3::ZERO, DVec3::NEG_Z));
+            assert_eq!(nearest.distance(), 0.5);
+            let pick = scene.picked(nearest, DVec3::ZERO, DVec3::NEG_Z).unwrap();
+            assert_eq!((pick.sphere, pick.point), (1, DVec3::new(0.0, 0.0, -0.5)), "{order:?}");
+        }
+    }
 }

@@ -233,3 +233,50 @@ impl Case {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stress::families::build::one_ball;
+
+    const FAMILY: Family = Family { id: "balls", title: "Balls", lesson: "They are round." };
+
+    #[test]
+    fn what_the_window_shows_is_larger_and_has_the_name_of_a_file() {
+        let case = Case::new(&FAMILY, "one", "nothing", one_ball());
+        assert_eq!((case.id.as_str(), case.title(), case.is_quick), ("balls/one", "balls/one", false));
+        let shown = case.shown();
+        assert_eq!([shown.settings.width, shown.settings.height], [600, 400]);
+        assert_eq!((shown.samples_per_pixel, shown.name.as_str()), (256, "balls-one"));
+        assert_eq!(shown.scene, case.recipe.scene);
+        assert_eq!(case.watched("A ball", "It is round.").title(), "A ball");
+    }
+
+    #[test]
+    fn scenes_without_a_hierarchy_are_also_rendered_with_one() {
+        for (count, forms) in [(23, &[Form::Plain, Form::WithFar][..]), (24, &[Form::Plain][..])] {
+            let mut recipe = one_ball();
+            let scene = std::sync::Arc::make_mut(&mut recipe.scene);
+            scene.spheres = vec![scene.spheres[0]; count];
+            let case = Case::new(&FAMILY, count, "copies", recipe);
+            assert_eq!(case.forms(), forms, "{count}");
+            assert_eq!(case.recipe_in(Form::Plain).scene.spheres.len(), count);
+            assert_eq!(case.recipe_in(Form::WithFar).scene.spheres.len(), count + 40);
+        }
+    }
+
+    #[test]
+    fn an_expected_result_is_told_in_a_word() {
+        let other = Box::new(one_ball());
+        for (expected, told) in [
+            (Expected::Every { value: [0.5; 3], why: "a" }, "0.5"),
+            (Expected::Every { value: [0.5, 0.5, 0.0], why: "a" }, "0.5 0.5 0"),
+            (Expected::Every { value: [0.0, 0.5, 0.5], why: "a" }, "0 0.5 0.5"),
+            (Expected::Mean { value: 1.0, why: "a" }, "1 (mean)"),
+            (Expected::Same { other, why: "a" }, "as one-ball"),
+            (Expected::Reference { why: "a" }, "as f64"),
+        ] {
+            assert_eq!((expected.to_string().as_str(), expected.why()), (told, "a"));
+        }
+    }
+}

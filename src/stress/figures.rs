@@ -127,4 +127,53 @@ mod tests {
         assert!(spread.bias.abs() < 1e-6 && (spread.rms - 0.1).abs() < 1e-6, "{spread:?}");
         assert!((spread.bias_deviation - 0.01).abs() < 1e-3, "{spread:?}");
     }
+
+    /// A film in a row, of these samples; each half has the sums of its pixels in units of a sixteenth.
+    fn row(samples: u64, halves: [&[[f64; 3]]; 2]) -> Film {
+        let mut film = Film::new(halves[0].len() as u32, 1, 2);
+        for (half, sums) in halves.into_iter().enumerate() {
+            for (pixel, sum) in sums.iter().enumerate() {
+                film.halves_mut()[half][pixel] = fixed_point(sum.map(|x| x / 16.0)).unwrap();
+            }
+        }
+        film.record(0..samples, 0).unwrap();
+        film
+    }
+
+    #[test]
+    fn a_level_is_worked_out_by_hand() {
+        // Two samples in the first half and one in the second.
+        let film = row(3, [&[[4.0, 8.0, 12.0], [2.0; 3]], &[[5.0, 1.0, 3.0], [4.0; 3]]]);
+        let level = Level::of(&film);
+        let close = |x: f64, y: f64| (x - y).abs() < 1e-6;
+        let mean = [15.0, 15.0, 21.0].map(|sum| sum / (3.0 * 2.0 * 16.0));
+        assert!((0..3).all(|channel| close(level.mean[channel], mean[channel])), "{level:?}");
+        assert!(close(level.grey(), 51.0 / 288.0), "{level:?}");
+        // Half the differences of the means are -1.5, 1.5 and 1.5 in the first pixel and -1.5 in the second.
+        assert!(close(level.noise, 1.5 / 16.0), "{level:?}");
+        assert!(
+            close(level.deviation, (0.5_f64.powi(2) + 1.5_f64.powi(2)).sqrt() / (2.0 * 16.0)),
+            "{level:?}"
+        );
+        let mut one_half = Film::new(1, 1, 1);
+        one_half.record(0..1, 0).unwrap();
+        assert_eq!(Level::of(&one_half), Level::default());
+    }
+
+    #[test]
+    fn a_pair_is_worked_out_by_hand() {
+        let exact = row(2, [&[[1.0; 3]; 4], &[[1.0; 3]; 4]]);
+        let film =
+            row(2, [&[[2.0; 3], [3.0; 3], [4.0; 3], [7.0; 3]], &[[2.0; 3], [3.0; 3], [4.0; 3], [7.0; 3]]]);
+        let close = |x: f64, y: f64| (x - y / 16.0).abs() < 1e-6;
+        // The differences of the pixels are 1, 2, 3 and 6 sixteenths.
+        let pair = Paired::of(&film, &exact);
+        assert!(close(pair.bias, 3.0) && close(pair.bias_deviation, (3.5_f64 / 3.0).sqrt()), "{pair:?}");
+        assert!(close(pair.rms, 12.5_f64.sqrt()), "{pair:?}");
+        assert!(close(Paired::of(&exact, &film).bias, -3.0));
+        let [one, other] = [[[1.0, 2.0, 6.0]], [[1.0; 3]]].map(|pixel| row(2, [&pixel, &pixel]));
+        let pair = Paired::of(&other, &one);
+        assert!(close(pair.bias, -2.0) && close(pair.bias_deviation, 2.0), "{pair:?}");
+        assert!(close(pair.rms, (26.0_f64 / 3.0).sqrt()), "{pair:?}");
+    }
 }

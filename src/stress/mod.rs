@@ -22,6 +22,7 @@ pub use case::{Case, Expected, Family, Form, Watch};
 pub use exact::first_hit;
 pub use families::{cases, shown_cases};
 pub use report::{BookMeasured, CaseReport, FirstHits, Measured, StressReport};
+pub use search::random_scene;
 pub use suite::{Suite, by_the_book};
 pub use verdict::Verdict;
 

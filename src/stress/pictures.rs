@@ -161,4 +161,58 @@ mod tests {
         }
         assert!(directory.path().join("table.md").exists());
     }
+
+    #[test]
+    fn a_square_picture_stays_square() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut case = cases().iter().find(|case| case.id == "shells/1").unwrap().clone();
+        case.recipe = sized(case.recipe, [16, 16], 4);
+        let options = crate::render_cpu::CpuOptions::default();
+        let mut backend = Backend::new("cpu", BackendChoice::Cpu(options));
+        write_pictures(directory.path(), &case, &mut backend, &AtomicBool::new(false)).unwrap();
+        let path = directory.path().join("shells-1-ours.png");
+        let read =
+            crate::output::read_picture(&path, crate::output::Encoding::Book(Transfer::Gamma2)).unwrap();
+        assert_eq!([read.width, read.height], [80, 80]);
+        // A ball of albedo .5 under a white sky, after the square root.
+        assert!(read.pixels.iter().flatten().all(|x| (x - 0.5).abs() < 0.005), "{:?}", read.pixels[0]);
+    }
+
+    #[test]
+    fn the_page_says_why_a_backend_is_wrong() {
+        use crate::stress::report::Measured;
+        use crate::stress::verdict::Verdict;
+        let measured = |verdict: Verdict| Measured {
+            backend: "a<b".to_owned(),
+            form: "+40",
+            mean: None,
+            offset: None,
+            deviation: None,
+            rounding: None,
+            seconds: None,
+            tame_seconds: None,
+            verdict,
+        };
+        let verdicts =
+            [Verdict::Right, Verdict::Warned("thin".into()), Verdict::Wrong("off & \"on\"".into())];
+        let case = CaseReport {
+            id: "i>d".to_owned(),
+            family: "",
+            stiff: "stiff".to_owned(),
+            expected: "1".to_owned(),
+            why: "so",
+            tolerance: 0.0,
+            spheres: 1,
+            measured: verdicts.map(measured).into_iter().collect(),
+            first_hits: None,
+            book: Vec::new(),
+        };
+        assert_eq!(
+            about(&case),
+            "<b>i&gt;d</b><br>stiff<br>expected: 1, because so<br>\
+             a&lt;b, +40: <span class=\"right\">right</span><br>\
+             a&lt;b, +40: <span class=\"right\">warned</span><br>\
+             a&lt;b, +40: <span class=\"wrong\">wrong</span>: off &amp; &quot;on&quot;<br>"
+        );
+    }
 }

@@ -181,4 +181,61 @@ mod tests {
         let is_right = |agree| FirstHits { rays: 40, agree }.is_right();
         assert!(is_right(40) && is_right(38) && !is_right(37));
     }
+
+    fn report(offsets: &[Option<f64>]) -> CaseReport {
+        let measured = |offset: &Option<f64>| Measured {
+            backend: "cpu".to_owned(),
+            form: "plain",
+            mean: None,
+            offset: *offset,
+            deviation: None,
+            rounding: offset.map(|bias| Paired { bias, ..Paired::default() }),
+            seconds: None,
+            tame_seconds: None,
+            verdict: Verdict::Right,
+        };
+        CaseReport {
+            id: "a".to_owned(),
+            family: "A",
+            stiff: String::new(),
+            expected: String::new(),
+            why: "",
+            tolerance: 0.0,
+            spheres: 1,
+            measured: offsets.iter().map(measured).collect(),
+            first_hits: None,
+            book: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn the_worst_is_farthest_off_on_either_side() {
+        let worst = |offsets: &[Option<f64>]| report(offsets).worst().and_then(|worst| worst.offset);
+        assert_eq!(worst(&[Some(0.1), Some(-0.5), None, Some(0.4)]), Some(-0.5));
+        assert_eq!(worst(&[None, Some(0.0)]), Some(0.0), "a picture counts for more than none");
+        assert_eq!(
+            report(&[Some(0.1), Some(-0.5), Some(0.4)]).rounding().map(|paired| paired.bias),
+            Some(-0.5)
+        );
+        assert_eq!(
+            (worst(&[]), report(&[None]).rounding(), report(&[None]).time_ratio()),
+            (None, None, None)
+        );
+    }
+
+    #[test]
+    fn a_run_is_right_if_every_case_is_right_on_every_backend() {
+        let right = || report(&[Some(0.0), Some(0.0)]);
+        let mut wrong = right();
+        wrong.measured[1].verdict = Verdict::Wrong("off".to_owned());
+        let mut missed = right();
+        missed.first_hits = Some(FirstHits { rays: 64, agree: 32 });
+        let is_right = |cases: Vec<CaseReport>| {
+            let (version, backends, chosen) = ("", Vec::new(), cases.len());
+            StressReport { schema: 1, version, backends, seconds: 0.0, chosen, interrupted: false, cases }
+                .is_right()
+        };
+        assert!(is_right(vec![right(), right()]));
+        assert!(!is_right(vec![right(), wrong]) && !is_right(vec![missed, right()]));
+    }
 }

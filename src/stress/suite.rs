@@ -295,48 +295,4 @@ impl Suite {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::backends::BackendChoice;
-    use crate::render_cpu::CpuOptions;
-    use crate::stress::families::cases;
-
-    #[test]
-    fn a_backend_that_does_not_start_has_no_picture_and_is_not_right() {
-        let no_kernel = CpuOptions { isa: Some(Isa::Portable), lanes: Some(3), ..CpuOptions::default() };
-        let reference = Backend::new("f64", BackendChoice::Reference { threads: Some(1) });
-        let mut suite = Suite::new(vec![Backend::new("cpu", BackendChoice::Cpu(no_kernel))], reference);
-        let case = cases().iter().find(|case| case.id == "shells/1").unwrap();
-        let report = suite.run(case, &AtomicBool::new(false));
-        let [cpu, reference, ..] = report.measured.as_slice() else { panic!("{report:#?}") };
-        assert!(cpu.verdict.reason().contains("has no 3 lanes") && cpu.mean.is_none(), "{cpu:?}");
-        assert!(reference.verdict.is_right() && !report.is_right(), "{report:#?}");
-    }
-
-    #[test]
-    fn a_case_is_measured_on_every_backend_in_every_form() {
-        let options = CpuOptions { threads: Some(1), ..CpuOptions::default() };
-        let reference = Backend::new("f64", BackendChoice::Reference { threads: Some(1) });
-        let mut suite = Suite::new(vec![Backend::new("cpu", BackendChoice::Cpu(options))], reference);
-        assert_eq!(suite.names(), ["cpu", "f64"]);
-        let find = |id: &str| cases().iter().find(|case| case.id == id).unwrap();
-        let report = suite.run(find("shells/1"), &AtomicBool::new(false));
-        let who: Vec<_> = report.measured.iter().map(|m| (m.backend.as_str(), m.form)).collect();
-        assert_eq!(who, [("cpu", "plain"), ("f64", "plain"), ("cpu", "+40"), ("f64", "+40")]);
-        assert!(report.is_right(), "{report:#?}");
-        assert_eq!(report.measured[0].mean, Some(0.5));
-        assert_eq!(report.first_hits, Some(FirstHits { rays: 64, agree: 64 }));
-        assert!(report.measured[0].rounding.is_some() && report.measured[1].rounding.is_none());
-        assert_eq!(report.book.iter().map(|book| book.precision).collect::<Vec<_>>(), ["f32", "f64"]);
-
-        let mut wrong = find("shells/1").clone();
-        wrong.expected = Expected::Mean { value: 0.6, why: "it is not" };
-        let report = suite.run(&wrong, &AtomicBool::new(false));
-        assert!(report.measured.iter().all(|measured| !measured.verdict.is_right()), "{report:#?}");
-
-        // Balls of half a millimetre are smaller than the book's threshold.
-        let small = suite.run(find("scaled/1e-3"), &AtomicBool::new(false));
-        assert!(small.is_right(), "{small:#?}");
-        assert!(small.book.iter().all(|book| !book.verdict.is_right()), "{:#?}", small.book);
-    }
-}
+mod tests;

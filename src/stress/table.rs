@@ -212,4 +212,38 @@ mod tests {
         assert!(text.contains("1 of 2 cases run so far, of 5, right on avx2"), "{text}");
         assert!(text.ends_with("interrupted: 3 cases not run\n"), "{text}");
     }
+
+    #[test]
+    fn columns_stand_below_their_heads() {
+        let line = |[a, b, c, d, e, f, g, h]: [&str; 8]| {
+            format!("{a:30} {b:12} {c:12} {d:9} {e:18} {f:7} {g:7} {h}")
+        };
+        let names = [
+            "case",
+            "expected",
+            "measured",
+            "off by",
+            "rounding (RMS)",
+            "time",
+            "verdict",
+            "book's f32, f64",
+        ];
+        assert_eq!(head(), line(names) + "\n");
+        let mut told = case(Verdict::Warned("too thin".into()));
+        let cells = ["copies/2", "0.5", "0.250000", "-2.5e-1", "-2.5e-1 (1e-5)", "2.0x"];
+        let [a, b, c, d, e, f] = cells;
+        assert_eq!(row(&told).lines().next(), Some(line([a, b, c, d, e, f, "warned", "-"]).as_str()));
+        told.measured[0].verdict = Verdict::None("gone".into());
+        assert_eq!(row(&told).lines().next(), Some(line([a, b, c, d, e, f, "NONE", "-"]).as_str()));
+        told.book.push(BookMeasured {
+            precision: "f64",
+            mean: None,
+            offset: Some(0.0),
+            verdict: Verdict::Right,
+        });
+        told.book[0].offset = Some(0.25);
+        told.measured.clear();
+        let cells: Vec<String> = row(&told).split_whitespace().map(str::to_owned).collect();
+        assert_eq!(cells, ["copies/2", "0.5", "-", "-", "-", "-", "right", "+2.5e-1,", "0"]);
+    }
 }

@@ -98,10 +98,11 @@ pub enum Against {
 /// Distance of the mean from the expected one, linear radiance; if each channel is known, that of the worst channel.
 pub fn offset(level: &Level, against: Against) -> f64 {
     match against {
-        Against::Every(value) => (0..3)
-            .map(|channel| level.mean[channel] - value[channel])
-            .max_by(|a, b| a.abs().total_cmp(&b.abs()))
-            .unwrap_or(0.0),
+        Against::Every(value) => {
+            let [red, green, blue] = [0, 1, 2].map(|channel| level.mean[channel] - value[channel]);
+            let farther = |a: f64, b: f64| if a.abs().total_cmp(&b.abs()).is_le() { b } else { a };
+            farther(farther(red, green), blue)
+        }
         Against::Mean(value) => level.grey() - value,
         Against::Picture(paired) | Against::Estimate(paired) => paired.bias,
     }
@@ -194,6 +195,62 @@ mod tests {
         let estimate = |rms| Against::Estimate(Paired { bias: 0.0, bias_deviation: 1e-3, rms });
         assert!(judge(&noisy, estimate(0.07), 2e-6, 0).is_right());
         assert!(!judge(&noisy, estimate(0.1), 2e-6, 0).is_right());
+    }
+
+    #[test]
+    fn the_channel_that_is_farthest_off_counts() {
+        let every = Against::Every([0.5, 0.25, 0.75]);
+        for (mean, off) in [
+            ([0.75, 0.5, 0.625], 0.25),
+            ([0.375, 0.375, 1.0], 0.25),
+            ([0.375, -0.25, 0.875], -0.5),
+            ([-0.5, 0.25, 0.75], -1.0),
+            ([0.5, 0.25, 0.75], 0.0),
+        ] {
+            assert_eq!(offset(&Level { mean, ..Level::default() }, every), off, "{mean:?}");
+        }
+        for mean in [[f64::NAN, 0.25, 0.75], [0.5, f64::NAN, 0.75], [0.5, 0.25, f64::NAN]] {
+            assert!(offset(&Level { mean, ..Level::default() }, every).is_nan(), "{mean:?}");
+        }
+        let level = Level { mean: [0.25, 0.5, 1.5], ..Level::default() };
+        assert_eq!(offset(&level, Against::Mean(0.5)), 0.25);
+        let paired = Paired { bias: -0.125, bias_deviation: 1.0, rms: 2.0 };
+        assert_eq!(
+            [Against::Picture(paired), Against::Estimate(paired)].map(|a| offset(&level, a)),
+            [-0.125; 2]
+        );
+    }
+
+    /// A little within each limit and a little beyond it.
+    #[test]
+    fn limits_lie_where_they_should() {
+        let paired = |bias_deviation, bias, rms| Paired { bias, bias_deviation, rms };
+        let (picture, estimate) = (Against::Picture, Against::Estimate);
+        let noisy = level(1.0, 1e-3, 0.1);
+        let quiet = level(1.0, 0.0, 0.0);
+        for (level, within, beyond) in [
+            (quiet, Against::Every([1.0 - 0.99e-6; 3]), Against::Every([1.0 - 1.01e-6; 3])),
+            (noisy, Against::Mean(1.0039), Against::Mean(1.0041)),
+            (noisy, Against::Mean(0.9961), Against::Mean(0.9959)),
+            (noisy, picture(paired(1e-4, 3.9e-4, 0.0)), picture(paired(1e-4, 4.1e-4, 0.0))),
+            (noisy, estimate(paired(1e-4, -3.9e-4, 0.0)), estimate(paired(1e-4, -4.1e-4, 0.0))),
+            (noisy, picture(paired(0.0, 0.0, 0.049)), picture(paired(0.0, 0.0, 0.051))),
+            (noisy, estimate(paired(0.0, 0.0, 0.159)), estimate(paired(0.0, 0.0, 0.161))),
+            (quiet, picture(paired(0.0, 0.0, 0.99e-4)), picture(paired(0.0, 0.0, 1.01e-4))),
+            (quiet, estimate(paired(0.0, 0.0, 2.99e-4)), estimate(paired(0.0, 0.0, 3.01e-4))),
+        ] {
+            assert!(judge(&level, within, 1e-6, 0).is_right(), "{within:?}");
+            assert!(!judge(&level, beyond, 1e-6, 0).is_right(), "{beyond:?}");
+        }
+        for (seconds, tame, is_right) in
+            [(7.9, 1.0, true), (8.1, 1.0, false), (1.09, 0.1, true), (1.11, 0.1, false)]
+        {
+            assert_eq!(
+                judge_time(Verdict::Right, seconds, Some(tame)).is_right(),
+                is_right,
+                "{seconds} {tame}"
+            );
+        }
     }
 
     #[test]

@@ -6,6 +6,8 @@
 
 mod charts;
 mod common;
+mod compared;
+mod extremes;
 mod films;
 mod flags;
 mod kept;

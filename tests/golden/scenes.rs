@@ -11,7 +11,8 @@ use weekender::scene::builtin::BuiltinScene;
 use weekender::stages::Stage;
 use weekender::stress::{Form, cases};
 
-fn prepared<R: Real + std::fmt::Debug>(recipe: &Recipe) -> String {
+/// What is prepared of a picture: numbers as they are, lists as digests.
+pub fn prepared<R: Real + std::fmt::Debug>(recipe: &Recipe) -> String {
     let job = recipe.job().unwrap();
     let prepared = PreparedScene::<R>::new(&job);
     let mut text = String::new();

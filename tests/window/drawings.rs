@@ -8,22 +8,27 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use weekender::app::{Command, Show, SlotCommand, SlotNumber, Theme, Window};
 
-const SIZE: [f32; 2] = [1280.0, 800.0];
+pub const SIZE: [f32; 2] = [1280.0, 800.0];
 
 /// Runs a test of this file in a process that finds no graphics adapter, so that every machine draws the same.
 fn alone(test: &str, draw: impl FnOnce()) {
+    alone_in("drawings", test, draw);
+}
+
+/// The same for a test of another file.
+pub fn alone_in(file: &str, test: &str, draw: impl FnOnce()) {
     if std::env::var("WGPU_BACKEND").is_ok_and(|backend| backend == "noop") {
         return draw();
     }
     let mut again = std::process::Command::new(std::env::current_exe().unwrap());
-    again.args(["--exact", &format!("drawings::{test}"), "--nocapture"]).env("WGPU_BACKEND", "noop");
+    again.args(["--exact", &format!("{file}::{test}"), "--nocapture"]).env("WGPU_BACKEND", "noop");
     let output = again.output().unwrap();
     let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
     assert!(output.status.success() && out.contains("1 passed"), "{out}{err}");
 }
 
 /// A window with a finished picture, which does not depend on the processor.
-fn finished(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
+pub fn finished(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
     let arguments = format!("{arguments} --samples 4 --device cpu --isa portable --threads 1");
     let mut harness = open_sized(&arguments, size);
     until(&mut harness, "the end", |window| has_samples(4)(window) && window.status().phase.is_over());
@@ -32,20 +37,20 @@ fn finished(arguments: &str, size: [f32; 2]) -> Harness<'static, Window> {
 }
 
 /// The usual window, and what it draws.
-fn usual() -> (Harness<'static, Window>, Vec<String>) {
+pub fn usual() -> (Harness<'static, Window>, Vec<String>) {
     let harness = finished(SMALL, SIZE);
     let before = drawn(&harness);
     (harness, before)
 }
 
 /// Compares what has changed since `before`, after all movements have ended, with the kept text.
-fn keep(name: &str, before: &[String], harness: &mut Harness<'_, Window>) {
+pub fn keep(name: &str, before: &[String], harness: &mut Harness<'_, Window>) {
     harness.run_steps(60);
     check(&format!("drawn/{name}"), &change(before, &drawn(harness)));
 }
 
 /// Moves the pointer away.
-fn leave(harness: &mut Harness<'_, Window>) {
+pub fn leave(harness: &mut Harness<'_, Window>) {
     harness.event(egui::Event::PointerGone);
     harness.step();
 }

@@ -1,11 +1,11 @@
-//! What a window draws, as text: every shape with its place and its colours.
+//! What is drawn, as text: every shape with its place and its colours. The tests of single parts of the window in
+//! `src/app` use this file, too.
 
 use eframe::egui::{self, Color32, Rect, Shape, Stroke, TextureId};
 use egui_kittest::Harness;
-use weekender::app::Window;
 
 /// The shapes of the last frame, one a line. Texts that tell times are left out: they differ from run to run.
-pub fn drawn(harness: &Harness<'_, Window>) -> Vec<String> {
+pub fn drawn<State>(harness: &Harness<'_, State>) -> Vec<String> {
     let mut lines = Vec::new();
     for clipped in &harness.output().shapes {
         draw(&clipped.shape, clipped.clip_rect, &mut lines);
@@ -82,7 +82,7 @@ fn draw(shape: &Shape, clip: Rect, lines: &mut Vec<String>) {
         Shape::Mesh(mesh) => {
             let colours: String = mesh.vertices.iter().take(8).map(|vertex| filled(vertex.color)).collect();
             let kind = if mesh.texture_id == TextureId::default() { "triangles" } else { "picture" };
-            format!("{kind} {} of {} points{colours}", place(bounds), mesh.vertices.len())
+            format!("{kind} {} of {} points{colours}{}", place(bounds), mesh.vertices.len(), part(mesh))
         }
         Shape::Ellipse(_)
         | Shape::Band(_)
@@ -92,6 +92,18 @@ fn draw(shape: &Shape, clip: Rect, lines: &mut Vec<String>) {
     };
     let is_cut = !clip.contains_rect(bounds);
     lines.push(if is_cut { format!("{line} within {}", place(clip)) } else { line });
+}
+
+/// The part of its picture that a mesh shows, unless it is all of it.
+fn part(mesh: &egui::Mesh) -> String {
+    let points: Vec<egui::Pos2> = mesh.vertices.iter().map(|vertex| vertex.uv).collect();
+    let part = Rect::from_points(&points);
+    let is_whole = part == Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+    if is_whole || mesh.texture_id == TextureId::default() {
+        String::new()
+    } else {
+        format!(" part {part:.3}")
+    }
 }
 
 fn number(x: f32) -> String {

@@ -10,6 +10,8 @@ mod device;
 #[cfg(not(target_os = "macos"))]
 mod drawings;
 #[cfg(not(target_os = "macos"))]
+mod drawings_views;
+#[cfg(not(target_os = "macos"))]
 mod drawn;
 mod edits;
 mod extreme;

@@ -208,7 +208,10 @@ fn place_of(path: &Path) -> (Option<PathBuf>, String) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::tests::{Drawings, dressed, part};
     use crate::output::OutputFormat;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
 
     fn typed(purpose: Purpose, text: &str) -> Option<PathBuf> {
         PathBox::of(purpose, Path::new(text)).path()
@@ -288,5 +291,78 @@ mod tests {
             let [from, to] = ends.map(|end: usize| egui::text::CCursor::new(end));
             assert_eq!(selected, Some(egui::text::CCursorRange::two(from, to)), "{text}");
         }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn the_box_tells_what_will_happen_to_a_file() {
+        let mut drawings = Drawings::default();
+        for (name, purpose, text, about) in [
+            ("no such folder", Purpose::Save(OutputFormat::Png), "/not there/a.png", "4 samples per pixel"),
+            ("no name", Purpose::Save(OutputFormat::Exr), "", ""),
+            ("a file to open", Purpose::Open, "", ""),
+            ("a film that is not there", Purpose::ReferenceFilm, "/not there/a.exr", ""),
+            ("a new file", Purpose::SaveScene, "/not there.toml", ""),
+            ("a file", Purpose::Open, "/dev/null", ""),
+            ("a folder", Purpose::Open, "/", ""),
+        ] {
+            let mut path_box = PathBox::of(purpose, Path::new(text));
+            path_box.say(about.to_owned());
+            let browsed = Answers::default();
+            let mut dialog = part([500.0, 240.0], |ui| _ = path_box.ui(ui, &browsed));
+            drawings.add(name, &dialog);
+            drawings.add_tips(&mut dialog);
+        }
+        drawings.keep("path_box");
+    }
+
+    struct Asked {
+        path_box: PathBox,
+        browsed: Answers<(Purpose, Chosen)>,
+        named: Option<PathBuf>,
+        is_closed: bool,
+    }
+
+    fn asked(purpose: Purpose, path: &Path) -> Harness<'static, Asked> {
+        let draw = |ui: &mut Ui, asked: &mut Asked| match asked.path_box.ui(ui, &asked.browsed) {
+            Outcome::Named(_, path) => asked.named = Some(path),
+            Outcome::Close => asked.is_closed = true,
+            Outcome::Stay => {}
+        };
+        let (path_box, browsed) = (PathBox::of(purpose, path), Answers::default());
+        dressed([500.0, 240.0])
+            .build_ui_state(draw, Asked { path_box, browsed, named: None, is_closed: false })
+    }
+
+    #[test]
+    fn a_name_is_taken_by_enter_and_by_the_button() {
+        let directory = tempfile::tempdir().unwrap();
+        let (png, path) = (Purpose::Save(OutputFormat::Png), directory.path().join("a.png"));
+        let mut dialog = asked(png, &path);
+        dialog.key_press(Key::Enter);
+        dialog.run_steps(3);
+        assert_eq!(dialog.state().named.as_ref(), Some(&path));
+        let mut dialog = asked(png, &path);
+        dialog.get_by_label("File name").type_text("b");
+        dialog.run_steps(3);
+        dialog.get_by_label("Save").click();
+        dialog.run_steps(3);
+        assert_eq!(dialog.state().named, Some(directory.path().join("b.png")), "the name was selected");
+        std::fs::write(&path, "").unwrap();
+        let mut dialog = asked(png, &path);
+        dialog.get_by_label("Replace").click();
+        dialog.run_steps(3);
+        assert_eq!(dialog.state().named.as_ref(), Some(&path));
+        let mut dialog = asked(png, &directory.path().join("no/a.png"));
+        dialog.key_press(Key::Enter);
+        dialog.run_steps(3);
+        assert_eq!(dialog.state().named, None);
+        let before = dialog.state().path_box.text.clone();
+        dialog.get_by_label("File name").type_text("c");
+        dialog.run_steps(3);
+        assert_ne!(dialog.state().path_box.text, before, "the box still has the keyboard");
+        dialog.get_by_label("Cancel").click();
+        dialog.run_steps(3);
+        assert!(dialog.state().is_closed);
     }
 }

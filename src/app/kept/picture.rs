@@ -85,3 +85,55 @@ impl KeptPicture {
         self.held.truncate(HELD);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::document::Document;
+    use crate::app::model::origin::Origin;
+    use crate::film::{Film, PixelSum};
+    use crate::stages::Stage;
+    use std::time::{Duration, Instant};
+
+    /// A kept picture of this grey.
+    fn kept(value: u64) -> Arc<Kept> {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut film = Film::new(4, 2, 1);
+        film.halves_mut()[0].iter_mut().for_each(|sum| *sum = PixelSum([value << 16; 3]));
+        film.record(0..1, 0).unwrap();
+        Arc::new(Kept::new(document, film, Arc::default(), None))
+    }
+
+    /// Waits for a picture, and returns its grey.
+    fn grey(picture: &mut KeptPicture, kept: &Arc<Kept>, view: &View) -> u8 {
+        let (begin, context) = (Instant::now(), Context::default());
+        loop {
+            picture.follow(&context, kept, view);
+            let newest = picture.held.first();
+            if newest.is_some_and(|held| held.number == kept.number() && held.view.is_same(view)) {
+                let shown = picture.shown_mut(kept).unwrap();
+                assert_eq!((shown.samples, shown.divisor), (1, 1));
+                return shown.texture.colour([3, 1]).unwrap()[0];
+            }
+            assert!(begin.elapsed() < Duration::from_secs(60), "no picture");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn the_last_two_pictures_are_held() {
+        let (mut picture, [a, b, c]) = (KeptPicture::default(), [16, 64, 144].map(kept));
+        assert!(picture.shown(&a).is_none());
+        // Radiances 1/16, 1/4 and 9/16, whose roots are 1/4, 1/2 and 3/4.
+        assert_eq!(grey(&mut picture, &a, &View::Picture), 64);
+        assert_eq!(grey(&mut picture, &b, &View::Picture), 128);
+        assert!(picture.shown(&a).is_some() && picture.shown(&b).is_some());
+        picture.follow(&Context::default(), &a, &View::Picture);
+        assert_eq!(picture.held[0].number, a.number(), "it is at hand");
+        assert_eq!(picture.waiting.strong_count(), 0);
+        assert_eq!(grey(&mut picture, &c, &View::Picture), 192);
+        assert!(picture.shown(&a).is_some() && picture.shown(&b).is_none(), "the one looked at last stays");
+        assert_eq!(grey(&mut picture, &a, &View::Exposed(2.0)), 128, "twice as bright twice");
+        assert_eq!(picture.held.len(), 2);
+    }
+}

@@ -107,3 +107,46 @@ impl<'a> Subject<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::app::model::slots::{Slot, SlotNumber};
+    use crate::stages::Stage;
+    use std::sync::mpsc::channel;
+
+    #[test]
+    fn a_kept_film_takes_the_place_of_the_live_one() {
+        let (main, thread) = (Tracer::new().unwrap(), KeptThread::default());
+        let (live, mut view) = (Document::new(Origin::usual()), ViewState::default());
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut film = Film::new(4, 2, 1);
+        film.record(0..7, 0).unwrap();
+        let status = Status { run: 3, ..Status::default() };
+        let kept = Arc::new(Kept::new(document, film, Arc::new(status), Some(5.0)));
+        view.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept: Arc::clone(&kept) });
+        let is_live = |subject: &Subject<'_>| {
+            std::ptr::eq(subject.document(), &live)
+                && !subject.is_kept()
+                && subject.shared_film().is_none()
+                && (subject.film_id(), subject.status().run) == (FilmId::Live(0), 0)
+                && (subject.samples(), subject.shown_samples()) == (0, 0)
+                && subject.seconds_before() == Some(2.0)
+                && !subject.is_full()
+                && !subject.has_samples()
+        };
+        assert!(is_live(&Subject::new(&view, (&live, &main), Some(2.0), &thread)));
+        view.look(Some(SlotNumber::ALL[0]));
+        let subject = Subject::new(&view, (&live, &main), Some(2.0), &thread);
+        assert!(std::ptr::eq(subject.document(), &kept.document));
+        assert!(subject.is_kept() && subject.is_full() && subject.has_samples());
+        assert!(Arc::ptr_eq(&subject.shared_film().unwrap(), &kept.film));
+        assert_eq!((subject.film_id(), subject.status().run), (FilmId::Kept(kept.number()), 3));
+        assert_eq!((subject.samples(), subject.shown_samples(), subject.seconds_before()), (7, 7, Some(5.0)));
+        let (answer, answers) = channel();
+        subject.inspect(move |film| answer.send(film.sample_count()).unwrap());
+        assert_eq!(answers.recv().unwrap(), 7);
+        assert!(is_live(&subject.live()));
+    }
+}

@@ -188,4 +188,30 @@ mod tests {
         let changed = Device::Cpu.backend(&options, Some(4), None);
         assert_eq!(changed, BackendChoice::Cpu(CpuOptions { lanes: Some(4), ..cpu }));
     }
+
+    #[test]
+    fn each_device_takes_its_options() {
+        let cpu = CpuOptions { threads: Some(3), ..CpuOptions::default() };
+        let long = std::time::Duration::from_secs(9);
+        let gpu =
+            GpuOptions { adapter: Some("mine".to_owned()), dispatch_target: long, ..GpuOptions::default() };
+        let options = DeviceOptions::of(&BackendChoice::Both(cpu, gpu.clone()));
+        let BackendChoice::Both(found, found_gpu) = Device::Both.backend(&options, None, Some(2)) else {
+            panic!("another backend")
+        };
+        assert_eq!((found.threads, found.lanes, found.low_priority), (Some(2), None, true));
+        assert_eq!((found_gpu.adapter.as_deref(), found_gpu.allow_software), (Some("mine"), true));
+        assert_eq!(found_gpu.dispatch_target, INTERACTIVE_TARGET, "the window stays responsive");
+        let short = std::time::Duration::from_millis(1);
+        let options = DeviceOptions::of(&BackendChoice::Gpu(GpuOptions { dispatch_target: short, ..gpu }));
+        let BackendChoice::Gpu(found) = Device::Gpu.backend(&options, None, None) else { panic!("no GPU") };
+        assert_eq!(found.dispatch_target, short);
+        let options = DeviceOptions::of(&BackendChoice::Reference { threads: Some(5) });
+        let found = Device::Reference.backend(&options, None, None);
+        assert_eq!(found, BackendChoice::Reference { threads: Some(5) });
+        let usual = Device::Reference.backend(&DeviceOptions::default(), None, None);
+        let cores = core_count();
+        let threads = if cores > 2 { Some(cores - 1) } else { None };
+        assert_eq!(usual, BackendChoice::Reference { threads });
+    }
 }

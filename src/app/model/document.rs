@@ -211,4 +211,77 @@ mod tests {
         document.stop = Stop::at_samples(usual + 7);
         assert_eq!(document.recipe().samples_per_pixel, usual + 7);
     }
+
+    fn metal() -> Document {
+        Document::new(Origin::of_stage(Stage::find("metal").unwrap()))
+    }
+
+    /// The same document with a scene of its own, which is equal.
+    fn edited(document: &Document) -> Document {
+        let scene = CheckedScene::new(Arc::clone(document.checked.scene()), *document.rules());
+        Document { checked: Arc::new(scene), ..document.clone() }
+    }
+
+    #[test]
+    fn a_changed_scene_has_a_name_of_its_own() {
+        let names = |document: &Document| (document.title(), document.name());
+        let expected = |title: &str, name: &str| (title.to_owned(), name.to_owned());
+        assert_eq!(names(&metal()), expected("10.5 Mirrors", "metal"));
+        let changed = edited(&metal());
+        assert_eq!(names(&changed), expected("10.5 Mirrors (changed)", "metal-changed"));
+        let opened = Document::new(Origin::new(changed.recipe(), Source::File("a.toml".into())));
+        assert_eq!(names(&opened), expected("metal-changed", "metal-changed"));
+        assert_eq!(names(&edited(&opened)), expected("metal-changed (changed)", "metal-changed"));
+    }
+
+    #[test]
+    fn a_preview_is_smaller_and_has_no_error() {
+        let mut document = metal();
+        document.give_size([31, 18]);
+        let sizes = [1, 2, 4].map(|divisor| {
+            let settings = *document.job(divisor).unwrap().settings();
+            (settings.width, settings.height, settings.estimate_error)
+        });
+        assert_eq!(sizes, [(31, 18, true), (16, 9, false), (8, 5, false)]);
+        assert_eq!(document.job(0).unwrap(), document.job(1).unwrap());
+    }
+
+    #[test]
+    fn only_what_the_user_has_chosen_is_a_change() {
+        let usual = metal();
+        type Change = fn(&mut Document);
+        let changes: [(Change, bool); 6] = [
+            (|document| document.set_size([33, 22]), false),
+            (|document| document.stop = Stop::at_samples(9), false),
+            (|document| document.camera.vfov_degrees = 33.0, true),
+            (|document| document.settings.seed = 9, true),
+            (|document| document.give_size([480, 270]), true),
+            (|document| *document = edited(document), true),
+        ];
+        for (index, (change, is_change)) in changes.into_iter().enumerate() {
+            let mut document = usual.clone();
+            change(&mut document);
+            assert_eq!(document.is_changed(), is_change, "change {index}");
+            let size = document.size();
+            document.reset();
+            assert!(document == usual, "change {index}");
+            // A size that followed the viewport stays.
+            assert_eq!(document.size(), if index == 0 { size } else { usual.size() });
+        }
+    }
+
+    #[test]
+    fn equal_documents_share_what_is_equal() {
+        let (first, mut second) = (metal(), metal());
+        assert!(!second.has_same_film(&first));
+        second.share_with(&first);
+        assert!(second.has_same_film(&first) && !second.has_changed_scene());
+        let (first, mut second) = (edited(&first), edited(&metal()));
+        second.share_with(&first);
+        assert!(second.has_same_film(&first) && second.has_changed_scene());
+        let mut other = Document::new(Origin::of_stage(Stage::find("metal-fuzzy").unwrap()));
+        let before = other.clone();
+        other.share_with(&first);
+        assert!(other == before);
+    }
 }

@@ -172,4 +172,27 @@ mod tests {
         assert_eq!(kept.means().means.len(), 8);
         assert_eq!(kept.bytes(), 8 * 24 + 8 * 12, "three numbers of 4 bytes per pixel");
     }
+
+    #[test]
+    fn a_pixel_of_a_kept_picture_is_found_by_its_column_and_row() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let mut film = film(4, 2, 1);
+        film.halves_mut()[0].iter_mut().zip(1..).for_each(|(sum, value)| *sum = PixelSum([value << 16; 3]));
+        let kept = Kept::new(document, film, Arc::default(), None);
+        let unit = kept.mean([0, 0]).unwrap()[0];
+        let found = [[3, 0], [0, 1], [3, 1]].map(|at| (kept.mean(at).unwrap()[0] / unit).round());
+        assert_eq!(found, [4.0, 5.0, 8.0]);
+        assert_eq!([kept.mean([4, 0]), kept.mean([0, 2])], [None, None]);
+    }
+
+    #[test]
+    fn no_two_kept_pictures_have_the_same_name() {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let [first, second] =
+            [(); 2].map(|()| Kept::new(document.clone(), film(4, 2, 1), Arc::default(), None));
+        assert!(first.id != second.id && first.number() != second.number());
+        let number = second.number();
+        let renamed = second.with_id(first.id.clone());
+        assert_eq!((renamed.id, renamed.number), (first.id, number));
+    }
 }

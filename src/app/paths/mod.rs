@@ -188,4 +188,87 @@ mod tests {
             assert_eq!(paths.len(), if is_forgotten { 0 } else { 16 });
         }
     }
+
+    /// A small picture of a stage with the paths of one of its pixels.
+    pub(super) fn listed(stage: &str, pixel: [u32; 2]) -> (Document, Paths) {
+        let mut document = Document::new(Origin::of_stage(Stage::find(stage).unwrap()));
+        document.set_size([32, 18]);
+        let mut paths = Paths::default();
+        paths.list(&document, pixel, &egui::Context::default());
+        take(&mut paths);
+        (document, paths)
+    }
+
+    /// Waits for the paths that have been asked for.
+    pub(super) fn take(paths: &mut Paths) {
+        let listed = paths.answers.wait().unwrap();
+        paths.learn(listed);
+    }
+
+    #[test]
+    fn rays_are_gone_through_from_end_to_end() {
+        let (_, mut paths) = listed("metal", [16, 9]);
+        let [first, count] = paths.position().unwrap();
+        assert!(first == 1 && count > 1, "{count}");
+        let at = |paths: &Paths| paths.position().map(|[at, _]| at);
+        paths.step(false);
+        assert_eq!(at(&paths), Some(1), "there is none before");
+        for expected in (2..=count).chain([count]) {
+            paths.step(true);
+            assert_eq!(at(&paths), Some(expected));
+        }
+        paths.step(false);
+        assert_eq!(at(&paths), Some(count - 1));
+        paths.select(Some(3));
+        assert_eq!((paths.selected, at(&paths)), (Some(3), Some(1)), "another path begins at its first ray");
+        paths.step(true);
+        paths.select(Some(3));
+        assert_eq!(at(&paths), Some(2), "the same path goes on");
+        paths.select(None);
+        assert_eq!(paths.position(), None);
+        paths.step(true);
+        assert_eq!((paths.selected, at(&paths)), (Some(0), Some(1)));
+    }
+
+    #[test]
+    fn a_new_list_begins_with_its_first_path_and_the_same_pixel_keeps_its_choice() {
+        let (document, mut paths) = listed("metal", [16, 9]);
+        assert_eq!((paths.is_new, paths.selected, paths.len()), (true, Some(0), 16));
+        paths.is_new = false;
+        paths.select(Some(9));
+        paths.count = 4;
+        paths.list(&document, [16, 9], &egui::Context::default());
+        assert!(paths.is_waiting);
+        take(&mut paths);
+        assert_eq!((paths.is_new, paths.selected, paths.len()), (false, Some(3), 4), "as many as there are");
+        paths.list(&document, [5, 9], &egui::Context::default());
+        take(&mut paths);
+        assert_eq!((paths.is_new, paths.selected, paths.is_waiting), (true, Some(0), false));
+        paths.forget();
+        assert_eq!((paths.len(), paths.position()), (0, None));
+    }
+
+    #[test]
+    fn paths_are_listed_again_when_their_random_numbers_change() {
+        let (mut document, mut paths) = listed("metal", [16, 9]);
+        let context = egui::Context::default();
+        paths.follow(&document, &context);
+        document.camera.vfov_degrees += 1.0;
+        paths.follow(&document, &context);
+        assert!(!paths.is_waiting, "the camera has moved, but the paths are still those of the pixel");
+        document.settings.seed += 1;
+        paths.follow(&document, &context);
+        assert!(paths.is_waiting);
+        take(&mut paths);
+        let listed = paths.listed.as_ref().unwrap();
+        assert_eq!(listed.document.settings.seed, document.settings.seed);
+        assert_ne!(listed.document.camera, document.camera, "the camera is still the one of the pixel");
+        document.set_size([64, 36]);
+        paths.follow(&document, &context);
+        take(&mut paths);
+        assert_eq!(paths.listed.as_ref().map(|listed| listed.pixel), Some([33, 19]));
+        let before = paths.number;
+        paths.follow(&document, &context);
+        assert_eq!((paths.number, paths.is_waiting), (before, false), "nothing has changed");
+    }
 }

@@ -169,6 +169,8 @@ impl View<'_> {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
+    use crate::app::paths::tests::listed;
+    use crate::app::tests::{Drawings, part};
     use crate::explain::steps;
     use crate::render_cpu::record_path;
     use crate::stages::Stage;
@@ -236,5 +238,57 @@ mod tests {
         let [right, down] = [pos2(220.0, 200.0), pos2(200.0, 220.0)];
         assert!(has_arrows_to(&drawn(lobe(Some(DVec3::NEG_Y))), &[right, down]));
         assert!(has_arrows_to(&drawn(lobe(None)), &[right]));
+    }
+
+    #[test]
+    fn paths_are_drawn_with_their_numbers_and_what_the_next_ray_was_chosen_from() {
+        let rect = Rect::from_min_size(pos2(20.0, 10.0), vec2(640.0, 360.0));
+        let mut drawings = Drawings::default();
+        for id in ["diffuse", "lambertian-gamma", "metal-fuzzy", "glass-schlick"] {
+            let (document, mut paths) = listed(id, [16, 9]);
+            let mut draw = |name: &str, paths: &Paths, document: &Document| {
+                let picture = part([700.0, 400.0], |ui| paths.paint(document, ui, ui.painter(), rect));
+                drawings.add(&format!("{id}, {name}"), &picture);
+            };
+            draw("the first ray", &paths, &document);
+            paths.step(true);
+            draw("the second ray", &paths, &document);
+            let mut beside = document.clone();
+            beside.camera.look_from.x += 1.0;
+            draw("from beside", &paths, &beside);
+            paths.select(None);
+            draw("no path is chosen", &paths, &document);
+            paths.forget();
+            draw("none", &paths, &document);
+        }
+        drawings.keep("paths_in_the_picture");
+    }
+
+    #[test]
+    fn lines_end_where_the_camera_is() {
+        let view = View { camera: &CAMERA, aspect: 1.0, rect: RECT, is_from_eye: true };
+        let ahead = DVec3::new(1.0, 0.0, 0.0);
+        let whole = view.line(DVec3::ZERO, ahead).unwrap();
+        assert!(
+            whole[0].distance(MIDDLE) < 1e-3 && whole[1].distance(pos2(250.0, 200.0)) < 1e-3,
+            "{whole:?}"
+        );
+        let behind = DVec3::new(1.0, 0.0, 8.0);
+        for [a, b] in [[ahead, behind], [behind, ahead]] {
+            let [from, to] = view.line(a, b).unwrap();
+            let (seen, cut) = if a == ahead { (from, to) } else { (to, from) };
+            assert!((seen.x - whole[1].x).abs() < 1e-3, "{from} {to}");
+            // Near the camera the line is far to the right.
+            assert!(cut.x > 1e4 && cut.is_finite(), "{from} {to}");
+        }
+        assert_eq!(view.line(behind, behind + DVec3::Z), None);
+        let lone = Step {
+            origin: DVec3::ONE,
+            direction: DVec3::X,
+            throughput: DVec3::ONE,
+            hit: None,
+            event: Event::Sky,
+        };
+        assert_eq!(end_of(&lone), DVec3::new(3.0, 1.0, 1.0));
     }
 }

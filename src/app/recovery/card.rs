@@ -86,3 +86,142 @@ impl Card {
         choice
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::document::Document;
+    use crate::app::model::origin::Origin;
+    use crate::app::model::slots::SlotNumber;
+    use crate::app::recovery::{RecoveryFiles, write_film};
+    use crate::app::slot_files::Entry;
+    use crate::app::tests::{Drawings, dressed, leave, rest_at};
+    use crate::film::Film;
+    use crate::progressive::Status;
+    use crate::stages::Stage;
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT, Queryable};
+    use std::fs::{self, File};
+    use std::path::Path;
+    use std::time::{Duration, SystemTime};
+
+    /// A film, a film that is damaged beside a changed picture, and two kept pictures: what three windows left.
+    fn left_in(directory: &Path) -> Vec<Left> {
+        let make_old = |path: &Path, seconds: u64| {
+            let file = File::options().write(true).open(path).unwrap();
+            file.set_modified(SystemTime::now() - Duration::from_secs(seconds)).unwrap();
+        };
+        let files = [(); 3].map(|()| RecoveryFiles::claim(directory).unwrap());
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.give_size([4, 2]);
+        let mut film = Film::new(4, 2, 2);
+        film.record(0..3, 0).unwrap();
+        write_film(files[0].film(), &film, (&document, &Status::default()), Some(0.0)).unwrap();
+
+        fs::write(files[1].film(), "damaged").unwrap();
+        let session = serde_json::json!({ "title": "my picture", "is_changed": true });
+        files[1].write_note(&serde_json::from_value(session).unwrap()).unwrap();
+        make_old(files[1].film(), 130);
+        make_old(&files[1].film().with_extension("json"), 130);
+
+        let entries = [(3, "first"), (5, "second")].map(|(place, name)| Entry {
+            number: Some(SlotNumber::ALL[place]),
+            id: format!("{place}"),
+            name: name.to_owned(),
+            size: [4, 2],
+            samples: 3,
+            has_own_size: true,
+        });
+        files[2].slots().write_list(&entries).unwrap();
+        for entry in &entries {
+            fs::write(files[2].slots().film(&entry.id), "a film").unwrap();
+        }
+        make_old(&files[2].slots().path().join("slots.json"), 3 * 3600 + 60);
+        drop(files);
+        let mut left = Left::all_in(directory);
+        left[1].mark(Part::Film, "its file is damaged".to_owned());
+        left
+    }
+
+    struct Offered {
+        card: Card,
+        left: Vec<Left>,
+        is_busy: bool,
+        over: Rect,
+        choices: Vec<Choice>,
+    }
+
+    fn offered(left: Vec<Left>) -> Harness<'static, Offered> {
+        let over = Rect::from_min_max(egui::pos2(20.0, 30.0), egui::pos2(780.0, 890.0));
+        let state = Offered { card: Card::default(), left, is_busy: false, over, choices: Vec::new() };
+        let draw = |ui: &mut Ui, Offered { card, left, is_busy, over, choices }: &mut Offered| {
+            choices.extend(card.ui(ui, *over, left, *is_busy));
+        };
+        let mut harness = dressed([800.0, 900.0]).build_ui_state(draw, state);
+        harness.run_steps(2);
+        harness
+    }
+
+    #[test]
+    fn the_card_in_all_its_states() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut drawings = Drawings::default();
+        let mut harness = offered(left_in(directory.path()));
+        drawings.add("offered", &harness);
+        harness.get_by_label_contains("Discard: 2 kept").click();
+        harness.run_steps(2);
+        leave(&mut harness);
+        drawings.add("doubted", &harness);
+        harness.state_mut().is_busy = true;
+        harness.run_steps(2);
+        drawings.add("busy", &harness);
+        harness.state_mut().is_busy = false;
+        harness.state_mut().over = Rect::from_min_max(egui::pos2(20.0, 30.0), egui::pos2(220.0, 330.0));
+        harness.run_steps(3);
+        drawings.add("in a small viewport", &harness);
+        drawings.keep("recovered");
+    }
+
+    #[test]
+    fn each_part_is_opened_or_discarded_by_itself() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut harness = offered(left_in(directory.path()));
+        const NOTHING: [Choice; 0] = [];
+        let mut click = |name: &str| {
+            harness.get_by_label_contains(name).click();
+            harness.run_steps(2);
+            std::mem::take(&mut harness.state_mut().choices)
+        };
+        assert_eq!(click("Open 10.5"), [Choice::Open(0, Part::Film)]);
+        assert_eq!(click("Open A film"), NOTHING, "it is damaged");
+        assert_eq!(click("Open my picture"), [Choice::Open(1, Part::Picture)]);
+        assert_eq!(click("Open 2 kept pictures"), [Choice::Open(2, Part::Slots)]);
+        assert_eq!(click("Discard: A film"), NOTHING);
+        assert_eq!(click("Discard: my picture"), NOTHING, "another one");
+        assert_eq!(click("Discard: A film"), NOTHING);
+        assert_eq!(click("Discard for good: A film"), [Choice::Discard(1, Part::Film)]);
+        assert_eq!(click("Discard: A film"), NOTHING, "it is asked about anew");
+        assert_eq!(click("Close the recovered pictures"), [Choice::Later]);
+        assert_eq!(click("Discard: A film"), NOTHING, "whatever else is chosen ends the doubt");
+        harness.state_mut().is_busy = true;
+        harness.run_steps(2);
+        for name in ["Open my picture", "Discard: my picture"] {
+            assert!(harness.get_by_label(name).accesskit_node().is_disabled(), "{name}");
+        }
+    }
+
+    #[test]
+    fn the_files_are_named_in_the_tips() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut harness = offered(left_in(directory.path()));
+        let path = harness.state().left[1].path(Part::Picture).display().to_string();
+        for (button, tip) in [
+            ("Open my picture", format!("Show it in this window: {path}")),
+            ("Discard: my picture", format!("Delete {path}; asks once more")),
+        ] {
+            let at = harness.get_by_label(button).rect().center();
+            rest_at(&mut harness, at);
+            assert!(harness.query_by_label(&tip).is_some(), "{tip}");
+        }
+    }
+}

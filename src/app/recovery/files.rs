@@ -371,4 +371,26 @@ mod tests {
         let told = RecoveryFiles::claim(&directory.path().join("file/deeper")).unwrap_err();
         assert!(told.contains("file/deeper"), "{told}");
     }
+
+    #[test]
+    fn changes_and_kept_pictures_that_no_window_has_taken_are_not_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let at = directory.path();
+        let leave = |note: serde_json::Value, has_slots: bool| {
+            let files = RecoveryFiles::claim(at).unwrap();
+            files.write_note(&serde_json::from_value(note).unwrap()).unwrap();
+            if has_slots {
+                fs::create_dir(files.slots().path()).unwrap();
+                fs::write(files.slots().film("1"), "a film").unwrap();
+            }
+            files.leave_session().unwrap();
+        };
+        leave(serde_json::json!({ "title": "changed", "is_changed": true }), false);
+        leave(serde_json::json!({ "title": "keeping" }), true);
+        leave(serde_json::json!({ "title": "newest" }), false);
+        let mut left = RecoveryFiles::left_in(at);
+        left.sort_by_key(title);
+        let found: Vec<_> = left.iter().map(|files| (title(files), files.slots().exists())).collect();
+        assert_eq!(found, [("changed".to_owned(), false), ("keeping".to_owned(), true)]);
+    }
 }

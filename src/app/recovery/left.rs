@@ -211,8 +211,20 @@ mod tests {
 
     #[test]
     fn ages_are_short() {
-        let words = [59, 60, 3599, 7200, 3 * 86400].map(|seconds| ago(Duration::from_secs(seconds)));
-        assert_eq!(words, ["just now", "1 min ago", "59 min ago", "2 h ago", "3 days ago"]);
+        let (hour, day) = (3600, 86_400);
+        let words = [59, 60, hour - 1, hour, 2 * day - 1, 2 * day, 3 * day - 1, 3 * day]
+            .map(|seconds| ago(Duration::from_secs(seconds)));
+        let expected = [
+            "just now",
+            "1 min ago",
+            "59 min ago",
+            "1 h ago",
+            "47 h ago",
+            "2 days ago",
+            "2 days ago",
+            "3 days ago",
+        ];
+        assert_eq!(words, expected);
     }
 
     #[test]

@@ -1,18 +1,20 @@
 //! Tests of the files of kept pictures.
 
 use super::folder::{Entry, Folder, WriteFault};
+use super::keeper::{Keeper, News};
 use crate::app::model::checked::CheckedScene;
 use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::origin::{Origin, Source};
-use crate::app::model::slots::SlotNumber;
+use crate::app::model::slots::{Slot, SlotNumber, Slots};
 use crate::film::{Film, PixelSum};
 use crate::progressive::{Contribution, Status, Stop};
 use crate::recipe::{Recipe, file};
 use crate::render::BackendInfo;
 use crate::stages::Stage;
+use eframe::egui::Context;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 fn folder(directory: &tempfile::TempDir) -> Folder {
     Folder::of(directory.path(), "window-1-1")
@@ -78,6 +80,8 @@ fn all_of_a_kept_picture_comes_back_to_the_bit() {
         let kept = kept(document, halves);
         let bytes = folder.write(&kept, u64::MAX).unwrap();
         assert_same(&folder.read(&kept.id, &[]).unwrap(), &kept);
+        let opened = crate::saved::open(&folder.film(&kept.id)).unwrap();
+        assert_eq!(opened.recipe.samples_per_pixel, 7, "a recipe renders as many");
         assert_eq!(folder.bytes_of_all(), bytes);
         folder.delete(&kept.id);
         assert_eq!(folder.bytes_of_all(), 0);
@@ -235,4 +239,105 @@ fn a_full_disk_is_named_and_leaves_no_note() {
     let Err(WriteFault::Failed(reason)) = folder.write(&kept, u64::MAX) else { panic!("written") };
     assert!(reason.contains(&kept.id) && reason.contains("free some space"), "{reason}");
     assert!(!folder.note(&kept.id).exists());
+}
+
+const ONE: SlotNumber = SlotNumber::ALL[0];
+const TWO: SlotNumber = SlotNumber::ALL[1];
+
+/// Two slots in use.
+fn two_slots() -> Slots {
+    let mut slots = Slots::default();
+    for (number, id) in [(ONE, "metal"), (TWO, "sky")] {
+        slots.put(number, Slot { name: format!("my {id}"), kept: Arc::new(kept(of_stage(id), 2)) });
+    }
+    slots
+}
+
+/// The next news: the picture, whether it was written, and the words for the user.
+fn news(keeper: &Keeper) -> (Option<String>, bool, Option<String>) {
+    let begin = Instant::now();
+    loop {
+        match keeper.news() {
+            Some(News::Written(id)) => return (Some(id), true, None),
+            Some(News::NotWritten { id, words }) => return (id, false, words),
+            None => assert!(begin.elapsed() < Duration::from_secs(60), "no news"),
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn the_files_are_those_of_the_slots() {
+    let directory = tempfile::tempdir().unwrap();
+    let (folder, context) = (folder(&directory), Context::default());
+    let mut keeper = Keeper::new(folder.clone(), u64::MAX);
+    keeper.finish(&Slots::default());
+    keeper.follow(&context, &Slots::default());
+    assert!(!folder.path().exists(), "nothing is kept");
+    let mut slots = two_slots();
+    let [first, second] = [ONE, TWO].map(|number| slots.get(number).unwrap().clone());
+    keeper.follow(&context, &slots);
+    assert_eq!(news(&keeper), (Some(first.kept.id.clone()), true, None));
+    assert_eq!(news(&keeper), (Some(second.kept.id.clone()), true, None));
+    *slots.name_mut(ONE).unwrap() = "another name".to_owned();
+    slots.delete(TWO);
+    keeper.follow(&context, &slots);
+    keeper.finish(&slots);
+    assert_eq!(folder.entries(), (vec![Entry::of(ONE, slots.get(ONE).unwrap())], vec![]));
+    assert!(!folder.film(&second.kept.id).exists() && !folder.note(&second.kept.id).exists());
+    assert_same(&folder.read(&first.kept.id, &[]).unwrap(), &first.kept);
+
+    let mut keeper = Keeper::new(folder.clone(), u64::MAX);
+    keeper.follow(&context, &slots);
+    news(&keeper);
+    slots.delete(ONE);
+    keeper.finish(&slots);
+    assert!(!folder.path().exists(), "the last one was deleted");
+}
+
+#[test]
+fn a_picture_without_room_is_told_of_once_and_written_when_there_is_some() {
+    let directory = tempfile::tempdir().unwrap();
+    let (folder, context, mut slots) = (folder(&directory), Context::default(), two_slots());
+    let kept = [ONE, TWO].map(|number| Arc::clone(&slots.get(number).unwrap().kept));
+    let bytes = kept.each_ref().map(|kept| {
+        let bytes = folder.write(kept, u64::MAX).unwrap();
+        folder.delete(&kept.id);
+        bytes
+    });
+    // The list takes some bytes, too.
+    let mut keeper = Keeper::new(folder.clone(), bytes[0].max(bytes[1]) + 2000);
+    keeper.follow(&context, &slots);
+    assert!(news(&keeper).1);
+    let (id, is_written, words) = news(&keeper);
+    let words = words.unwrap();
+    assert_eq!((id.as_deref(), is_written), (Some(kept[1].id.as_str()), false));
+    let begin = "Slot 2 (my sky) will not come back in the next window: its film takes ";
+    assert!(words.starts_with(begin) && words.ends_with("or save this one as a film"), "{words}");
+    *slots.name_mut(ONE).unwrap() = "another name".to_owned();
+    keeper.follow(&context, &slots);
+    slots.delete(ONE);
+    keeper.follow(&context, &slots);
+    assert_eq!(news(&keeper), (Some(kept[1].id.clone()), true, None), "now there is room");
+    keeper.finish(&slots);
+    assert!(keeper.news().is_none());
+    assert_eq!(folder.entries().0.len(), 1);
+}
+
+#[test]
+fn that_nothing_can_be_written_is_told_of_once() {
+    let directory = tempfile::tempdir().unwrap();
+    let (folder, context, slots) = (folder(&directory), Context::default(), two_slots());
+    std::fs::write(folder.path(), "in the way").unwrap();
+    let mut keeper = Keeper::new(folder.clone(), u64::MAX);
+    keeper.follow(&context, &slots);
+    let (id, is_written, words) = news(&keeper);
+    assert_eq!((id, is_written), (Some(slots.get(ONE).unwrap().kept.id.clone()), false));
+    let begin = "Slot 1 (my metal) will not come back in the next window: cannot write to ";
+    assert!(words.as_ref().is_some_and(|words| words.starts_with(begin)), "{words:?}");
+    assert_eq!(news(&keeper), (Some(slots.get(TWO).unwrap().kept.id.clone()), false, None));
+    // It is tried once more at the end.
+    std::fs::remove_file(folder.path()).unwrap();
+    keeper.finish(&slots);
+    assert_eq!(folder.entries().0.len(), 2);
 }

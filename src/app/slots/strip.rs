@@ -282,3 +282,6 @@ fn memory_words(slot: &Slot, slots: &Slots) -> String {
         words(crate::app::model::slots::BYTES_LIMIT)
     )
 }
+
+#[cfg(test)]
+mod tests;

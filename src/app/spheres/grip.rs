@@ -196,6 +196,11 @@ mod tests {
             scene.add_sphere(scene.spheres[1].center + obstacle, 0.5, 0);
         }
         assert!(to_copy(&scene).distance(DVec3::Z) < 1e-12, "towards the eye");
+        let mut crowded = scene.clone();
+        crowded.add_sphere(scene.spheres[1].center + DVec3::Z, 0.5, 0);
+        assert!(to_copy(&crowded).distance(DVec3::NEG_Z) < 1e-12, "away from it");
+        crowded.add_sphere(scene.spheres[1].center - DVec3::Z, 0.5, 0);
+        assert!(to_copy(&crowded).distance(DVec3::Y) < 1e-12, "where nothing is free");
         // Nothing else is in sight of a narrow lens.
         let narrow = Camera { vfov_degrees: 1.0, ..Camera::BOOK };
         assert_eq!(super::to_copy(&scene, &narrow, 1.5, 1).normalize(), DVec3::Z);

@@ -239,4 +239,16 @@ mod tests {
         until(&mut window, &Context::default(), "why not", is_told);
         assert!(!window.document().has_changed_scene() && window.spheres.queue.is_empty());
     }
+
+    #[test]
+    fn the_spheres_are_gone_through_in_a_circle() {
+        let mut scene = Scene::default();
+        assert_eq!([None, Some(0)].map(|selected| neighbour(&scene, selected, true)), [None, None]);
+        for _ in 0..3 {
+            scene.add_sphere(glam::DVec3::ZERO, 1.0, 0);
+        }
+        let at = [None, Some(0), Some(1), Some(2), Some(9)];
+        assert_eq!(at.map(|selected| neighbour(&scene, selected, true)), [0, 1, 2, 0, 0].map(Some));
+        assert_eq!(at.map(|selected| neighbour(&scene, selected, false)), [2, 2, 0, 1, 8].map(Some));
+    }
 }

@@ -319,4 +319,29 @@ mod tests {
         }
         assert!((1..2000).contains(&most), "{most}");
     }
+
+    #[test]
+    fn a_camera_stops_as_far_from_a_surface_as_its_lens_is_wide() {
+        let mut recipe = Recipe::builtin("field:10").unwrap();
+        let scene = Arc::make_mut(&mut recipe.scene);
+        scene.spheres.truncate(1);
+        (scene.spheres[0].center, scene.spheres[0].radius) = (DVec3::new(0.0, 0.0, -5.0), 1.0);
+        let document = Document::new(Origin::new(recipe, Source::Builtin));
+        let camera =
+            Camera { look_from: DVec3::ZERO, look_at: DVec3::NEG_Z, focus_distance: None, ..Camera::BOOK };
+        for (lens, gap) in [(0.0, 0.001), (0.02, 0.02), (0.2, 0.05)] {
+            let defocus_angle_degrees = 2.0 * f64::atan(lens).to_degrees();
+            let before = Camera { defocus_angle_degrees, ..camera };
+            let by = DVec3::new(0.0, 0.0, -10.0);
+            let after = Camera { look_from: by, look_at: by + DVec3::NEG_Z, ..before };
+            let stopped = Surfaces::default().stop(&document, &before, &after, None);
+            assert!((stopped.look_from.z + 4.0 - gap).abs() < 1e-9, "{lens}: {}", stopped.look_from);
+            let ahead = stopped.look_at - stopped.look_from;
+            assert!(ahead.distance(DVec3::NEG_Z) < 1e-12, "{lens}: {ahead}");
+            let turned = Camera { look_at: DVec3::X, ..before };
+            assert_eq!(Surfaces::default().stop(&document, &before, &turned, None), turned, "it stays there");
+            let away = Camera { look_from: DVec3::Z, look_at: DVec3::ZERO, ..before };
+            assert_eq!(Surfaces::default().stop(&document, &before, &away, None), away, "nothing is there");
+        }
+    }
 }

@@ -147,4 +147,58 @@ mod tests {
         let towards = near.slide(close, close - 0.0005 * DVec3::Z, 0.01, None);
         assert!(towards.distance(close) < 1e-9, "it is not pushed away: {towards}");
     }
+
+    #[test]
+    fn a_move_ends_before_the_sphere_that_it_is_towards_and_slides_along_others() {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        scene.add_sphere(DVec3::new(0.0, 0.0, -5.0), 1.0, grey);
+        let near = Near { scene: &scene, tree: None };
+        let to = DVec3::new(0.5, 0.0, -8.0);
+        let slid = near.slide(DVec3::ZERO, to, 0.01, None);
+        let stopped = near.slide(DVec3::ZERO, to, 0.01, Some(DVec3::new(0.0, 0.0, -4.0)));
+        let reached = |at: DVec3| at.distance(DVec3::new(0.0, 0.0, -5.0));
+        assert!((reached(stopped) - 1.01).abs() < 1e-9 && (stopped.x / stopped.z + 0.0625).abs() < 1e-9);
+        assert!(slid.x > 1.5 * stopped.x && reached(slid) >= 1.01 - 1e-9, "{slid} {stopped}");
+        // A point on the surface counts as on it in spite of rounding, and one above it does not.
+        let target = |radius: f64| Some(DVec3::new(0.0, radius, -5.0));
+        assert_eq!(
+            near.slide(DVec3::ZERO, to, 0.0, target(1.0 + 5e-10)),
+            near.slide(DVec3::ZERO, to, 0.0, target(1.0))
+        );
+        for off in [1.0 + 2e-9, 1.1, 1.3] {
+            assert_eq!(near.slide(DVec3::ZERO, to, 0.0, target(off)), near.slide(DVec3::ZERO, to, 0.0, None));
+        }
+    }
+
+    #[test]
+    fn the_share_of_a_move_up_to_a_sphere() {
+        let share = |from: [f64; 3], by: [f64; 3]| share_to(DVec3::from(from), 2.0, DVec3::from(by));
+        assert_eq!(share([5.0, 0.0, 0.0], [-6.0, 0.0, 0.0]), Some(0.5));
+        assert_eq!(share([5.0, 0.0, 0.0], [-3.0, 0.0, 0.0]), Some(1.0), "just so far");
+        assert_eq!(share([5.0, 0.0, 0.0], [-2.9, 0.0, 0.0]), None, "not so far");
+        assert_eq!(share([5.0, 0.0, 0.0], [6.0, 0.0, 0.0]), None, "away from it");
+        assert_eq!(share([5.0, 2.5, 0.0], [-9.0, 0.0, 0.0]), None, "past it");
+        assert_eq!(share([0.0, 2.0, 0.0], [9.0, 0.0, 0.0]), None, "along it");
+        assert_eq!(share([0.0, 2.0, 0.0], [9.0, -1.0, 0.0]), Some(0.0), "into it");
+        assert_eq!(share([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]), Some(0.0), "from within");
+    }
+
+    #[test]
+    fn the_smallest_of_several_spheres_around_a_point_is_the_innermost() {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        for radius in [3.0, 1.0, 2.0] {
+            scene.add_sphere(DVec3::ZERO, radius, grey);
+        }
+        let near = Near { scene: &scene, tree: None };
+        let at = [0.0, 0.999, 1.0, 1.5, 2.5, 3.5].map(|x| near.innermost(DVec3::new(x, 0.0, 0.0)));
+        assert_eq!(at, [Some(1), Some(1), Some(2), Some(2), Some(0), None]);
+        let mut seen = Vec::new();
+        near.each(DVec3::new(4.0, 0.0, 0.0), 1.0, |index, _| seen.push(index));
+        assert_eq!(seen, [0], "the cube touches it");
+        seen.clear();
+        near.each(DVec3::new(4.0, 0.0, 0.0), 0.9, |index, _| seen.push(index));
+        assert!(seen.is_empty());
+    }
 }

@@ -175,6 +175,17 @@ mod tests {
     }
 
     #[test]
+    fn small_pictures_have_few_samples_and_the_pixels_of_the_screen() {
+        let of = |id, scale| {
+            let recipe = recipe(stage(id), scale);
+            assert!(!recipe.settings.estimate_error);
+            ([recipe.settings.width, recipe.settings.height], recipe.samples_per_pixel)
+        };
+        assert_eq!([of("book", 1), of("book", 3)], [([80, 45], 32), ([240, 135], 32)]);
+        assert_eq!([of("ppm-tiny", 1), of("ppm-tiny", 3)], [([16, 9], 1); 2]);
+    }
+
+    #[test]
     fn what_is_in_the_cache_is_not_rendered_again() {
         let directory = tempfile::tempdir().unwrap();
         let mut first = Maker::open(1).unwrap();

@@ -1,6 +1,6 @@
 //! Marks a part of the picture: drags of its edges, its inside and anew, and how it looks.
 
-use super::paint::badge;
+use super::badge::badge;
 use crate::app::command::Command;
 use crate::app::model::crop::Crop;
 use crate::app::theme;
@@ -184,7 +184,8 @@ pub(super) fn paint(ui: &Ui, painter: &Painter, rect: Rect, size: [u32; 2], crop
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::Shape;
+    use crate::app::tests::{Drawings, dressed};
+    use eframe::egui::{Event, Modifiers, Sense, Shape};
     use egui_kittest::Harness;
 
     const RECT: Rect = Rect { min: pos2(100.0, 50.0), max: pos2(420.0, 230.0) };
@@ -242,5 +243,104 @@ mod tests {
             _ => None,
         });
         assert!(seen.y_range().contains(top.unwrap()), "{top:?}");
+    }
+
+    #[test]
+    fn the_nearest_edge_within_reach_is_grabbed() {
+        let crop = Crop { first: [4, 3], size: [10, 6] };
+        // The part covers 140 to 240 points across and 80 to 140 points down.
+        for (at, expected) in [
+            (pos2(140.0 - GRIP + 0.5, 110.0), Drag::Edges(crop, [Some(13), None])),
+            (pos2(140.0 - GRIP - 0.5, 110.0), Drag::New([3, 6])),
+            (pos2(140.0 + GRIP + 0.5, 110.0), Drag::Move(crop, [4, 6])),
+            (pos2(240.0 + GRIP - 0.5, 110.0), Drag::Edges(crop, [Some(4), None])),
+            (pos2(240.0 + GRIP + 0.5, 110.0), Drag::New([14, 6])),
+            (pos2(190.0, 80.0 - GRIP + 0.5), Drag::Edges(crop, [None, Some(8)])),
+            (pos2(190.0, 80.0 - GRIP - 0.5), Drag::New([9, 2])),
+            (pos2(190.0, 140.0 + GRIP - 0.5), Drag::Edges(crop, [None, Some(3)])),
+        ] {
+            assert_eq!(drag_at(RECT, SIZE, Some(crop), at), expected, "{at}");
+        }
+        // Half as large, a part that is two pixels wide has both edges near.
+        let narrow = Crop { first: [8, 6], size: [2, 12] };
+        for (x, stays) in [(144.0, 9), (146.0, 8)] {
+            let found = drag_at(RECT, [64, 36], Some(narrow), pos2(x, 110.0));
+            assert_eq!(found, Drag::Edges(narrow, [Some(stays), None]), "{x}");
+        }
+    }
+
+    #[derive(Default)]
+    struct Picture {
+        cropping: Cropping,
+        crop: Option<Crop>,
+    }
+
+    fn picture(crop: Option<Crop>) -> Harness<'static, Picture> {
+        let draw = |ui: &mut Ui, Picture { cropping, crop }: &mut Picture| {
+            let response = ui.allocate_rect(RECT, Sense::click_and_drag());
+            cropping.handle(ui, &response, RECT, SIZE, crop);
+            paint(ui, ui.painter(), RECT, SIZE, *crop);
+        };
+        dressed([500.0, 300.0]).build_ui_state(draw, Picture { crop, ..Picture::default() })
+    }
+
+    fn drag(harness: &mut Harness<'_, Picture>, from: Pos2, to: Pos2, modifiers: Modifiers) {
+        let press = |pos, pressed| {
+            let button = PointerButton::Primary;
+            Event::PointerButton { pos, button, pressed, modifiers }
+        };
+        harness.event(Event::PointerMoved(from));
+        harness.event_modifiers(press(from, true), modifiers);
+        harness.event_modifiers(Event::PointerMoved(to), modifiers);
+        harness.run_steps(1);
+    }
+
+    #[test]
+    fn a_drag_marks_a_part_from_where_the_button_was_pressed() {
+        let mut harness = picture(None);
+        let mut drawings = Drawings::default();
+        drawings.add("no part", &harness);
+        drag(&mut harness, at(4, 3), at(13, 8), Modifiers::SHIFT);
+        assert_eq!(harness.state().crop, None, "Shift moves the picture");
+        harness = picture(None);
+        drag(&mut harness, at(4, 3), at(13, 8), Modifiers::NONE);
+        let marked = Crop { first: [4, 3], size: [10, 6] };
+        assert_eq!(harness.state().crop, Some(marked));
+        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Crosshair);
+        drawings.add("while it is marked", &harness);
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        harness.event(Event::PointerButton { pos: at(13, 8), button, pressed: false, modifiers });
+        harness.event(Event::PointerMoved(at(8, 5)));
+        harness.run_steps(1);
+        assert_eq!(harness.state().crop, Some(marked));
+        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Grab);
+        drag(&mut harness, at(8, 5), at(9, 5), Modifiers::NONE);
+        assert_eq!(harness.state().crop.map(|crop| crop.first), Some([5, 3]));
+        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Grabbing);
+        drawings.keep("crop_drag");
+    }
+
+    #[test]
+    fn a_part_is_what_is_left_of_it_in_a_smaller_picture() {
+        let mut harness = picture(Some(Crop { first: [30, 3], size: [10, 6] }));
+        harness.run_steps(1);
+        assert_eq!(harness.state().crop, Some(Crop { first: [30, 3], size: [2, 6] }));
+        harness.state_mut().crop = Some(Crop { first: [32, 3], size: [10, 6] });
+        harness.run_steps(1);
+        assert_eq!(harness.state().crop, None);
+    }
+
+    #[test]
+    fn what_is_not_marked_is_darker() {
+        let mut drawings = Drawings::default();
+        for (name, first, size) in [
+            ("in the middle", [4, 5], [10, 6]),
+            ("at the top", [4, 0], [10, 6]),
+            ("all of it", [0, 0], SIZE),
+            ("the last pixel", [31, 17], [1, 1]),
+        ] {
+            drawings.add(name, &picture(Some(Crop { first, size })));
+        }
+        drawings.keep("crop_parts");
     }
 }

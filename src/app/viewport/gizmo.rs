@@ -149,7 +149,13 @@ fn paint(ui: &Ui, middle: Pos2, mut ends: Vec<End>, hot: Option<Viewpoint>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eframe::egui::pos2;
+    use crate::app::model::document::Document;
+    use crate::app::model::origin::Origin;
+    use crate::app::surfaces::Surfaces;
+    use crate::app::tests::{Drawings, dressed, leave, rest_at};
+    use crate::stages::Stage;
+    use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
+    use egui_kittest::Harness;
 
     #[test]
     fn the_ends_lie_as_the_scene_is_seen() {
@@ -169,5 +175,116 @@ mod tests {
         assert_eq!(front(&found, pos2(101.0, 99.0)).map(|end| end.side), Some(Viewpoint::Front));
         assert_eq!(front(&found, pos2(100.0 - LENGTH, 100.0)).map(|end| end.side), Some(Viewpoint::Left));
         assert!(front(&found, pos2(115.0, 85.0)).is_none());
+        let top = pos2(100.0, 100.0 - LENGTH);
+        let near = |down: f32| front(&found, top - vec2(0.0, END + down)).map(|end| end.side);
+        assert_eq!((near(0.9), near(1.1)), (Some(Viewpoint::Top), None), "an end can be missed by a point");
+    }
+
+    struct Axes {
+        document: Document,
+        surfaces: Surfaces,
+        commands: Vec<Command>,
+        touch: Touch,
+        room: Rect,
+    }
+
+    fn axes(camera: Camera, room: Rect) -> Harness<'static, Axes> {
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.camera = camera;
+        let draw = |ui: &mut Ui, axes: &mut Axes| {
+            let mut camera = axes.document.camera;
+            let sight = Target { document: &axes.document, surfaces: &axes.surfaces, has_rays: true };
+            super::ui(ui, axes.room, (&mut camera, sight), &mut axes.commands, &mut axes.touch);
+            axes.document.camera = camera;
+        };
+        let (surfaces, touch) = (Surfaces::default(), Touch::default());
+        dressed([400.0, 300.0])
+            .build_ui_state(draw, Axes { document, surfaces, commands: Vec::new(), touch, room })
+    }
+
+    /// A camera that looks down at all axes.
+    const ABOVE: Camera = Camera {
+        look_from: glam::DVec3::new(3.0, 2.0, 4.0),
+        look_at: glam::DVec3::new(0.0, 0.0, -1.0),
+        ..Camera::BOOK
+    };
+
+    const ROOM: Rect = Rect { min: pos2(10.0, 10.0), max: pos2(390.0, 290.0) };
+
+    /// The middle of the axes in that room.
+    const MIDDLE: Pos2 = pos2(390.0 - MARGIN - LENGTH - END - 3.0, 290.0 - MARGIN - LENGTH - END - 3.0);
+
+    #[test]
+    fn the_axes_are_drawn_in_their_corner_and_turn_with_the_camera() {
+        let mut drawings = Drawings::default();
+        let behind = Camera { look_from: -ABOVE.look_from, ..ABOVE };
+        for (name, camera) in
+            [("from above", ABOVE), ("from behind", behind), ("along an axis", Camera::BOOK)]
+        {
+            drawings.add(name, &axes(camera, ROOM));
+        }
+        for (name, room) in [
+            ("just enough room", Rect::from_min_size(ROOM.min, LEAST_ROOM)),
+            ("too narrow", Rect::from_min_size(ROOM.min, LEAST_ROOM - vec2(0.5, 0.0))),
+            ("too low", Rect::from_min_size(ROOM.min, LEAST_ROOM - vec2(0.0, 0.5))),
+        ] {
+            drawings.add(name, &axes(ABOVE, room));
+        }
+        drawings.keep("axes");
+    }
+
+    #[test]
+    fn what_is_under_the_pointer_is_named_and_can_be_clicked() {
+        let mut harness = axes(ABOVE, ROOM);
+        let mut drawings = Drawings::default();
+        drawings.add("the pointer is elsewhere", &harness);
+        for end in ends(&ABOVE, MIDDLE) {
+            rest_at(&mut harness, end.at);
+            drawings.add(end.side.name(), &harness);
+            assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::PointingHand);
+            for pressed in [true, false] {
+                let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+                harness.event(Event::PointerButton { pos: end.at, button, pressed, modifiers });
+            }
+            harness.run_steps(2);
+            assert_eq!(std::mem::take(&mut harness.state_mut().commands), [Command::ViewFrom(end.side)]);
+        }
+        rest_at(&mut harness, MIDDLE + vec2(20.0, 14.0));
+        drawings.add("between the ends", &harness);
+        assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Grab);
+        rest_at(&mut harness, MIDDLE - vec2(0.0, LENGTH + END + 15.0));
+        drawings.add("beside the disc", &harness);
+        assert_ne!(harness.output().platform_output.cursor_icon, CursorIcon::Grab);
+        leave(&mut harness);
+        harness.key_press(Key::Tab);
+        harness.run_steps(3);
+        drawings.add("the keyboard is at the first end", &harness);
+        drawings.keep("axes_pointer");
+    }
+
+    #[test]
+    fn a_drag_orbits_about_what_is_looked_at() {
+        let mut harness = axes(ABOVE, ROOM);
+        for from in [MIDDLE, ends(&ABOVE, MIDDLE)[1].at] {
+            let axes = harness.state_mut();
+            (axes.touch, axes.document.camera) = (Touch::default(), ABOVE);
+            let button = |pos: Pos2, pressed| {
+                let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+                Event::PointerButton { pos, button, pressed, modifiers }
+            };
+            harness.event(Event::PointerMoved(from));
+            harness.event(button(from, true));
+            harness.event(Event::PointerMoved(from + vec2(20.0, 5.0)));
+            harness.run_steps(1);
+            assert_eq!(harness.output().platform_output.cursor_icon, CursorIcon::Grabbing);
+            harness.event(button(from + vec2(20.0, 5.0), false));
+            harness.run_steps(1);
+            let Axes { document, touch, .. } = harness.state();
+            let [right, down] = angles(vec2(20.0, 5.0));
+            let expected = navigation::orbit(&ABOVE, ABOVE.look_at, right, down);
+            assert!(document.camera.look_from.distance(expected.look_from) < 1e-9, "{:?}", document.camera);
+            assert_eq!((touch.is_move, touch.is_orbit, touch.pivot), (true, true, Some(ABOVE.look_at)));
+            assert!(harness.state().commands.is_empty(), "a drag is no click");
+        }
     }
 }

@@ -1,10 +1,16 @@
 //! The viewport: the picture, and mouse input on it.
 
+mod badge;
 mod crop;
+mod dropped;
 mod gizmo;
+mod legend;
+mod mark;
 mod moving;
+mod outline;
 mod paint;
 mod placement;
+mod point;
 mod selection;
 mod still;
 mod touch;
@@ -27,12 +33,15 @@ use super::spheres::grip::new_body;
 use super::surfaces::Surfaces;
 use crate::scene::Camera;
 use crop::Cropping;
+use dropped::paint_drop;
 use eframe::egui::{
     self, CursorIcon, PointerButton, Pos2, Rect, Response, RichText, Sense, Ui, WidgetInfo, pos2, vec2,
 };
+use mark::Mark;
 use moving::{Moving, Target};
-use paint::{Mark, paint, paint_drop};
-use selection::{Selection, place_at};
+use paint::paint;
+use point::place_at;
+use selection::Selection;
 use std::time::Instant;
 
 /// How close the pointer must be to the wipe's divider to grab it, in points.

@@ -1,7 +1,7 @@
 //! Moves the camera by drags and the wheel.
 
 use super::placement::Placement;
-use super::selection::{place_at, point_at};
+use super::point::{place_at, point_at};
 use super::touch::Touch;
 use crate::app::model::document::Document;
 use crate::app::navigation;
@@ -122,5 +122,179 @@ impl Moving {
         painter.circle_stroke(at, 6.0, Stroke::new(3.0, Color32::from_black_alpha(70)));
         painter.circle_stroke(at, 6.0, Stroke::new(1.25, Color32::from_white_alpha(150)));
         painter.circle_filled(at, 1.5, Color32::from_white_alpha(190));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::app::tests::{Drawings, dressed};
+    use crate::app::viewport::placement::Zoom;
+    use crate::stages::Stage;
+    use eframe::egui::{Event, Modifiers, MouseWheelSource, MouseWheelUnit, Sense, TouchPhase, pos2, vec2};
+    use egui_kittest::Harness;
+
+    const ROOM: Rect = Rect { min: pos2(10.0, 10.0), max: pos2(330.0, 190.0) };
+
+    /// Where the ball in the middle is seen.
+    const BALL: Pos2 = pos2(170.0, 100.0);
+
+    /// Where there is only sky.
+    const SKY: Pos2 = pos2(170.0, 20.0);
+
+    struct Picture {
+        document: Document,
+        surfaces: Surfaces,
+        placement: Placement,
+        moving: Moving,
+        touch: Touch,
+        has_rays: bool,
+    }
+
+    fn picture() -> Harness<'static, Picture> {
+        let draw = |ui: &mut Ui, picture: &mut Picture| {
+            let Picture { document, surfaces, placement, moving, touch, has_rays } = picture;
+            let response = ui.allocate_rect(ROOM, Sense::click_and_drag());
+            placement.place(ROOM, vec2(16.0, 9.0), 1.0);
+            let mut camera = document.camera;
+            let sight = Target { document, surfaces, has_rays: *has_rays };
+            moving.handle(ui, &response, placement, (&mut camera, sight), touch);
+            document.camera = camera;
+            moving.paint(ui, ROOM, placement.rect(), document);
+        };
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.set_size([16, 9]);
+        let picture = Picture {
+            document,
+            surfaces: Surfaces::default(),
+            placement: Placement::default(),
+            moving: Moving::default(),
+            touch: Touch::default(),
+            has_rays: true,
+        };
+        dressed([340.0, 200.0]).build_ui_state(draw, picture)
+    }
+
+    fn camera(harness: &Harness<'_, Picture>) -> Camera {
+        harness.state().document.camera
+    }
+
+    /// Drags by this many points. The button is still held.
+    fn drag(
+        harness: &mut Harness<'_, Picture>,
+        pos: Pos2,
+        by: Vec2,
+        button: PointerButton,
+        modifiers: Modifiers,
+    ) {
+        let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
+        harness.event(Event::PointerMoved(pos));
+        harness.event_modifiers(press(pos, true), modifiers);
+        harness.event_modifiers(Event::PointerMoved(pos + by), modifiers);
+        harness.run_steps(1);
+    }
+
+    fn same(a: &Camera, b: &Camera) -> bool {
+        a.look_from.distance(b.look_from) < 1e-9 && a.look_at.distance(b.look_at) < 1e-9 && a.vup == b.vup
+    }
+
+    #[test]
+    fn a_drag_orbits_about_what_was_under_the_pointer() {
+        let by = vec2(40.0, -15.0);
+        let [right, down] = angles(by);
+        assert!((right - 0.24).abs() < 1e-9 && (down + 0.09).abs() < 1e-9, "{right} {down}");
+        let mut drawings = Drawings::default();
+        for (name, at, has_rays, pivot) in [
+            ("the ball", BALL, true, Some(DVec3::new(0.0, 0.0, -0.7))),
+            ("the sky", SKY, true, None),
+            ("no rays", BALL, false, None),
+        ] {
+            let mut harness = picture();
+            harness.state_mut().has_rays = has_rays;
+            let before = camera(&harness);
+            let pivot = pivot.unwrap_or(before.look_at);
+            drag(&mut harness, at, by, PointerButton::Primary, Modifiers::NONE);
+            assert!(same(&camera(&harness), &navigation::orbit(&before, pivot, right, down)), "{name}");
+            let touch = &harness.state().touch;
+            assert!(touch.is_move && touch.is_orbit && touch.pivot.unwrap().distance(pivot) < 1e-9, "{name}");
+            drawings.add(name, &harness);
+            let released = Event::PointerButton {
+                pos: at + by,
+                button: PointerButton::Primary,
+                pressed: false,
+                modifiers: Modifiers::NONE,
+            };
+            harness.event(released);
+            harness.run_steps(2);
+            assert!(harness.state().moving.pivot.is_none());
+        }
+        drawings.keep("pivots");
+    }
+
+    #[test]
+    fn a_right_drag_turns_the_eye() {
+        let mut harness = picture();
+        let before = camera(&harness);
+        drag(&mut harness, BALL, vec2(40.0, -15.0), PointerButton::Secondary, Modifiers::NONE);
+        assert!(same(&camera(&harness), &navigation::look(&before, 0.24, 0.09)), "{:?}", camera(&harness));
+        let touch = &harness.state().touch;
+        assert_eq!((touch.is_move, touch.is_orbit, touch.pivot), (true, false, None));
+    }
+
+    #[test]
+    fn other_drags_move_the_picture_and_not_the_camera() {
+        for (button, modifiers) in
+            [(PointerButton::Middle, Modifiers::NONE), (PointerButton::Primary, Modifiers::SHIFT)]
+        {
+            let mut harness = picture();
+            let (eye, rect) = (camera(&harness), harness.state().placement.rect());
+            drag(&mut harness, BALL, vec2(40.0, -15.0), button, modifiers);
+            harness.run_steps(1);
+            assert_eq!(harness.state().placement.rect().min - rect.min, vec2(40.0, -15.0), "{button:?}");
+            assert!(camera(&harness) == eye && !harness.state().touch.is_move, "{button:?}");
+        }
+    }
+
+    #[test]
+    fn the_wheel_moves_towards_what_is_under_the_pointer() {
+        let modifiers = Modifiers::NONE;
+        for (at, has_rays, down) in
+            [(BALL, true, 5.0), (BALL, true, -5.0), (SKY, true, 5.0), (BALL, false, 5.0)]
+        {
+            let mut harness = picture();
+            harness.state_mut().has_rays = has_rays;
+            let before = camera(&harness);
+            let place = place_at(harness.state().placement.rect(), at);
+            let point = match (at == BALL, has_rays) {
+                (true, true) => DVec3::new(0.0, 0.0, -0.7),
+                (false, _) => navigation::at_depth(&before, place, 16.0 / 9.0),
+                (true, false) => before.look_at,
+            };
+            harness.event(Event::PointerMoved(at));
+            harness.run_steps(1);
+            assert!(!harness.state().touch.is_move);
+            let (unit, phase, source) = (MouseWheelUnit::Point, TouchPhase::Move, MouseWheelSource::Wheel);
+            harness.event(Event::MouseWheel { unit, delta: vec2(0.0, down), phase, source, modifiers });
+            harness.run_steps(2);
+            let expected = navigation::dolly(&before, point, f64::exp(-0.002 * f64::from(down)));
+            assert!(same(&camera(&harness), &expected), "{at} {down}: {:?}", camera(&harness));
+            let touch = &harness.state().touch;
+            assert!(touch.is_move && !touch.is_orbit && touch.pivot.unwrap().distance(point) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_pinch_zooms_the_picture_and_not_the_camera() {
+        let mut harness = picture();
+        let before = camera(&harness);
+        harness.event(Event::PointerMoved(SKY));
+        harness.event(Event::Zoom(1.5));
+        harness.run_steps(2);
+        assert_eq!(harness.state().placement.zoom(), Zoom::Times(30.0));
+        assert!(camera(&harness) == before && !harness.state().touch.is_move);
+        let rect = harness.state().placement.rect();
+        let place = place_at(rect, SKY);
+        assert!((place[0] - 0.5).abs() < 0.01 && (place[1] - 10.0 / 180.0).abs() < 0.01, "{rect} {place:?}");
     }
 }

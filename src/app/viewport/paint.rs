@@ -1,5 +1,7 @@
-//! Draws the viewport: the picture, the second picture, scales, markers and labels.
+//! Draws the viewport: the picture, the second picture and labels.
 
+use super::badge::badge;
+use super::legend::paint_scale;
 use super::placement::{Placement, Zoom};
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
@@ -10,24 +12,14 @@ use crate::app::paths::Paths;
 use crate::app::pixel_values::PixelValues;
 use crate::app::texture::Texture;
 use crate::app::theme;
-use crate::heat::{HeatScale, colour_at};
+use crate::heat::HeatScale;
 use crate::progressive::Phase;
-use eframe::egui::{
-    self, Align2, Color32, CornerRadius, FontId, Pos2, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2,
-    vec2,
-};
-use std::time::{Duration, Instant};
+use eframe::egui::{self, Align2, Color32, Rect, Stroke, TextStyle, TextureOptions, Ui, pos2, vec2};
 
 const WHOLE: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1.0, 1.0) };
 
 /// From this many screen pixels per pixel on, pixels are drawn as squares.
 const SQUARES: f32 = 8.0;
-
-/// The size of the letters for which the legend of a heat map was laid out, in points.
-const LEGEND_FONT: f32 = 11.0;
-
-/// How long a click's marker stays.
-const MARK: Duration = Duration::from_millis(1600);
 
 /// The pictures to draw.
 pub struct Pictures<'a> {
@@ -192,112 +184,14 @@ fn paint_wipe(
     badge(ui, painter, pos2(x + 14.0, y), Align2::LEFT_TOP, right, &font);
 }
 
-/// Draws the legend of a heat map.
-fn paint_scale(ui: &Ui, painter: &egui::Painter, rect: Rect, scale: &HeatScale) {
-    const STEPS: usize = 64;
-    let font = TextStyle::Small.resolve(ui.style());
-    // The legend is as large as its letters.
-    let large = font.size / LEGEND_FONT;
-    let row = font.size + 4.0 * large;
-    let plate = vec2(228.0 * large, 22.0 * large + 2.0 * row);
-    let plate = Rect::from_min_size(rect.left_bottom() + vec2(10.0, -plate.y - 10.0), plate);
-    painter.rect_filled(plate, CornerRadius::same(6), ui.visuals().panel_fill.gamma_multiply(0.9));
-    let weak = ui.visuals().weak_text_color();
-    painter.text(plate.min + vec2(24.0, 5.0) * large, Align2::LEFT_TOP, scale.title, font.clone(), weak);
-    let bar = Rect::from_min_size(
-        plate.min + vec2(24.0 * large, 6.0 * large + row),
-        vec2(plate.width() - 48.0 * large, 9.0 * large),
-    );
-    for step in 0..STEPS {
-        let [red, green, blue] = colour_at((step as f64 + 0.5) / STEPS as f64);
-        let left = bar.left() + bar.width() * step as f32 / STEPS as f32;
-        let size = vec2(bar.width() / STEPS as f32 + 0.5, bar.height());
-        painter.rect_filled(
-            Rect::from_min_size(pos2(left, bar.top()), size),
-            0.0,
-            Color32::from_rgb(red, green, blue),
-        );
-    }
-    for (value, name) in scale.marks() {
-        let at = pos2(bar.left() + bar.width() * scale.place(value) as f32, bar.bottom() + 2.0);
-        painter.text(at, Align2::CENTER_TOP, name, font.clone(), ui.visuals().text_color());
-    }
-}
-
-/// Shows what will happen to files dragged over the window.
-pub(super) fn paint_drop(ui: &Ui, room: Rect) {
-    let Some(files) = ui.input(|input| words_for_files(&input.raw.hovered_files)) else { return };
-    let painter =
-        ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop")));
-    painter.rect_filled(room, CornerRadius::ZERO, ui.visuals().panel_fill.gamma_multiply(0.8));
-    painter.rect_stroke(
-        room.shrink(12.0),
-        CornerRadius::same(8),
-        Stroke::new(2.0, theme::accent(ui)),
-        egui::StrokeKind::Inside,
-    );
-    let font = TextStyle::Heading.resolve(ui.style());
-    painter.text(room.center(), Align2::CENTER_CENTER, files, font, ui.visuals().strong_text_color());
-}
-
-fn words_for_files(files: &[egui::HoveredFile]) -> Option<String> {
-    let name = files.first()?.path.as_ref().and_then(|path| path.file_name());
-    Some(
-        name.map_or_else(
-            || "Drop to open".to_owned(),
-            |name| format!("Drop to open {}", name.to_string_lossy()),
-        ),
-    )
-}
-
-/// Text on a background plate, readable on any picture.
-pub(super) fn badge(ui: &Ui, painter: &egui::Painter, at: Pos2, anchor: Align2, text: &str, font: &FontId) {
-    let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), ui.visuals().strong_text_color());
-    let mut rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 6.0));
-    let clip = painter.clip_rect();
-    let (beyond_left, beyond_right) = (clip.left() + 4.0 - rect.left(), rect.right() + 4.0 - clip.right());
-    if beyond_left > 0.0 || beyond_right > 0.0 {
-        let along = if beyond_left > 0.0 { beyond_left } else { -beyond_right };
-        // One row lower, so that it does not cover its neighbour.
-        rect = rect.translate(vec2(along, rect.height() + 4.0));
-    }
-    painter.rect_filled(rect, CornerRadius::same(5), ui.visuals().panel_fill.gamma_multiply(0.9));
-    painter.galley(rect.min + vec2(7.0, 3.0), galley, ui.visuals().strong_text_color());
-}
-
-/// The result of a click, shown for a moment.
-pub(super) struct Mark {
-    /// Position in the picture, `0..=1` from the upper left.
-    pub place: [f64; 2],
-    /// The text beside the marker.
-    pub text: String,
-    /// The time of the click.
-    pub since: Instant,
-}
-
-impl Mark {
-    /// Draws the marker; returns false once its time is over.
-    pub fn paint(&self, ui: &Ui, room: Rect, rect: Rect) -> bool {
-        let age = self.since.elapsed();
-        if age > MARK {
-            return false;
-        }
-        let painter = &ui.painter().with_clip_rect(room);
-        let at = rect.min + vec2(self.place[0] as f32, self.place[1] as f32) * rect.size();
-        painter.circle_stroke(at, 9.0, Stroke::new(3.0, Color32::from_black_alpha(130)));
-        painter.circle_stroke(at, 9.0, Stroke::new(1.5, Color32::WHITE));
-        painter.circle_filled(at, 1.5, Color32::WHITE);
-        let font = TextStyle::Body.resolve(ui.style());
-        badge(ui, painter, at + vec2(14.0, 0.0), Align2::LEFT_CENTER, &self.text, &font);
-        ui.ctx().request_repaint_after(MARK - age);
-        true
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::view::With;
+    use crate::app::tests::{Drawings, facts_of, part};
+    use crate::progressive::Status;
     use egui_kittest::Harness;
+    use std::sync::Arc;
 
     #[test]
     fn each_side_of_a_wipe_has_its_own_title() {
@@ -327,19 +221,120 @@ mod tests {
     }
 
     #[test]
-    fn the_words_of_a_click_are_beside_it() {
-        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 200.0));
-        let click = pos2(200.0, 150.0);
-        let mark = Mark { place: [0.25, 0.5], text: "sky".to_owned(), since: Instant::now() };
-        let harness = Harness::builder().with_size([600.0, 300.0]).build_ui(|ui| {
-            mark.paint(ui, rect, rect);
-        });
-        let words = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
-            egui::Shape::Text(text) if text.galley.text() == "sky" => Some(text.visual_bounding_rect()),
-            _ => None,
-        });
-        let words = words.unwrap();
-        assert!(words.left() > click.x && words.left() < click.x + 40.0, "{words}");
-        assert!(words.y_range().contains(click.y), "{words}");
+    fn a_wipe_shows_the_other_picture_where_it_lies() {
+        let rect = Rect::from_min_size(pos2(50.0, 20.0), vec2(400.0, 200.0));
+        let titles = ["11.4 mine", "11.5 theirs, scaled"].map(str::to_owned);
+        let mut drawings = Drawings::default();
+        for (name, share, is_left, theirs) in [
+            ("at the right", 0.25, false, [40, 20]),
+            ("at the left", 0.25, true, [40, 20]),
+            ("a square", 0.5, false, [20, 20]),
+            ("a square behind its bars", 0.1, true, [20, 20]),
+            ("a column", 0.75, true, [10, 80]),
+            ("at the edge", 0.0, false, [40, 20]),
+            ("at the other edge", 1.0, true, [40, 20]),
+        ] {
+            let other = (egui::TextureId::User(1), is_left, Fitted::new(theirs, [40, 20]));
+            let picture = part([500.0, 240.0], |ui| {
+                let painter = ui.painter().with_clip_rect(rect.expand(10.0));
+                paint_wipe(ui, &painter, rect, share, other, &titles);
+            });
+            drawings.add(name, &picture);
+        }
+        drawings.keep("wipes");
+    }
+
+    #[test]
+    fn all_around_the_picture_is_filled() {
+        let room = Rect::from_min_max(pos2(10.0, 10.0), pos2(210.0, 110.0));
+        let mut drawings = Drawings::default();
+        for hole in [
+            Rect::from_min_max(pos2(50.0, 30.0), pos2(150.0, 90.0)),
+            room,
+            Rect::from_min_max(pos2(10.0, 30.0), pos2(210.0, 90.0)),
+            Rect::NOTHING,
+        ] {
+            let picture =
+                part([220.0, 120.0], |ui| fill_around(ui.painter(), room, hole, Color32::from_rgb(1, 2, 3)));
+            drawings.add(&format!("{hole}"), &picture);
+        }
+        drawings.keep("around_the_picture");
+    }
+
+    /// Draws a picture of 8x5 pixels, of which there may be only a preview or nothing, with all that lies over it.
+    fn with_picture(
+        facts: &Facts,
+        placement: &mut Placement,
+        (divisor, has_film): (u32, bool),
+        look: impl FnOnce(&Harness<'_>),
+    ) {
+        let room = Rect::from_min_max(pos2(20.0, 10.0), pos2(420.0, 290.0));
+        let rect = placement.place(room.shrink(10.0), vec2(8.0, 5.0), 1.0);
+        let (mut texture, values) = (Texture::new([8, 5], &[127; 120], None), PixelValues::default());
+        look(&part([440.0, 300.0], |ui| {
+            let main = has_film.then_some((&mut texture, divisor));
+            let notices = ["one", "two"].map(str::to_owned).to_vec();
+            let pictures = Pictures { main, has_film, second: None, paths: None, values: &values, notices };
+            paint(ui, [room, rect], placement, 0.5, pictures, facts.document(), facts);
+        }));
+    }
+
+    #[test]
+    fn what_lies_over_the_picture_tells_its_state() {
+        let mut drawings = Drawings::default();
+        let mut facts = facts_of("--stage normals --size 8x5");
+        let mut placement = Placement::default();
+        let mut draw = |name: &str, facts: &Facts, placement: &mut Placement, of: (u32, bool)| {
+            with_picture(facts, placement, of, |picture| drawings.add(name, picture));
+        };
+        draw("a picture", &facts, &mut placement, (1, true));
+        draw("a preview", &facts, &mut placement, (4, true));
+        draw("nothing yet", &facts, &mut placement, (1, false));
+        facts.status = Arc::new(Status { phase: Phase::Failed("no device".to_owned()), ..Status::default() });
+        draw("a failure", &facts, &mut placement, (1, false));
+        facts.invalid = Some("no picture has no pixels".to_owned());
+        draw("an invalid picture", &facts, &mut placement, (1, false));
+        for show in [Show::Error, Show::Luminance, Show::Normals] {
+            facts.model.view.choose(show);
+            draw(show.name(), &facts, &mut placement, (1, true));
+        }
+        facts.model.view.tone.expose(1.5);
+        draw("normals have no exposure", &facts, &mut placement, (1, true));
+        facts.model.view.choose(Show::Picture);
+        draw("a brighter picture", &facts, &mut placement, (1, true));
+        facts.model.view.toggle(Mode::Wipe, With::Stage);
+        draw("a wipe without its other side", &facts, &mut placement, (1, true));
+        facts.model.view.toggle(Mode::Difference, With::Stage);
+        draw("a difference", &facts, &mut placement, (1, true));
+        placement.zoom_by(0.3);
+        draw("a smaller picture", &facts, &mut placement, (1, true));
+        placement.zoom_by(10.0);
+        draw("a larger picture", &facts, &mut placement, (1, true));
+        drawings.keep("over_the_picture");
+    }
+
+    #[test]
+    fn pixels_are_squares_where_each_is_one_of_the_screens_and_where_they_are_large() {
+        let facts = facts_of("--stage normals --size 8x5");
+        for (times, divisor, is_square) in [
+            (1.0, 1, true),
+            (1.01, 1, false),
+            (7.9, 1, false),
+            (8.0, 1, true),
+            (20.0, 1, true),
+            (20.0, 2, false),
+        ] {
+            let mut placement = Placement::default();
+            placement.actual_size();
+            placement.zoom_by(times);
+            with_picture(&facts, &mut placement, (divisor, true), |picture| {
+                let textures = picture.ctx.tex_manager();
+                let textures = textures.read();
+                let (_, texture) =
+                    textures.allocated().find(|(_, texture)| texture.name == "picture").unwrap();
+                let expected = if is_square { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
+                assert_eq!(texture.options, expected, "{times} {divisor}");
+            });
+        }
     }
 }

@@ -281,4 +281,62 @@ mod tests {
         let rect = placement.place(ROOM, SIZE, 2.0);
         assert_eq!((rect.center(), rect.size()), (ROOM.center(), vec2(160.0, 90.0)));
     }
+
+    #[test]
+    fn a_zoom_has_its_limits() {
+        let mut placement = placed();
+        placement.zoom_by(1e6);
+        assert_eq!(placement.zoom(), Zoom::Times(128.0));
+        placement.zoom_by(1e-9);
+        assert_eq!(placement.zoom(), Zoom::Times(0.05));
+        placement.zoom_at(ROOM.center(), 1e9);
+        assert_eq!(placement.zoom(), Zoom::Times(128.0));
+        for (times, limited) in [(1e3, 128.0), (3.0, 3.0), (1e-3, 0.05)] {
+            placement.show_as(Framing { times, middle: [0.5, 0.5], size: [320, 180] });
+            placement.place(ROOM, SIZE, 1.0);
+            assert_eq!(placement.times(), limited);
+        }
+    }
+
+    #[test]
+    fn what_another_window_shows_is_told_in_shares() {
+        let mut placement = placed();
+        placement.actual_size();
+        placement.place(ROOM, SIZE, 1.0);
+        placement.pan_by(vec2(80.0, -45.0));
+        placement.place(ROOM, SIZE, 1.0);
+        let framing = placement.framing([320, 180]).unwrap();
+        assert_eq!((framing.times, framing.middle, framing.size), (1.0, [0.25, 0.75], [320, 180]));
+        placement.fit();
+        placement.place(ROOM, SIZE, 1.0);
+        assert_eq!(placement.framing([320, 180]), None);
+        assert_eq!(placement.rect(), placed().rect(), "a whole picture is in the middle");
+        placement.show_part([0.0, 0.0, 0.5, 0.5]);
+        assert_eq!(placement.framing([320, 180]), None);
+    }
+
+    #[test]
+    fn points_count_in_pixels_of_the_screen() {
+        for (scale, times) in [(1.0, 2.5), (1.5, 3.75), (2.0, 5.0)] {
+            let mut placement = Placement::default();
+            let rect = placement.place(ROOM, SIZE, scale);
+            assert!((rect.size() - vec2(800.0, 450.0)).length() < 1e-3, "{scale}: {rect}");
+            assert!((placement.times() - times).abs() < 1e-5, "{scale}");
+            placement.show_part([0.5, 0.5, 1.0, 1.0]);
+            let rect = placement.place(ROOM, SIZE, scale);
+            assert!((rect.size() - vec2(1600.0, 900.0)).length() < 1e-3, "{scale}: {rect}");
+            assert!((placement.times() - 2.0 * times).abs() < 1e-5, "{scale}");
+            assert!(rect.lerp_inside(vec2(0.75, 0.75)).distance(ROOM.center()) < 1.0, "{scale}: {rect}");
+        }
+        // A picture that is less than a pixel and a half smaller than the room is not enlarged.
+        for (width, is_exact) in [(799.0, true), (798.6, true), (798.0, false), (800.5, false)] {
+            let mut placement = Placement::default();
+            placement.place(ROOM, vec2(width, 10.0), 1.0);
+            assert_eq!(placement.times() == 1.0, is_exact, "{width}");
+        }
+        assert_eq!(whole_pixels(ROOM, 1.0), [800, 600]);
+        let odd = Rect::from_min_size(ROOM.min, vec2(99.996, 50.5));
+        assert_eq!((whole_pixels(odd, 1.0), whole_pixels(odd, 2.0)), ([100, 50], [200, 101]));
+        assert_eq!(whole_pixels(Rect::NOTHING, 1.0), [0, 0]);
+    }
 }

@@ -1,17 +1,18 @@
 //! The selected sphere in the picture: its outline, its handle, and drags of either.
 
-use super::paint::badge;
+use super::badge::badge;
+use super::outline::paint_outline;
+use super::point::{place_at, point_at};
 use crate::app::model::document::Document;
 use crate::app::model::edit::{Body, Edit};
 use crate::app::spheres::grip::{Grip, Held};
-use crate::app::spheres::silhouette::{Outline, OutlinePoint};
+use crate::app::spheres::silhouette::Outline;
 use crate::app::spheres::{LARGE, Selected};
 use crate::app::theme;
 use crate::app::widgets::compact;
 use crate::scene::{Camera, Scene};
 use eframe::egui::{
-    Align2, Color32, CursorIcon, Painter, PointerButton, Pos2, Rect, Response, Shape, Stroke, TextStyle, Ui,
-    Vec2, pos2, vec2,
+    Align2, Color32, CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, TextStyle, Ui, pos2, vec2,
 };
 
 /// How close the pointer must be to the handle to grab it, in points.
@@ -204,61 +205,175 @@ fn cursor(grip: Grip, is_held: bool) -> CursorIcon {
     }
 }
 
-/// The position in the picture of a point of the screen, 0 to 1 from the upper left.
-pub(super) fn place_at(rect: Rect, at: Pos2) -> [f64; 2] {
-    let along = (at - rect.min) / rect.size();
-    [f64::from(along.x), f64::from(along.y)]
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::app::tests::{Drawings, dressed, leave};
+    use crate::scene::Material;
+    use crate::stages::Stage;
+    use eframe::egui::{Event, Modifiers, Sense};
+    use egui_kittest::Harness;
+    use glam::DVec3;
 
-pub(super) fn point_at(rect: Rect, place: [f64; 2]) -> Pos2 {
-    rect.min + Vec2::new(place[0] as f32, place[1] as f32) * rect.size()
-}
+    const RECT: Rect = Rect { min: pos2(20.0, 10.0), max: pos2(340.0, 190.0) };
 
-/// Draws what is visible as a line, and what is hidden as dashes.
-fn paint_outline(points: &[OutlinePoint], painter: &Painter, rect: Rect) {
-    // Points far outside are left out: their lines would not be seen, and their coordinates have no precision.
-    let near = |place: &[f64; 2]| place.iter().all(|along| along.abs() < 30.0);
-    let at = |point: &OutlinePoint| point.place.filter(near).map(|place| point_at(rect, place));
-    let Some(last) = points.last() else { return };
-    let mut before = last;
-    let (mut lines, mut dashes) = (Vec::new(), Vec::new());
-    for point in points {
-        if let (Some(from), Some(to)) = (at(before), at(point)) {
-            let runs = if before.is_visible && point.is_visible { &mut lines } else { &mut dashes };
-            join(runs, from, to);
-        }
-        before = point;
+    struct Picture {
+        document: Document,
+        selected: Option<Selected>,
+        selection: Selection,
+        is_held: bool,
+        edits: Vec<Edit>,
+        cursor: CursorIcon,
     }
-    close(&mut lines);
-    let [shade, light] = [Color32::from_black_alpha(150), Color32::WHITE];
-    for (width, colour) in [(4.0, shade), (1.75, light)] {
-        for run in &lines {
-            painter.add(Shape::line(run.clone(), Stroke::new(width, colour)));
-        }
-    }
-    for (width, colour) in [(2.5, shade.gamma_multiply(0.7)), (1.25, light.gamma_multiply(0.7))] {
-        for run in &dashes {
-            painter.extend(Shape::dashed_line(run, Stroke::new(width, colour), 4.0, 5.0));
-        }
-    }
-}
 
-/// Adds a segment to the last run if it goes on from there.
-fn join(runs: &mut Vec<Vec<Pos2>>, from: Pos2, to: Pos2) {
-    match runs.last_mut().filter(|run| run.last() == Some(&from)) {
-        Some(run) => run.push(to),
-        None => runs.push(vec![from, to]),
+    /// A picture of a stage in which a sphere is selected.
+    fn picture(stage: &str, sphere: usize) -> Harness<'static, Picture> {
+        let document = Document::new(Origin::of_stage(Stage::find(stage).unwrap()));
+        let selected = selected(&document, sphere);
+        let draw = |ui: &mut Ui, picture: &mut Picture| {
+            let Picture { document, selected, selection, is_held, edits, cursor } = picture;
+            let response = ui.allocate_rect(RECT, Sense::click_and_drag());
+            let (held, edit) = selection.handle(ui, &response, RECT, selected.as_ref(), document);
+            *is_held = held;
+            edits.extend(edit);
+            selection.paint(ui, RECT, RECT, selected.as_ref());
+            *cursor = ui.ctx().output(|output| output.cursor_icon);
+        };
+        let picture = Picture {
+            document,
+            selected: Some(selected),
+            selection: Selection::default(),
+            is_held: false,
+            edits: Vec::new(),
+            cursor: CursorIcon::Default,
+        };
+        dressed([360.0, 200.0]).build_ui_state(draw, picture)
     }
-}
 
-/// Joins the last run with the first if it ends where that one begins.
-fn close(runs: &mut Vec<Vec<Pos2>>) {
-    let Some(last) = runs.pop() else { return };
-    match runs.first_mut().filter(|first| first.first() == last.last()) {
-        Some(first) => {
-            let rest = std::mem::replace(first, last);
-            first.extend(rest.into_iter().skip(1));
+    fn selected(document: &Document, sphere: usize) -> Selected {
+        let body = Body::of(document.scene(), sphere).unwrap();
+        let count = document.scene().spheres.len();
+        Selected { sphere, body, material: "a material".to_owned(), count }
+    }
+
+    fn at(harness: &mut Harness<'_, Picture>, pos: Pos2) {
+        harness.event(Event::PointerMoved(pos));
+        harness.run_steps(1);
+    }
+
+    fn button(harness: &mut Harness<'_, Picture>, pos: Pos2, pressed: bool, modifiers: Modifiers) {
+        let button = PointerButton::Primary;
+        harness.event(Event::PointerMoved(pos));
+        harness.event_modifiers(Event::PointerButton { pos, button, pressed, modifiers }, modifiers);
+        harness.run_steps(1);
+    }
+
+    /// Where the handle of the selected sphere is on the screen.
+    fn handle(harness: &Harness<'_, Picture>) -> Pos2 {
+        harness.state().selection.handle_at(RECT).unwrap().0
+    }
+
+    #[test]
+    fn spheres_are_outlined_and_named() {
+        let mut drawings = Drawings::default();
+        for stage in ["metal", "hollow-glass", "view-close"] {
+            let count = picture(stage, 0).state().selected.as_ref().map_or(0, |selected| selected.count);
+            for sphere in 0..count {
+                drawings.add(&format!("{stage} {sphere}"), &picture(stage, sphere));
+            }
         }
-        None => runs.push(last),
+        let mut harness = picture("metal", 1);
+        for (name, center, radius) in [
+            ("behind another", DVec3::new(0.0, 0.0, -4.0), 1.5),
+            ("behind the eye", DVec3::new(0.0, 0.0, 3.0), 0.5),
+            ("tiny", DVec3::new(0.5, 0.5, -1.0), 0.01),
+            ("all around the eye", DVec3::ZERO, 2.0),
+            ("far to the left", DVec3::new(-3.5, 0.0, -1.0), 0.5),
+            ("above", DVec3::new(0.0, 1.2, -1.0), 0.4),
+        ] {
+            let picture = harness.state_mut();
+            let material = Material::Lambertian { albedo: DVec3::splat(0.5) };
+            picture.selected.as_mut().unwrap().body = Body { center, radius, material };
+            harness.run_steps(2);
+            drawings.add(name, &harness);
+        }
+        harness.state_mut().selected = None;
+        harness.run_steps(2);
+        drawings.add("none", &harness);
+        assert!(harness.state().selection.drawn.is_none());
+        drawings.keep("selections");
+    }
+
+    #[test]
+    fn the_pointer_shows_what_a_drag_would_do() {
+        let mut harness = picture("metal", 1);
+        let mut drawings = Drawings::default();
+        drawings.add("the pointer is elsewhere", &harness);
+        let (middle, handle) = (RECT.center(), handle(&harness));
+        at(&mut harness, middle);
+        assert_eq!(harness.state().cursor, CursorIcon::Grab);
+        at(&mut harness, handle + vec2(GRIP - 0.5, 0.0));
+        assert_eq!(harness.state().cursor, CursorIcon::ResizeHorizontal);
+        drawings.add("at the handle", &harness);
+        at(&mut harness, RECT.left_top() + vec2(5.0, 5.0));
+        assert_eq!(harness.state().cursor, CursorIcon::Default, "the sky");
+        assert!(!harness.state().is_held && harness.state().edits.is_empty());
+        drawings.keep("selection_pointer");
+    }
+
+    #[test]
+    fn drags_move_and_resize_the_sphere() {
+        let mut drawings = Drawings::default();
+        for (name, from_handle, modifiers, cursor) in [
+            ("its centre", false, Modifiers::NONE, CursorIcon::Grabbing),
+            ("level", false, Modifiers::COMMAND, CursorIcon::Move),
+            ("its radius", true, Modifiers::NONE, CursorIcon::ResizeHorizontal),
+        ] {
+            let mut harness = picture("metal", 1);
+            let before = harness.state().selected.clone().unwrap().body;
+            // From above, where a level drag leads somewhere.
+            harness.state_mut().document.camera.look_from.y = 0.5;
+            harness.run_steps(1);
+            let from = if from_handle { handle(&harness) } else { RECT.center() };
+            let to = from + vec2(16.0, 0.0);
+            button(&mut harness, from, true, modifiers);
+            harness.event_modifiers(Event::PointerMoved(to), modifiers);
+            harness.run_steps(1);
+            assert!(harness.state().is_held && harness.state().cursor == cursor, "{name}");
+            drawings.add(name, &harness);
+            let Some(Edit::Change(1, body)) = harness.state().edits.last().copied() else { panic!("{name}") };
+            assert_eq!(body.radius > before.radius, from_handle, "{name}: {body:?}");
+            // The picture is 400 pixels wide for 320 points, and a unit at the sphere's distance takes 90 points.
+            assert_eq!(body.center.x > before.center.x + 0.05, !from_handle, "{name}: {body:?}");
+            button(&mut harness, to, false, modifiers);
+            leave(&mut harness);
+            assert!(!harness.state().is_held && harness.state().selection.held.is_none());
+        }
+        drawings.keep("selection_drags");
+    }
+
+    #[test]
+    fn drags_beside_the_sphere_or_with_shift_hold_nothing() {
+        for (at, modifiers) in
+            [(RECT.left_top() + vec2(5.0, 5.0), Modifiers::NONE), (RECT.center(), Modifiers::SHIFT)]
+        {
+            let mut harness = picture("metal", 1);
+            button(&mut harness, at, true, modifiers);
+            harness.event_modifiers(Event::PointerMoved(at + vec2(16.0, 0.0)), modifiers);
+            harness.run_steps(1);
+            assert!(!harness.state().is_held && harness.state().edits.is_empty(), "{modifiers:?}");
+        }
+    }
+
+    #[test]
+    fn a_sphere_that_looks_larger_than_pictures_is_not_dragged() {
+        let mut harness = picture("metal", 0);
+        assert!(harness.state().selection.extent().is_none(), "the ground");
+        button(&mut harness, RECT.center_bottom() - vec2(0.0, 5.0), true, Modifiers::NONE);
+        let to = RECT.center_bottom() - vec2(20.0, 5.0);
+        harness.event(Event::PointerMoved(to));
+        harness.run_steps(1);
+        assert!(!harness.state().is_held);
     }
 }

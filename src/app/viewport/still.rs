@@ -46,3 +46,78 @@ pub(super) fn menu(ui: &mut Ui, facts: &Facts, commands: &mut Vec<Command>) -> b
     }
     true
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::dressed;
+    use eframe::egui::{
+        Event, Modifiers, MouseWheelSource, MouseWheelUnit, Rect, Sense, TouchPhase, Vec2, pos2, vec2,
+    };
+    use egui_kittest::Harness;
+
+    const ROOM: Rect = Rect { min: pos2(10.0, 10.0), max: pos2(330.0, 190.0) };
+
+    /// A picture of 16x9 pixels that stays. Where its camera would move, the picture does.
+    fn picture(is_primary_free: bool) -> Harness<'static, Placement> {
+        let draw = move |ui: &mut Ui, placement: &mut Placement| {
+            let response = ui.allocate_rect(ROOM, Sense::click_and_drag());
+            placement.place(ROOM, vec2(16.0, 9.0), 1.0);
+            handle(ui, &response, placement, is_primary_free);
+        };
+        dressed([340.0, 200.0]).build_ui_state(draw, Placement::default())
+    }
+
+    /// By how much a drag moves the picture.
+    fn dragged(is_primary_free: bool, button: PointerButton, modifiers: Modifiers) -> Vec2 {
+        let mut harness = picture(is_primary_free);
+        let (pos, before) = (ROOM.center(), harness.state().rect().min);
+        let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
+        harness.event(Event::PointerMoved(pos));
+        harness.event_modifiers(press(pos, true), modifiers);
+        harness.event_modifiers(Event::PointerMoved(pos + vec2(30.0, -12.0)), modifiers);
+        harness.run_steps(1);
+        let is_grabbed = harness.output().platform_output.cursor_icon == CursorIcon::Grabbing;
+        harness.event(press(pos + vec2(30.0, -12.0), false));
+        harness.run_steps(2);
+        let moved = harness.state().rect().min - before;
+        // With Shift, the last frame of the drag is one without it.
+        assert!(is_grabbed == (moved != Vec2::ZERO) || modifiers.shift, "{button:?} {modifiers:?}");
+        moved
+    }
+
+    #[test]
+    fn drags_move_the_picture_unless_they_mark_a_part_of_it() {
+        let (primary, middle, by) = (PointerButton::Primary, PointerButton::Middle, vec2(30.0, -12.0));
+        assert_eq!(dragged(true, primary, Modifiers::NONE), by);
+        assert_eq!(dragged(false, primary, Modifiers::NONE), Vec2::ZERO);
+        assert_eq!(dragged(false, primary, Modifiers::SHIFT), by);
+        assert_eq!(dragged(false, middle, Modifiers::NONE), by);
+        assert_eq!(dragged(true, PointerButton::Secondary, Modifiers::NONE), Vec2::ZERO);
+    }
+
+    #[test]
+    fn the_wheel_and_a_pinch_zoom_at_the_pointer() {
+        let (unit, phase, source) = (MouseWheelUnit::Point, TouchPhase::Move, MouseWheelSource::Wheel);
+        let wheel = |down: f32| {
+            let (delta, modifiers) = (vec2(0.0, down), Modifiers::NONE);
+            Event::MouseWheel { unit, delta, phase, source, modifiers }
+        };
+        for (event, factor) in
+            [(wheel(5.0), f32::exp(0.01)), (wheel(-5.0), f32::exp(-0.01)), (Event::Zoom(2.0), 2.0)]
+        {
+            let mut harness = picture(true);
+            harness.event(Event::PointerMoved(ROOM.left_top() + vec2(80.0, 45.0)));
+            harness.event(event);
+            harness.run_steps(2);
+            let rect = harness.state().rect();
+            assert!((rect.width() / 320.0 - factor).abs() < 1e-4, "{factor}: {rect}");
+            // A quarter of the picture is left of the pointer, as before; its corner is at a whole pixel.
+            assert!((90.0 - rect.left() - 0.25 * rect.width()).abs() < 1.0, "{factor}: {rect}");
+        }
+        let mut harness = picture(true);
+        harness.event(Event::Zoom(2.0));
+        harness.run_steps(2);
+        assert_eq!(harness.state().rect(), ROOM, "the pointer is elsewhere");
+    }
+}

@@ -108,3 +108,15 @@ fn three_digits(seconds: f64) -> String {
     let digits = (2.0 - seconds.max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{seconds:.digits$}")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_three_digits_but_at_most_six_decimals() {
+        let times = [1234.6, 123.4, 12.34, 1.234, 0.1234, 0.012_34, 0.000_012_34, 1e-9, 0.0];
+        let expected = ["1235", "123", "12.3", "1.23", "0.123", "0.0123", "0.000012", "0.000000", "0.000000"];
+        assert_eq!(times.map(three_digits), expected);
+    }
+}

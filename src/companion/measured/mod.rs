@@ -164,6 +164,7 @@ mod tests {
     #[test]
     fn millions_have_three_digits() {
         assert_eq!([5.214e6, 54.62e6, 154.2e6].map(millions), ["5.21", "54.6", "154"]);
+        assert_eq!([10e6, 100e6].map(millions), ["10.0", "100"]);
     }
 
     #[test]

@@ -153,4 +153,32 @@ mod tests {
             assert!(message.contains(word) && message.contains("weekender bench --json"), "{message}");
         }
     }
+
+    #[test]
+    fn small_numbers_are_whole_and_thousands_have_a_comma() {
+        let numbers = [0.4, 5.4, 5.5, 96.4, 99.6, 996.0, 1000.0, 12_600.0, 999_999.0, 123_456_789.0];
+        let expected = ["0", "5", "6", "96", "100", "1,000", "1,000", "13,000", "1,000,000", "120,000,000"];
+        assert_eq!(numbers.map(rounded), expected);
+    }
+
+    #[test]
+    fn lanes_come_before_the_level() {
+        let name = |kind: &str, lanes, name: &str| {
+            name_of(&Row {
+                name: name.to_owned(),
+                kind: kind.to_owned(),
+                lanes,
+                threads: 1,
+                paths_per_second: None,
+                lanes_in_use: None,
+                ratio_to_baseline: None,
+                efficiency: None,
+                skipped: None,
+            })
+        };
+        assert_eq!(name("scalar", 1, "avx2, 1 lane, 1 thread"), "1 lane, avx2");
+        assert_eq!(name("packets", 8, "avx2, 8 lanes, 1 thread"), "8 lanes, avx2");
+        assert_eq!(name("baseline", 1, "C89, cc -O2, 1 thread"), "C89");
+        assert_eq!(name("gpu", 64, "a GPU, fast"), "a GPU, fast");
+    }
 }

@@ -104,15 +104,12 @@ impl Checker {
         if first_look.is_ok() || pair.check == Check::Energy {
             return first_look;
         }
-        let factor = (SECOND_LOOK_TIME / begin.elapsed().as_secs_f64()).clamp(4.0, SECOND_LOOK) as u64;
-        let mut last_look = Ok(());
-        for seed in SEEDS {
-            last_look = self.compare(index, &pair.second_look(factor, seed), Against::Estimate, interrupt);
-            if last_look.is_ok() {
-                break;
-            }
-        }
-        last_look
+        let factor = more_samples(begin.elapsed().as_secs_f64());
+        right_or_last(
+            SEEDS.into_iter().map(|seed| {
+                self.compare(index, &pair.second_look(factor, seed), Against::Estimate, interrupt)
+            }),
+        )
     }
 
     fn compare(
@@ -140,6 +137,23 @@ impl Checker {
         let verdict = judge(&Level::of(&film), against, TOLERANCE, film.rejected() + other.film.rejected());
         if verdict.is_right() { Ok(()) } else { Err(verdict.reason().to_owned()) }
     }
+}
+
+/// How many times the samples a second look takes if the first one has taken so many seconds.
+fn more_samples(seconds: f64) -> u64 {
+    (SECOND_LOOK_TIME / seconds).clamp(4.0, SECOND_LOOK) as u64
+}
+
+/// The first look at which nothing is wrong, otherwise the last.
+fn right_or_last(looks: impl Iterator<Item = Result<(), String>>) -> Result<(), String> {
+    let mut last = Ok(());
+    for look in looks {
+        last = look;
+        if last.is_ok() {
+            break;
+        }
+    }
+    last
 }
 
 /// The two pictures that a check compares.
@@ -249,61 +263,4 @@ fn has_no_more_light(recipe: &Recipe, film: &Film) -> Result<(), String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::backends::BackendChoice;
-    use crate::render_cpu::CpuOptions;
-    use crate::stress::families::build::{one_ball, sized, tame};
-    use crate::stress::suite::by_the_book;
-
-    fn checker() -> Checker {
-        let options = CpuOptions { threads: Some(1), ..CpuOptions::default() };
-        let cpu = Backend::new("cpu", BackendChoice::Cpu(options));
-        Checker::new(vec![cpu], Backend::new("f64", BackendChoice::Reference { threads: Some(1) }))
-    }
-
-    #[test]
-    fn a_tame_scene_holds_and_the_books_arithmetic_on_a_small_one_does_not() {
-        let go_on = AtomicBool::new(false);
-        let mut checker = checker();
-        let small = sized(tame(), [12, 8], 8);
-        assert_eq!(checker.first_failure(&small, &go_on), None);
-        assert_eq!(checker.fails(Check::Rounding, &small, &go_on), None);
-        let traced = checker.last.as_ref().map(|(_, outcomes)| outcomes.len());
-        assert_eq!(traced, Some(2), "the pictures of both backends are kept for the next check");
-        // Its threshold is a length, so a larger scene looks different.
-        let book = by_the_book(&moved(&small, 0.003, DVec3::ZERO));
-        let reason = checker.fails(Check::Scaling, &book, &go_on);
-        assert!(reason.is_some_and(|reason| reason.starts_with("cpu: ")), "scaling");
-    }
-
-    #[test]
-    fn a_scene_is_not_moved_so_far_that_its_eye_changes_sides() {
-        assert!(there_and_back(&tame()).is_some());
-        let mut near = one_ball();
-        let ball = near.scene.spheres[0];
-        near.camera.look_from = ball.center + DVec3::Y * ball.radius * (1.0 + 1e-9);
-        assert!(there_and_back(&near).is_some());
-        near.camera.look_at = near.camera.look_from + DVec3::X * 1e7 * ball.radius;
-        assert!(there_and_back(&near).is_none());
-    }
-
-    #[test]
-    fn copies_are_removed_where_they_change_nothing() {
-        assert_eq!(without_copies(&one_ball()), None);
-        let mut recipe = one_ball();
-        let scene = Arc::make_mut(&mut recipe.scene);
-        scene.spheres.push(scene.spheres[0]);
-        assert_eq!(without_copies(&recipe), Some(one_ball()));
-    }
-
-    #[test]
-    fn light_from_nowhere_is_seen() {
-        let recipe = one_ball();
-        let mut film = Film::new(1, 1, 1);
-        film.halves_mut()[0][0] = crate::film::fixed_point([1.0, 1.0, 1.1]).unwrap();
-        film.record(0..1, 0).unwrap();
-        let reason = has_no_more_light(&recipe, &film).unwrap_err();
-        assert!(reason.starts_with("pixel 0 is 1.1"), "{reason}");
-    }
-}
+mod tests;

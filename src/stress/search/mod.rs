@@ -4,6 +4,8 @@ mod check;
 mod random;
 mod shrink;
 
+pub use random::scene as random_scene;
+
 use super::backend::Backend;
 use super::families::build::counted;
 use crate::backends::BackendChoice;
@@ -178,6 +180,39 @@ mod tests {
             assert_eq!((small.scene.spheres.len(), small.settings.max_depth), (0, 1), "{text}");
         }
         assert!(told.contains("\nsearch: 2 of 2 random scenes failed in "), "{told}");
+    }
+
+    #[test]
+    fn a_search_that_is_interrupted_blames_no_scene() {
+        let options = StressOptions {
+            filter: String::new(),
+            search: None,
+            seed: 7,
+            levels: vec![Isa::Portable],
+            adapter: None,
+            json: None,
+            out: None,
+            progress: ProgressChoice::Off,
+        };
+        let (told, interrupt) = (RefCell::new(String::new()), AtomicBool::new(true));
+        let print = |text: &str| -> Result<()> {
+            told.borrow_mut().push_str(text);
+            Ok(())
+        };
+        let no_kernel = CpuOptions { isa: Some(Isa::Portable), lanes: Some(3), ..CpuOptions::default() };
+        let broken = Backend::new("cpu", BackendChoice::Cpu(no_kernel));
+        let reference = Backend::new("f64", BackendChoice::Reference { threads: Some(1) });
+        let search = Search {
+            options: &options,
+            checker: Checker::new(vec![broken], reference),
+            display: Display::Off,
+            print: &print,
+            interrupt: &interrupt,
+        };
+        assert!(search.among(0..1).unwrap(), "nothing was found");
+        assert!(told.borrow().starts_with("search: 0 of 1 random scene failed in "), "{}", told.borrow());
+        let names: Vec<String> = backends(&options).into_iter().map(|backend| backend.name).collect();
+        assert_eq!(names, ["portable"]);
     }
 
     #[test]

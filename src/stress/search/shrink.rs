@@ -179,4 +179,59 @@ mod tests {
         assert_eq!(small.scene.spheres.len(), recipe.scene.spheres.len());
         assert_eq!(small.camera, recipe.camera);
     }
+
+    #[test]
+    fn numbers_become_as_short_as_the_failure_allows() {
+        let mut scene = Scene { sky: Sky { bottom: DVec3::ZERO, top: DVec3::X }, ..Scene::default() };
+        scene.add_material("of no use", Material::Lambertian { albedo: DVec3::ONE });
+        let glass = scene.add_material("glass", Material::Dielectric { refraction_index: 1.5 });
+        scene.add_sphere(DVec3::new(1.234, 5.678, -9.1011), 1.2345, glass);
+        scene.add_sphere(DVec3::new(3.0, 4.0, 5.0), 1.0, glass);
+        let camera = Camera {
+            look_from: DVec3::new(0.5, 0.25, 0.125),
+            look_at: DVec3::new(7.77, 8.88, 9.99),
+            vfov_degrees: 33.3,
+            defocus_angle_degrees: 2.0,
+            ..Camera::BOOK
+        };
+        let recipe = crate::stress::families::build::of_scene(scene, camera);
+        let is_large_glass = |recipe: &Recipe| {
+            recipe
+                .scene
+                .spheres
+                .iter()
+                .any(|sphere| recipe.scene.material_of(sphere).is_transparent() && sphere.radius > 1.1)
+        };
+        let small = shrink(recipe.clone(), is_large_glass);
+        let mut scene = Scene { sky: Sky { bottom: DVec3::ONE, top: DVec3::ONE }, ..Scene::default() };
+        let glass = scene.add_material("glass", Material::Dielectric { refraction_index: 1.5 });
+        scene.add_sphere(DVec3::new(0.7, 5.0, -9.0), 1.2, glass);
+        let camera = Camera {
+            look_from: DVec3::ZERO,
+            look_at: DVec3::new(7.0, 9.0, 10.0),
+            vfov_degrees: 30.0,
+            ..Camera::BOOK
+        };
+        assert_eq!((&*small.scene, small.camera, small.settings.max_depth), (&scene, camera, 1));
+    }
+
+    #[test]
+    fn the_largest_steps_come_first() {
+        let recipe = random::scene(5, 3);
+        let count = recipe.scene.spheres.len();
+        let all = steps(&recipe);
+        // Each sphere dropped; sky, depth, lens and place; each made matte; four times all numbers with fewer digits.
+        assert_eq!(all.len(), 2 * count + 4 + 4 * (2 * count + 3));
+        for (index, step) in all[..count].iter().enumerate() {
+            let mut expected = recipe.scene.spheres.clone();
+            expected.remove(index);
+            assert_eq!(step(&recipe).unwrap().scene.spheres, expected);
+        }
+        let depth = |max_depth: u32| {
+            let mut recipe = recipe.clone();
+            recipe.settings.max_depth = max_depth;
+            all[count + 1](&recipe).unwrap().settings.max_depth
+        };
+        assert_eq!([1, 2, 3, 50].map(depth), [1, 1, 1, 25]);
+    }
 }

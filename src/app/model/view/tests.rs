@@ -1,0 +1,162 @@
+//! Tests of what the viewport shows.
+
+use super::*;
+use crate::app::model::slots::Slot;
+use crate::film::Film;
+use crate::stress::shown_cases;
+
+fn by_the_book(mine: &Document) -> Other {
+    Other::ByTheBook(Arc::clone(&mine.origin), Arc::clone(&mine.checked))
+}
+
+#[test]
+fn what_is_no_stage_is_compared_with_the_books_arithmetic() {
+    let mut view = ViewState::default();
+    for case in shown_cases() {
+        let mine = Document::new(Origin::of_case(case));
+        assert_eq!(view.other(&mine), Some(by_the_book(&mine)));
+    }
+    let stage = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+    assert!(matches!(view.other(&stage), Some(Other::Stage(_))));
+    view.toggle(Mode::Wipe, With::Book);
+    assert!(matches!(view.other(&stage), Some(Other::ByTheBook(..))));
+    let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-tiny").unwrap()));
+    assert_eq!(view.other(&no_rays), None);
+}
+
+#[test]
+fn every_stage_has_something_to_be_compared_with() {
+    let mut view = ViewState::default();
+    for stage in Stage::ALL {
+        view.is_with_next = false;
+        assert!(view.other_of(stage).is_some_and(|other| other != stage));
+        view.is_with_next = true;
+        assert!(view.other_of(stage).is_some_and(|other| other != stage));
+    }
+}
+
+#[test]
+fn one_thing_at_a_time_is_looked_at() {
+    let film = Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.0; 3]], identity: None });
+    let mut view = ViewState { reference: Some(Arc::clone(&film)), ..ViewState::default() };
+    view.choose(Show::Error);
+    assert_eq!((view.show(), view.of_film(None)), (Show::Error, View::StandardError));
+    view.toggle(Mode::Difference, With::Stage);
+    assert_eq!((view.show(), view.mode()), (Show::Picture, Some(Mode::Difference)));
+    assert_eq!(view.of_film(None), View::Picture, "until there is a second picture");
+    assert_eq!(view.of_film(Some(&film)), View::Difference(Arc::clone(&film)));
+    view.toggle(Mode::Wipe, With::Stage);
+    assert_eq!(view.of_film(Some(&film)), View::Picture);
+    view.toggle(Mode::Wipe, With::Stage);
+    assert_eq!(view.mode(), None);
+    view.toggle(Mode::Wipe, With::Book);
+    view.choose(Show::Difference);
+    assert_eq!((view.mode(), view.of_film(None)), (None, View::Difference(film)));
+}
+
+/// A view with two slots in use, of a picture of 4 by 2 pixels and one of 8 by 8.
+fn with_slots() -> (ViewState, Document) {
+    let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+    document.give_size([4, 2]);
+    let mut view = ViewState::default();
+    for (number, size) in [(ONE, [4, 2]), (TWO, [8, 8])] {
+        let mut film = Film::new(size[0], size[1], 1);
+        film.record(0..1, 0).unwrap();
+        let kept = Arc::new(Kept::new(document.clone(), film, Arc::default(), None));
+        view.slots.put(number, Slot { name: String::new(), kept });
+    }
+    (view, document)
+}
+
+const ONE: SlotNumber = SlotNumber::ALL[0];
+const TWO: SlotNumber = SlotNumber::ALL[1];
+
+#[test]
+fn no_picture_is_compared_with_itself() {
+    let (mut view, _) = with_slots();
+    let state = |view: &ViewState| (view.mode(), view.compared_slot(), view.slots.looked());
+    view.look(Some(ONE));
+    view.toggle(Mode::Wipe, With::Slot(ONE));
+    assert_eq!(state(&view), (Some(Mode::Wipe), Some(ONE), None));
+    assert_eq!((view.divider, view.is_divider_unplaced), (0.5, true));
+    (view.divider, view.is_divider_unplaced) = (0.25, false);
+    view.toggle(Mode::Difference, With::Slot(ONE));
+    assert_eq!((view.mode(), view.divider, view.is_divider_unplaced), (Some(Mode::Difference), 0.5, false));
+    view.toggle(Mode::Difference, With::Slot(ONE));
+    assert_eq!(state(&view), (None, None, None));
+    view.look(Some(TWO));
+    view.toggle(Mode::Wipe, With::Slot(ONE));
+    assert_eq!(state(&view), (Some(Mode::Wipe), Some(ONE), Some(TWO)), "two slots");
+    view.look(Some(ONE));
+    assert_eq!(state(&view), (None, None, Some(ONE)), "it is the compared one");
+    view.toggle(Mode::Wipe, With::Stage);
+    assert_eq!(state(&view), (Some(Mode::Wipe), None, None), "the live picture is compared");
+    view.swap();
+    assert_eq!(state(&view), (None, None, Some(ONE)), "a slot is not compared with a stage");
+}
+
+#[test]
+fn a_slot_of_another_size_is_wiped_but_not_subtracted() {
+    let (mut view, document) = with_slots();
+    for (mode, number, is_possible) in [
+        (Mode::Wipe, ONE, true),
+        (Mode::Wipe, TWO, true),
+        (Mode::Difference, ONE, true),
+        (Mode::Difference, TWO, false),
+        (Mode::Wipe, SlotNumber::ALL[2], false),
+    ] {
+        view.end_comparison();
+        assert!(view.compared(&document).is_none() && view.wiped(&document).is_none());
+        view.toggle(mode, With::Slot(number));
+        assert_eq!(view.compared(&document).is_some(), is_possible, "{mode:?} {number}");
+        assert_eq!(view.is_other_earlier(&document), is_possible, "a slot is at the left");
+        let wiped = view.wiped(&document).map(|(kept, fitted)| (kept.size(), fitted.part()));
+        let expected = match (mode, number) {
+            (Mode::Wipe, ONE) => Some(([4, 2], [0.0, 0.0, 1.0, 1.0])),
+            (Mode::Wipe, TWO) => Some(([8, 8], [0.25, 0.0, 0.75, 1.0])),
+            _ => None,
+        };
+        assert_eq!(wiped, expected, "{mode:?} {number}");
+    }
+}
+
+#[test]
+fn the_earlier_stage_is_at_the_left_and_cameras_that_differ_stay() {
+    let stage = |id| Document::new(Origin::of_stage(Stage::find(id).unwrap()));
+    let mut view = ViewState { is_with_next: true, ..ViewState::default() };
+    assert!(!view.is_other_earlier(&stage("book")), "nothing is compared");
+    view.toggle(Mode::Wipe, With::Stage);
+    assert_eq!(
+        ["ppm-tiny", "metal", "book"].map(|id| view.is_other_earlier(&stage(id))),
+        [false, false, true]
+    );
+    view.is_with_next = false;
+    let has_other =
+        |view: &ViewState| ["view-distant", "glass-schlick"].map(|id| view.has_other_camera(&stage(id)));
+    assert_eq!(has_other(&view), [true, false]);
+    view.toggle(Mode::Wipe, With::Book);
+    assert_eq!(has_other(&view), [false, false]);
+    let (mut moved, book) = (stage("book").recipe(), stage("book").recipe());
+    assert!(!differ_in_camera(&moved, &book));
+    moved.camera.vfov_degrees += 1.0;
+    assert!(differ_in_camera(&moved, &book));
+    moved.rules.antialiasing = !moved.rules.antialiasing;
+    assert!(!differ_in_camera(&moved, &book), "in more than that");
+}
+
+#[test]
+fn what_is_subtracted_is_the_film_of_the_shown_difference() {
+    let film = || Arc::new(ReferenceMeans { width: 1, height: 1, means: vec![[0.0; 3]], identity: None });
+    let (loaded, other) = (film(), film());
+    let mut view = ViewState { reference: Some(Arc::clone(&loaded)), ..ViewState::default() };
+    let is = |view: &ViewState, expected: &Arc<ReferenceMeans>| {
+        view.subtracted(Some(&other)).is_some_and(|film| Arc::ptr_eq(film, expected))
+    };
+    assert!(view.subtracted(Some(&other)).is_none());
+    view.choose(Show::Difference);
+    assert!(is(&view, &loaded));
+    view.toggle(Mode::Difference, With::Stage);
+    assert!(is(&view, &other) && view.subtracted(None).is_none());
+    view.toggle(Mode::Wipe, With::Stage);
+    assert!(view.subtracted(Some(&other)).is_none());
+}

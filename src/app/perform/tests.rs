@@ -1,0 +1,179 @@
+//! Tests of what commands do.
+
+use super::*;
+use crate::app::model::crop::Crop;
+use crate::app::tests::window;
+use crate::kept;
+use crate::stages::Stage;
+use eframe::egui::{Context, Pos2, RawInput, Rect, ViewportId, vec2};
+use std::collections::BTreeMap;
+
+/// A window in which most commands have something to do.
+fn prepared() -> Window {
+    let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
+    let Model { document, view, remembered, selected, .. } = &mut window.model;
+    remembered.bookmarks =
+        ["near", "far"].map(|name| Bookmark::new(name.to_owned(), &document.camera)).to_vec();
+    remembered.recent = vec!["/of/gone.toml".into()];
+    document.camera.look_from.x += 0.5;
+    document.camera.vfov_degrees = 33.0;
+    (view.tone.exposure, *selected) = (1.0, Some(1));
+    view.crop = Some(Some(Crop { first: [1, 2], size: [3, 4] }));
+    window.seconds_before = Some(5.0);
+    window
+}
+
+/// What can be seen of a window, by name. Scenes are told by the title.
+fn seen(window: &Window) -> BTreeMap<String, String> {
+    let mut seen: BTreeMap<String, String> = kept::fields(&window.model)
+        .into_iter()
+        .filter(|(path, _)| !path.contains("document.origin") && !path.contains("document.checked"))
+        .collect();
+    for (name, value) in [
+        ("title", window.document().title()),
+        ("dialog", window.dialogs.is_open().to_string()),
+        ("copy", window.pending_copy.to_string()),
+        ("seconds", format!("{:?}", window.seconds_before)),
+        ("flight", window.flight.is_some().to_string()),
+        ("sight", window.sight.is_some().to_string()),
+        ("panel", format!("{:?}", window.panel)),
+    ] {
+        seen.insert(name.to_owned(), value);
+    }
+    seen
+}
+
+/// What a command changes, says, and asks of the system.
+fn done(context: &Context, window: &mut Window, command: Command) -> String {
+    let (before, told) = (seen(window), window.messages());
+    let output = context.run_ui(RawInput::default(), |ui| window.perform(ui.ctx(), command));
+    let after = seen(window);
+    let mut text = format!("{}\n", command.name());
+    let mut paths: Vec<&String> = before.keys().chain(after.keys()).collect();
+    paths.sort();
+    paths.dedup();
+    for path in paths {
+        let [old, new] = [&before, &after].map(|seen| seen.get(path).map_or("nothing", String::as_str));
+        if old != new {
+            text.push_str(&format!("  {path}: {old} -> {new}\n"));
+        }
+    }
+    for words in window.messages().iter().filter(|words| !told.contains(words)) {
+        text.push_str(&format!("  says {words}\n"));
+    }
+    for command in &output.platform_output.commands {
+        text.push_str(&format!("  asks for {command:?}\n"));
+    }
+    for command in output.viewport_output.get(&ViewportId::ROOT).into_iter().flat_map(|root| &root.commands) {
+        text.push_str(&format!("  asks for {command:?}\n"));
+    }
+    text
+}
+
+/// Commands for slots, devices and the companion depend on more than this.
+#[test]
+fn every_command_does_what_it_says() {
+    let context = Context::default();
+    let is_told = |command: &Command| {
+        !matches!(
+            command,
+            Command::Slot(_)
+                | Command::Device(_)
+                | Command::SwitchDevice
+                | Command::Companion
+                | Command::Extreme(_)
+                | Command::Stage(_)
+        )
+    };
+    let mut commands: Vec<Command> = Command::all().into_iter().filter(is_told).collect();
+    commands.extend([Command::Bookmark(1), Command::Bookmark(9), Command::Recent(0), Command::Recent(1)]);
+    commands.push(Command::Stage(&Stage::ALL[3]));
+    let mut text = String::new();
+    for command in commands {
+        text.push_str(&done(&context, &mut prepared(), command));
+    }
+    text.push_str("\nOne after the other\n");
+    let mut window = prepared();
+    for command in [
+        Command::AddBookmark,
+        Command::AddBookmark,
+        Command::Crop,
+        Command::Crop,
+        Command::Darker,
+        Command::NoExposure,
+        Command::Wipe,
+        Command::WipeDifference,
+        Command::BookArithmetic,
+        Command::WipeDifference,
+        Command::WipeDifference,
+        Command::Show(Show::Normals),
+        Command::Brighter,
+        Command::Panels,
+        Command::Plot,
+        Command::Plot,
+        Command::Controls,
+        Command::Gizmo,
+        Command::Panels,
+        Command::Gizmo,
+        Command::Flights,
+        Command::Bookmark(0),
+        Command::FirstSteps,
+        Command::FirstSteps,
+        Command::FullScreen,
+        Command::Present,
+        Command::Panels,
+        Command::Blank,
+        Command::Blank,
+        Command::Blank,
+        Command::Fit,
+        Command::Controls,
+        Command::Present,
+        Command::FullScreen,
+        Command::ShowMe,
+        Command::ShowMe,
+        Command::ResetAll,
+        Command::Fresh,
+    ] {
+        text.push_str(&done(&context, &mut window, command));
+    }
+    kept::check("commands_done", &text);
+}
+
+#[test]
+fn a_reason_goes_on_in_the_middle_of_a_sentence() {
+    assert_eq!(["Nothing yet", "Über", "a", ""].map(lower_first), ["nothing yet", "über", "a", ""]);
+}
+
+#[test]
+fn what_is_saved_is_said_in_words() {
+    let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
+    assert_eq!(window.size_words(), "The picture: 16x9");
+    window.model.document.has_own_size = false;
+    assert_eq!(window.size_words(), "The picture: 16x9, as in the viewport");
+}
+
+#[test]
+fn the_picture_is_zoomed_in_steps() {
+    let mut window = window("weekender --stage normals --size 160x90 --samples 1 --device cpu");
+    let (context, screen) = (Context::default(), Rect::from_min_size(Pos2::ZERO, vec2(1280.0, 800.0)));
+    let mut width = |command: Option<Command>| {
+        command.into_iter().for_each(|command| window.perform(&context, command));
+        for _ in 0..3 {
+            let input = RawInput { screen_rect: Some(screen), ..RawInput::default() };
+            let _ = context.run_ui(input, |ui| window.ui_in(ui));
+        }
+        window.picture_rect().width()
+    };
+    let fitting = width(None);
+    assert!(fitting > 400.0, "{fitting}");
+    for (command, expected) in [
+        (Command::ActualSize, 160.0),
+        (Command::ZoomIn, 200.0),
+        (Command::ZoomIn, 250.0),
+        (Command::ZoomOut, 200.0),
+        (Command::Fit, fitting),
+    ] {
+        let found = width(Some(command));
+        assert!((found - expected).abs() < 0.1, "{command:?}: {found}, not {expected}");
+    }
+}

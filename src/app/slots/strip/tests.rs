@@ -1,0 +1,174 @@
+//! Tests of the strip of slots.
+
+use super::*;
+use crate::app::model::document::Document;
+use crate::app::model::kept::Kept;
+use crate::app::model::view::{Mode, With};
+use crate::app::tests::{Case, Drawings, dressed, facts_of, leave, rest_at};
+use crate::film::{Film, PixelSum};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::sync::Arc;
+
+const ONE: SlotNumber = SlotNumber::ALL[0];
+const TWO: SlotNumber = SlotNumber::ALL[1];
+const THREE: SlotNumber = SlotNumber::ALL[2];
+const FIVE: SlotNumber = SlotNumber::ALL[4];
+
+struct Shown {
+    strip: Strip,
+    facts: Facts,
+    commands: Vec<Command>,
+}
+
+impl Shown {
+    fn slots(&mut self) -> &mut Slots {
+        &mut self.facts.model.view.slots
+    }
+}
+
+fn slot(document: &Document, [width, height]: [u32; 2], name: &str) -> Slot {
+    let mut film = Film::new(width, height, 2);
+    film.halves_mut().iter_mut().flatten().for_each(|sum| *sum = PixelSum([1 << 20; 3]));
+    film.record(0..8, 0).unwrap();
+    let kept = Kept::new(document.clone(), film, Arc::default(), None);
+    Slot { name: name.to_owned(), kept: Arc::new(kept) }
+}
+
+/// The strip with a picture of the live one's size, a wide one, a tall one, and one that is being read.
+fn strip() -> Harness<'static, Shown> {
+    let mut facts = facts_of("--stage metal --size 8x6");
+    let document = facts.model.document.clone();
+    let slots = &mut facts.model.view.slots;
+    for (number, size, name) in
+        [(ONE, [8, 6], "as large"), (TWO, [300, 50], "wide"), (THREE, [6, 60], "tall")]
+    {
+        slots.put(number, slot(&document, size, name));
+    }
+    let (name, id, size) = ("the fifth".to_owned(), "5".to_owned(), [64, 36]);
+    slots.expect(FIVE, Coming { name, id, size, samples: 7, has_own_size: true });
+    let draw = |ui: &mut Ui, Shown { strip, facts, commands }: &mut Shown| {
+        let mut slots = facts.model.view.slots.clone();
+        strip.ui(ui, &mut slots, facts, commands);
+        facts.model.view.slots = slots;
+    };
+    let shown = Shown { strip: Strip::default(), facts, commands: Vec::new() };
+    let mut harness = dressed([1700.0, 240.0]).build_ui_state(draw, shown);
+    harness.run_steps(2);
+    harness
+}
+
+#[test]
+fn the_strip_in_all_its_states() {
+    let mut drawings = Drawings::default();
+    let mut harness = strip();
+    drawings.add("three pictures and one to come", &harness);
+    let changes: [Case<Shown>; 6] = [
+        ("a long wait", |shown| {
+            let (name, id) =
+                ("a name that is much too long for the card of a slot".to_owned(), "6".to_owned());
+            let coming = Coming { name, id, size: [3, 900], samples: 7, has_own_size: true };
+            shown.slots().expect(SlotNumber::ALL[5], coming);
+        }),
+        ("one is looked at", |shown| shown.facts.model.view.look(Some(ONE))),
+        ("another is meant", |shown| shown.slots().choose(TWO)),
+        ("one is compared", |shown| {
+            shown.facts.model.view.look(None);
+            shown.facts.model.view.toggle(Mode::Wipe, With::Slot(ONE));
+        }),
+        ("one is subtracted", |shown| {
+            shown.facts.model.view.toggle(Mode::Difference, With::Slot(ONE));
+        }),
+        ("one could not be written", |shown| {
+            let id = shown.slots().get(TWO).unwrap().kept.id.clone();
+            shown.slots().note_lasting(&id, false);
+        }),
+    ];
+    for (name, change) in changes {
+        change(harness.state_mut());
+        harness.run_steps(2);
+        drawings.add(name, &harness);
+    }
+    let replacement = slot(&harness.state().facts.model.document.clone(), [60, 6], "another");
+    harness.state_mut().slots().put(ONE, replacement);
+    harness.run_steps(2);
+    drawings.add("another picture in a slot", &harness);
+    drawings.keep("strip");
+}
+
+#[test]
+fn everything_in_the_strip_is_explained() {
+    let mut drawings = Drawings::default();
+    let mut harness = strip();
+    let id = harness.state_mut().slots().get(TWO).unwrap().kept.id.clone();
+    harness.state_mut().slots().note_lasting(&id, false);
+    harness.run_steps(2);
+    leave(&mut harness);
+    drawings.add("the strip", &harness);
+    drawings.add_tips(&mut harness);
+    for label in ["8x6, 8 samples", "this window only"] {
+        let at = harness.get_by_label(label).rect().center();
+        rest_at(&mut harness, at);
+        drawings.add(label, &harness);
+    }
+    let at = harness.get_by_label("Name of slot 1").rect().center();
+    rest_at(&mut harness, at);
+    drawings.add("a name", &harness);
+    harness.get_by_label("More about slot 2").click();
+    harness.run_steps(4);
+    leave(&mut harness);
+    drawings.add("the menu of a slot", &harness);
+    drawings.keep("strip_tips");
+}
+
+#[test]
+fn every_control_of_the_strip_gives_its_command_for_its_slot() {
+    let mut harness = strip();
+    let mut click = |name: &str| {
+        harness.state_mut().slots().choose(THREE);
+        harness.get_by_label(name).click();
+        harness.run_steps(4);
+        let chosen = harness.state_mut().slots().chosen().unwrap();
+        (std::mem::take(&mut harness.state_mut().commands), chosen)
+    };
+    let of_slot = Command::Slot;
+    for (name, command) in
+        [("Keep", SlotCommand::Keep), ("Flip", SlotCommand::Swap), ("Slot 2", SlotCommand::Look(TWO))]
+    {
+        assert_eq!(click(name), (vec![of_slot(command)], THREE), "{name}");
+    }
+    assert_eq!(click("Live"), (vec![], THREE), "it is shown");
+    for (name, command) in [
+        ("Wipe against the slot 1", SlotCommand::Wipe),
+        ("Difference from the slot 1", SlotCommand::Difference),
+        ("Is it only noise? 1", SlotCommand::OnlyNoise),
+    ] {
+        assert_eq!(click(name), (vec![of_slot(command)], ONE), "{name}");
+    }
+    assert_eq!(click("Difference from the slot 2"), (vec![], THREE), "it has another size");
+    let size = click("Set the picture to the size of slot 2");
+    assert_eq!(size, (vec![of_slot(SlotCommand::TakeSize)], TWO));
+    assert_eq!(click("Name of slot 1"), (vec![], ONE));
+    let look = of_slot(SlotCommand::Look(TWO));
+    for (command, expected) in [
+        (of_slot(SlotCommand::Open), vec![of_slot(SlotCommand::Open)]),
+        (Command::Save(OutputFormat::Exr), vec![look, Command::Save(OutputFormat::Exr)]),
+        (Command::CopyPicture, vec![look, Command::CopyPicture]),
+        (of_slot(SlotCommand::Delete), vec![of_slot(SlotCommand::Delete)]),
+    ] {
+        assert_eq!(click("More about slot 2"), (vec![], THREE), "the menu is open");
+        assert_eq!(click(&command.name()), (expected, TWO), "{command:?}");
+    }
+}
+
+#[test]
+fn the_slot_that_is_looked_at_returns_to_the_live_picture() {
+    let mut harness = strip();
+    harness.state_mut().facts.model.view.look(Some(TWO));
+    harness.run_steps(2);
+    harness.get_by_label("Slot 2").click();
+    harness.run_steps(2);
+    harness.get_by_label("Live").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().commands, [Command::Slot(SlotCommand::LookLive); 2]);
+}

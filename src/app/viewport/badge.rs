@@ -1,0 +1,45 @@
+//! Words over the picture.
+
+use eframe::egui::{Align2, CornerRadius, FontId, Painter, Pos2, Ui, vec2};
+
+/// Text on a background plate, readable on any picture.
+pub(super) fn badge(ui: &Ui, painter: &Painter, at: Pos2, anchor: Align2, text: &str, font: &FontId) {
+    let galley = painter.layout_no_wrap(text.to_owned(), font.clone(), ui.visuals().strong_text_color());
+    let mut rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 6.0));
+    let clip = painter.clip_rect();
+    let (beyond_left, beyond_right) = (clip.left() + 4.0 - rect.left(), rect.right() + 4.0 - clip.right());
+    if beyond_left > 0.0 || beyond_right > 0.0 {
+        let along = if beyond_left > 0.0 { beyond_left } else { -beyond_right };
+        // One row lower, so that it does not cover its neighbour.
+        rect = rect.translate(vec2(along, rect.height() + 4.0));
+    }
+    painter.rect_filled(rect, CornerRadius::same(5), ui.visuals().panel_fill.gamma_multiply(0.9));
+    painter.galley(rect.min + vec2(7.0, 3.0), galley, ui.visuals().strong_text_color());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{Drawings, part};
+    use eframe::egui::{Rect, TextStyle, pos2};
+
+    #[test]
+    fn words_stay_within_the_picture() {
+        let clip = Rect::from_min_max(pos2(50.0, 20.0), pos2(350.0, 180.0));
+        let mut drawings = Drawings::default();
+        for (x, anchor) in [
+            (200.0, Align2::CENTER_TOP),
+            (70.0, Align2::RIGHT_TOP),
+            (330.0, Align2::LEFT_TOP),
+            (52.0, Align2::CENTER_CENTER),
+            (349.0, Align2::LEFT_BOTTOM),
+        ] {
+            let picture = part([400.0, 200.0], |ui| {
+                let font = TextStyle::Body.resolve(ui.style());
+                badge(ui, &ui.painter().with_clip_rect(clip), pos2(x, 100.0), anchor, "sphere 1", &font);
+            });
+            drawings.add(&format!("{anchor:?} at {x}"), &picture);
+        }
+        drawings.keep("badges");
+    }
+}

@@ -1,0 +1,77 @@
+//! The marker of a click on the picture.
+
+use super::badge::badge;
+use eframe::egui::{Align2, Color32, Rect, Stroke, TextStyle, Ui, vec2};
+use std::time::{Duration, Instant};
+
+/// How long a click's marker stays.
+const MARK: Duration = Duration::from_millis(1600);
+
+/// The result of a click, shown for a moment.
+pub(super) struct Mark {
+    /// Position in the picture, `0..=1` from the upper left.
+    pub place: [f64; 2],
+    /// The text beside the marker.
+    pub text: String,
+    /// The time of the click.
+    pub since: Instant,
+}
+
+impl Mark {
+    /// Draws the marker; returns false once its time is over.
+    pub fn paint(&self, ui: &Ui, room: Rect, rect: Rect) -> bool {
+        let age = self.since.elapsed();
+        if age > MARK {
+            return false;
+        }
+        let painter = &ui.painter().with_clip_rect(room);
+        let at = rect.min + vec2(self.place[0] as f32, self.place[1] as f32) * rect.size();
+        painter.circle_stroke(at, 9.0, Stroke::new(3.0, Color32::from_black_alpha(130)));
+        painter.circle_stroke(at, 9.0, Stroke::new(1.5, Color32::WHITE));
+        painter.circle_filled(at, 1.5, Color32::WHITE);
+        let font = TextStyle::Body.resolve(ui.style());
+        badge(ui, painter, at + vec2(14.0, 0.0), Align2::LEFT_CENTER, &self.text, &font);
+        ui.ctx().request_repaint_after(MARK - age);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{Drawings, part};
+    use eframe::egui::{self, pos2};
+    use egui_kittest::Harness;
+
+    #[test]
+    fn the_words_of_a_click_are_beside_it() {
+        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 200.0));
+        let click = pos2(200.0, 150.0);
+        let mark = Mark { place: [0.25, 0.5], text: "sky".to_owned(), since: Instant::now() };
+        let harness = Harness::builder().with_size([600.0, 300.0]).build_ui(|ui| {
+            mark.paint(ui, rect, rect);
+        });
+        let words = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+            egui::Shape::Text(text) if text.galley.text() == "sky" => Some(text.visual_bounding_rect()),
+            _ => None,
+        });
+        let words = words.unwrap();
+        assert!(words.left() > click.x && words.left() < click.x + 40.0, "{words}");
+        assert!(words.y_range().contains(click.y), "{words}");
+    }
+
+    #[test]
+    fn a_marker_is_drawn_for_a_moment() {
+        let rect = Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 200.0));
+        let mut drawings = Drawings::default();
+        for (place, milliseconds) in [([0.25, 0.5], 0), ([0.95, 0.1], 0), ([0.25, 0.5], 1900)] {
+            let since = Instant::now().checked_sub(Duration::from_millis(milliseconds)).unwrap();
+            let mark = Mark { place, text: "focus 1.500".to_owned(), since };
+            let picture = part([600.0, 300.0], |ui| {
+                assert_eq!(mark.paint(ui, rect, rect), milliseconds == 0);
+            });
+            drawings.add(&format!("{place:?} after {milliseconds} ms"), &picture);
+        }
+        drawings.keep("marks");
+    }
+}

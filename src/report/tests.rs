@@ -1,0 +1,136 @@
+//! Everything that a report makes of measurements, which are made up.
+
+use super::*;
+use crate::kept;
+use data::{Measured, ReferenceUsed, Rounding, Run};
+
+/// Numbers of 0 to 1 that are the same in every run.
+fn noise(index: u64) -> f64 {
+    let x = (index + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let x = (x ^ (x >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    ((x ^ (x >> 32)) >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// A picture of a curve with this number of samples.
+fn measured(curve: u32, seed: u32, samples: u64) -> Measured {
+    let noise = |which: u64| noise(((u64::from(curve) * 8 + u64::from(seed)) * 128 + samples) * 4 + which);
+    let seconds = 0.01 * f64::from(curve + 1) * samples as f64 * (0.9 + 0.2 * noise(0));
+    // The picture with the most samples is better than its reference in one case.
+    let mse = 0.04 / samples as f64 * (0.8 + 0.4 * noise(1)) - if samples == 64 { 7e-4 } else { 0.0 };
+    Measured {
+        samples,
+        trace_seconds: seconds,
+        wall_seconds: 1.125 * seconds,
+        device_seconds: (curve == 3).then_some(0.75 * seconds),
+        mse,
+        rel_mse: 3.0 * mse,
+        flip: 0.25 * noise(2),
+        mse_estimate: (curve > 0 && samples > 1).then_some(mse.abs() * (0.9 + 0.2 * noise(3))),
+        rejected: u64::from(seed == 1),
+    }
+}
+
+fn made_up() -> Data {
+    let mut runs = Vec::new();
+    let curves = [("c89", "independent"), ("cpu", "sobol"), ("cpu", "independent"), ("gpu", "sobol")];
+    for scene in ["book", "two, of \"three\""] {
+        for (curve, (backend, sampler)) in (0_u32..).zip(curves) {
+            for seed in 0..4_u32 {
+                // Some pictures of the slowest end early.
+                let most = if curve == 0 && seed > 1 { 5 } else { 7 };
+                runs.push(Run {
+                    curve: Curve {
+                        scene: scene.to_owned(),
+                        backend: backend.to_owned(),
+                        sampler: sampler.to_owned(),
+                    },
+                    seed,
+                    about: format!("{backend} of a machine"),
+                    prepare_seconds: 0.125,
+                    points: (0..most).map(|power| measured(curve, seed, 1 << power)).collect(),
+                });
+            }
+        }
+    }
+    let rounding = |backend: &str, floor: Option<f64>| Rounding {
+        scene: "book".to_owned(),
+        backend: backend.to_owned(),
+        samples: 64,
+        bias: -1.5e-6,
+        rms: 2.5e-3,
+        floor,
+        floor_limit: 3e-5,
+    };
+    let reference = ReferenceUsed {
+        scene: "book".to_owned(),
+        about: "cpu of a machine".to_owned(),
+        samples: 512,
+        mse: 1e-6,
+        rel_mse: 2e-6,
+    };
+    let settings = Settings {
+        software: "Weekender 1.2.3".to_owned(),
+        size: (48, 27),
+        seeds: 4,
+        time_limit: 10.0,
+        max_samples: 64,
+        estimate_error: true,
+        reference_samples: 512,
+        reference: "cpu".to_owned(),
+    };
+    let rounding = vec![rounding("cpu", Some(0.03)), rounding("gpu", None)];
+    Data { schema: SCHEMA, settings, references: vec![reference], runs, rounding }
+}
+
+#[test]
+fn what_follows_from_measurements_is_as_kept() {
+    let (data, targets) = (made_up(), [0.05, 0.01, 1e-3]);
+    let curves = curves(&data, &targets);
+    let calibration = calibration::calibration(&data);
+    let sampler_ratios = summary::sampler_ratios(&curves);
+    let findings = Findings {
+        data: &data,
+        curves: &curves,
+        targets: &targets,
+        calibration: &calibration,
+        sampler_ratios: &sampler_ratios,
+    };
+    let text = format!(
+        "{}\n{}\n{:.7?}\n{calibration:.7?}\n{sampler_ratios:.7?}\n{:#.7?}\n",
+        csv::csv(&data),
+        table::markdown(&findings, "weekender report"),
+        curves,
+        chart(&data, 0.05)
+    );
+    kept::check("report", &text);
+}
+
+#[test]
+fn a_report_goes_on_only_with_the_same_settings() {
+    let at = tempfile::tempdir().unwrap();
+    let path = at.path().join("report.json");
+    let data = made_up();
+    write_json(&data, &JsonTarget::File(path.clone())).unwrap();
+    assert_eq!(resumed(&path, &data.settings), Some(data.clone()));
+    let other = Settings { max_samples: 128, ..data.settings.clone() };
+    assert_eq!(resumed(&path, &other), None);
+    let older = Data { schema: SCHEMA + 1, ..data.clone() };
+    write_json(&older, &JsonTarget::File(path.clone())).unwrap();
+    assert_eq!(resumed(&path, &data.settings), None);
+    assert_eq!(resumed(&at.path().join("nothing.json"), &data.settings), None);
+}
+
+#[test]
+fn what_was_measured_against_another_reference_is_discarded() {
+    let mut data = made_up();
+    let old = data.references[0].clone();
+    let second = ReferenceUsed { scene: data.runs[16].curve.scene.clone(), ..old.clone() };
+    data.take_references(vec![old.clone(), second.clone()]);
+    assert_eq!((data.runs.len(), data.rounding.len()), (32, 2), "nothing is known to have changed");
+    assert_eq!(data.references, [old.clone(), second.clone()]);
+    let better = ReferenceUsed { samples: 1024, ..old };
+    data.take_references(vec![better.clone()]);
+    assert_eq!((data.runs.len(), data.rounding.len()), (16, 0));
+    assert!(data.runs.iter().all(|run| run.curve.scene == second.scene));
+    assert_eq!(data.references, [better, second]);
+}
