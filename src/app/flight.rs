@@ -176,6 +176,21 @@ mod tests {
     }
 
     #[test]
+    fn a_flight_is_at_the_nearest_of_its_steps() {
+        let to = Camera { look_from: DVec3::new(-3.0, 4.0, -6.0), ..CAMERA };
+        let keyframes = [(0, CAMERA), (1, to)].map(|(frame, camera)| Keyframe { frame, camera });
+        let after = |steps: f64| {
+            let mut flight = Flight::along(&keyframes, &CAMERA, 7.0);
+            flight.go_on(7.0 + steps / f64::from(STEPS_PER_FRAME * FRAMES_PER_SECOND));
+            *flight.camera()
+        };
+        assert_eq!(after(0.4), CAMERA);
+        assert_ne!(after(0.6), CAMERA);
+        assert_eq!(after(0.6), after(1.4));
+        assert_ne!(after(1.4), after(1.6));
+    }
+
+    #[test]
     fn a_flight_between_level_cameras_stays_level() {
         let to = Camera { look_from: DVec3::new(-3.0, 4.0, -6.0), ..CAMERA };
         for camera in flown(Flight::between(&CAMERA, &to, 7.0)) {

@@ -205,6 +205,8 @@ mod tests {
         assert!(text.contains("Two surfaces at the same place tie"), "{text}");
         assert!(summary(&report).contains("1 of 2 cases right on avx2"), "{}", summary(&report));
         report.cases[0].book[0].verdict = Verdict::Wrong("off".into());
+        let double = BookMeasured { precision: "f64", mean: None, offset: None, verdict: Verdict::Right };
+        report.cases[0].book.push(double);
         let text = summary(&report);
         assert!(text.ends_with("; with the book's arithmetic, 1 in f32 and 2 in f64\n"), "{text}");
         (report.chosen, report.interrupted) = (5, true);
