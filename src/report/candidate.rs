@@ -217,22 +217,25 @@ mod tests {
     use crate::render::{BackendInfo, RenderError, Stats};
     use std::ops::Range;
 
+    /// A measurement without errors that took so long.
+    fn measured(samples: u64, seconds: f64) -> Measured {
+        Measured {
+            samples,
+            trace_seconds: seconds,
+            wall_seconds: seconds,
+            device_seconds: None,
+            mse: 0.0,
+            rel_mse: 0.0,
+            flip: 0.0,
+            mse_estimate: None,
+            rejected: 0,
+        }
+    }
+
     #[test]
     fn the_last_step_should_end_within_the_limits() {
         let steps = |seconds: f64, samples: u64| -> Vec<u64> {
-            let measure = |samples: u64| {
-                Ok(Some(Measured {
-                    samples,
-                    trace_seconds: samples as f64,
-                    wall_seconds: samples as f64,
-                    device_seconds: None,
-                    mse: 0.0,
-                    rel_mse: 0.0,
-                    flip: 0.0,
-                    mse_estimate: None,
-                    rejected: 0,
-                }))
-            };
+            let measure = |samples| Ok(Some(measured(samples, samples as f64)));
             let points = powers_of_two(Limits { seconds, samples }, &|| true, measure).unwrap().unwrap();
             points.iter().map(|point| point.samples).collect()
         };
@@ -308,17 +311,7 @@ mod tests {
         let mut taken = Vec::new();
         let points = powers_of_two(limits, &go_on, |samples| {
             taken.push(samples);
-            Ok(Some(Measured {
-                samples,
-                trace_seconds: 1.0,
-                wall_seconds: 1.0,
-                device_seconds: None,
-                mse: 0.0,
-                rel_mse: 0.0,
-                flip: 0.0,
-                mse_estimate: None,
-                rejected: 0,
-            }))
+            Ok(Some(measured(samples, 1.0)))
         });
         assert!(points.unwrap().is_none());
         assert_eq!(taken, [1, 2, 4]);

@@ -105,22 +105,13 @@ fn floor(scene: &str, data: &Data, times: [f64; 2], bottom: f64) -> Option<Serie
 
 #[cfg(test)]
 mod tests {
-    use super::super::data::{Curve, Rounding, SCHEMA, Settings};
+    use super::super::data::{Curve, Rounding, SCHEMA};
     use super::super::summary::CurvePoint;
+    use super::super::tests::settings;
     use super::*;
     use crate::statistics::fit::Crossing;
 
     fn data() -> Data {
-        let settings = Settings {
-            software: "Weekender 1.2.3".to_owned(),
-            size: (48, 27),
-            seeds: 4,
-            time_limit: 10.0,
-            max_samples: 64,
-            estimate_error: true,
-            reference_samples: 512,
-            reference: "cpu".to_owned(),
-        };
         let rounding = Rounding {
             scene: "book".to_owned(),
             backend: "cpu".to_owned(),
@@ -131,7 +122,7 @@ mod tests {
             floor_limit: 0.5,
         };
         let (references, runs) = (Vec::new(), Vec::new());
-        Data { schema: SCHEMA, settings, references, runs, rounding: vec![rounding] }
+        Data { schema: SCHEMA, settings: settings(), references, runs, rounding: vec![rounding] }
     }
 
     fn point(wall_seconds: f64, rmse: f64) -> CurvePoint {

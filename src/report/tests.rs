@@ -30,6 +30,20 @@ fn measured(curve: u32, seed: u32, samples: u64) -> Measured {
     }
 }
 
+/// The settings of small, made-up reports.
+pub(super) fn settings() -> Settings {
+    Settings {
+        software: "Weekender 1.2.3".to_owned(),
+        size: (48, 27),
+        seeds: 4,
+        time_limit: 10.0,
+        max_samples: 64,
+        estimate_error: true,
+        reference_samples: 512,
+        reference: "cpu".to_owned(),
+    }
+}
+
 fn made_up() -> Data {
     let mut runs = Vec::new();
     let curves = [("c89", "independent"), ("cpu", "sobol"), ("cpu", "independent"), ("gpu", "sobol")];
@@ -68,18 +82,8 @@ fn made_up() -> Data {
         mse: 1e-6,
         rel_mse: 2e-6,
     };
-    let settings = Settings {
-        software: "Weekender 1.2.3".to_owned(),
-        size: (48, 27),
-        seeds: 4,
-        time_limit: 10.0,
-        max_samples: 64,
-        estimate_error: true,
-        reference_samples: 512,
-        reference: "cpu".to_owned(),
-    };
     let rounding = vec![rounding("cpu", Some(0.03)), rounding("gpu", None)];
-    Data { schema: SCHEMA, settings, references: vec![reference], runs, rounding }
+    Data { schema: SCHEMA, settings: settings(), references: vec![reference], runs, rounding }
 }
 
 #[test]

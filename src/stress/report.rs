@@ -145,34 +145,9 @@ mod tests {
 
     #[test]
     fn the_ratio_of_times_is_that_of_the_slowest_backend() {
-        let measured = |seconds, tame_seconds| Measured {
-            backend: "cpu".to_owned(),
-            form: "plain",
-            mean: None,
-            offset: None,
-            deviation: None,
-            rounding: None,
-            seconds,
-            tame_seconds,
-            verdict: Verdict::Right,
-        };
-        let report = CaseReport {
-            id: "a".to_owned(),
-            family: "A",
-            stiff: String::new(),
-            expected: String::new(),
-            why: "",
-            tolerance: 0.0,
-            spheres: 1,
-            measured: vec![
-                measured(Some(3.0), Some(2.0)),
-                measured(Some(8.0), Some(2.0)),
-                measured(Some(1.0), Some(2.0)),
-                measured(Some(9.0), None),
-            ],
-            first_hits: None,
-            book: Vec::new(),
-        };
+        let measured = [(3.0, Some(2.0)), (8.0, Some(2.0)), (1.0, Some(2.0)), (9.0, None)]
+            .map(|(seconds, tame)| Measured { seconds: Some(seconds), tame_seconds: tame, ..measured(None) });
+        let report = CaseReport { measured: measured.into(), ..report(&[]) };
         assert_eq!(report.time_ratio(), Some(4.0));
     }
 
@@ -182,18 +157,21 @@ mod tests {
         assert!(is_right(40) && is_right(38) && !is_right(37));
     }
 
-    fn report(offsets: &[Option<f64>]) -> CaseReport {
-        let measured = |offset: &Option<f64>| Measured {
+    fn measured(offset: Option<f64>) -> Measured {
+        Measured {
             backend: "cpu".to_owned(),
             form: "plain",
             mean: None,
-            offset: *offset,
+            offset,
             deviation: None,
             rounding: offset.map(|bias| Paired { bias, ..Paired::default() }),
             seconds: None,
             tame_seconds: None,
             verdict: Verdict::Right,
-        };
+        }
+    }
+
+    fn report(offsets: &[Option<f64>]) -> CaseReport {
         CaseReport {
             id: "a".to_owned(),
             family: "A",
@@ -202,7 +180,7 @@ mod tests {
             why: "",
             tolerance: 0.0,
             spheres: 1,
-            measured: offsets.iter().map(measured).collect(),
+            measured: offsets.iter().map(|offset| measured(*offset)).collect(),
             first_hits: None,
             book: Vec::new(),
         }
