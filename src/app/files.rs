@@ -186,3 +186,72 @@ fn read<T: Send + 'static>(
         answers.answer(context).give(Err(reason));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::kept::on_screen::{OnScreen, small_film};
+
+    #[test]
+    fn a_text_is_written_or_it_is_said_why_not() {
+        let directory = tempfile::tempdir().unwrap();
+        let (files, context) = (Files::default(), Context::default());
+        let path = directory.path().join("plot.csv");
+        files.save_text(&context, &path, "1,2\n");
+        assert_eq!(files.saved.take(), Some(Ok(path.clone())));
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "1,2\n");
+        files.save_text(&context, &path.join("plot.csv"), "1,2\n");
+        assert!(matches!(files.saved.take(), Some(Err(_))), "a file is no folder");
+    }
+
+    #[test]
+    fn a_film_is_saved_under_a_name_of_its_format() {
+        let directory = tempfile::tempdir().unwrap();
+        let (files, context) = (Files::default(), Context::default());
+        let save = |format: OutputFormat, name: &str| {
+            let path = directory.path().join(name);
+            let screen = OnScreen::new(small_film(1, 0.5));
+            screen.before_answers(|subject| files.save(&context, subject, (format, path.clone())));
+            let outcome = files.saved.take().unwrap();
+            assert_eq!(outcome.is_ok(), path.exists(), "{name}");
+            outcome.map(|saved| assert_eq!(saved, path))
+        };
+        for (format, name) in
+            [(OutputFormat::Png, "a.png"), (OutputFormat::P6, "a.PPM"), (OutputFormat::Exr, "a.exr")]
+        {
+            assert_eq!(save(format, name), Ok(()));
+        }
+        let refused = save(OutputFormat::Png, "b.exr").unwrap_err();
+        assert!(refused.ends_with("b.exr does not end in .png"), "{refused}");
+    }
+
+    #[test]
+    fn what_is_copied_or_cut_out_is_a_part_of_the_picture() {
+        let directory = tempfile::tempdir().unwrap();
+        let (files, context) = (Files::default(), Context::default());
+        let screen = OnScreen::new(small_film(8, 2.0));
+        let crop = |first| Some(Crop { first, size: [3, 2] });
+        for (crop, size, words) in [
+            (None, [4, 2], "picture: 4x2, 8 samples per pixel"),
+            (crop([1, 0]), [3, 2], "crop: 3x2 at 1,0, 8 samples per pixel"),
+            (crop([2, 1]), [2, 1], "crop: 2x1 at 2,1, 8 samples per pixel"),
+            (crop([4, 0]), [4, 2], "picture: 4x2, 8 samples per pixel"),
+        ] {
+            screen.before_answers(|subject| files.copy(&context, subject, crop));
+            let (picture, told) = files.copied.take().unwrap();
+            assert_eq!((picture.size, told.as_str()), (size, words));
+            // The root of a quarter.
+            assert_eq!(picture.pixels.last().map(|pixel| pixel.to_array()), Some([128, 128, 128, 255]));
+        }
+        let path = directory.path().join("crop.png");
+        let save = |first| {
+            let crop = Crop { first, size: [3, 2] };
+            screen.before_answers(|subject| files.save_crop(&context, subject, crop, path.clone()));
+            files.saved.take().unwrap()
+        };
+        assert_eq!(save([4, 0]), Err("the crop, 3x2 at 4,0, is outside of the picture".to_owned()));
+        assert_eq!(save([2, 0]), Ok(path.clone()));
+        let read = image::open(&path).unwrap();
+        assert_eq!([read.width(), read.height()], [2, 2]);
+    }
+}

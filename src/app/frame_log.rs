@@ -152,4 +152,16 @@ mod tests {
         let [line] = &lines[..] else { panic!("{lines:?}") };
         assert!(line[0] == "latency" && line[1].parse::<f64>().unwrap() >= 0.0, "{line:?}");
     }
+
+    #[test]
+    fn commands_and_renders_can_be_read_at_once() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("log.csv");
+        let mut log = FrameLog::create(&path).unwrap();
+        let ends_with = |end: &str| std::fs::read_to_string(&path).unwrap().ends_with(end);
+        log.command("Undo");
+        assert!(ends_with(",Undo\n"));
+        log.tracing(3, "cpu");
+        assert!(ends_with(",3,cpu\n"));
+    }
 }

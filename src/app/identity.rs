@@ -43,3 +43,46 @@ impl Identity {
         subject.inspect(move |film| answer.give(identity.is_of(film)));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::kept::on_screen::{OnScreen, small_film};
+    use crate::progressive::FilmIdentity;
+
+    #[test]
+    fn films_are_the_same_if_all_their_sums_are() {
+        let (screen, context) = (OnScreen::new(small_film(7, 14.0)), Context::default());
+        let other = |samples: u64, sum: f64| {
+            let film = small_film(samples, sum);
+            let identity = Some(FilmIdentity::of(&film));
+            Arc::new(ReferenceMeans { identity, ..ReferenceMeans::of(&film) })
+        };
+        let same = other(7, 14.0);
+        let unknown = Arc::new(ReferenceMeans { identity: None, ..(*same).clone() });
+        let mut identity = Identity::default();
+        // What is known before the film has answered, and then.
+        let mut is_same = |other: Option<&Arc<ReferenceMeans>>| {
+            let early = screen.before_answers(|subject| {
+                identity.follow(other, subject, &context);
+                identity.is_same()
+            });
+            identity.follow(other, &screen.subject(), &context);
+            [early, identity.is_same()]
+        };
+        assert_eq!(is_same(None), [false, false]);
+        assert_eq!(is_same(Some(&same)), [false, true]);
+        assert_eq!(is_same(Some(&same)), [true, true]);
+        for unlike in [other(7, 13.0), other(6, 14.0), unknown] {
+            assert_eq!(is_same(Some(&unlike)), [false, false]);
+            assert_eq!(is_same(Some(&same)), [false, true]);
+        }
+        assert_eq!(is_same(None), [false, false], "nothing is compared");
+        screen.before_answers(|subject| {
+            for _ in 0..3 {
+                identity.follow(Some(&same), subject, &context);
+            }
+        });
+        assert_eq!([identity.answers.take(), identity.answers.take()], [Some(true), None], "once");
+    }
+}

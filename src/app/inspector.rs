@@ -214,6 +214,7 @@ fn pixel_ui(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::kept::on_screen::{OnScreen, small_film};
     use crate::app::model::origin::{Origin, Source};
     use crate::app::tests::{Drawings, part};
     use crate::recipe::Recipe;
@@ -307,5 +308,43 @@ mod tests {
             drawings.add(name, &panel);
         }
         drawings.keep("inspector");
+    }
+
+    #[test]
+    fn each_pixel_is_asked_for_once() {
+        let (screen, context) = (OnScreen::new(small_film(1, 0.0625)), egui::Context::default());
+        let mut inspector = Inspector::default();
+        // Whether the film is asked, and what it answers.
+        let ask = |inspector: &mut Inspector, at: Option<[u32; 2]>| {
+            let is_asked = screen.before_answers(|subject| {
+                inspector.hover(at);
+                for _ in 0..2 {
+                    inspector.follow(subject, &context);
+                }
+                inspector.waiting.strong_count() > 0
+            });
+            assert_eq!(inspector.waiting.strong_count(), 0);
+            let [answer, second] = [inspector.answers.take(), inspector.answers.take()];
+            assert_eq!(second, None);
+            (is_asked, answer)
+        };
+        assert_eq!(ask(&mut inspector, None), (false, None), "the pointer is elsewhere");
+        let last = Pixel { at: [3, 1], mean: [0.0625; 3], error: None, bytes: [64; 3], samples: 1 };
+        let dark = Pixel { at: [3, 0], mean: [0.0; 3], bytes: [0; 3], ..last.clone() };
+        assert_eq!(ask(&mut inspector, Some([3, 1])), (true, Some(last.clone())));
+        assert_eq!(ask(&mut inspector, Some([3, 1])), (false, None), "it is known");
+        assert_eq!(ask(&mut inspector, None), (false, None));
+        assert_eq!(inspector.hovered(), Some([3, 1]), "the pointer has left the picture");
+        assert_eq!(ask(&mut inspector, Some([3, 0])), (true, Some(dark)));
+        for outside in [[4, 0], [0, 2]] {
+            assert_eq!(ask(&mut inspector, Some(outside)), (true, None));
+        }
+        inspector.answers.answer(&context).give(last.clone());
+        inspector.follow(&screen.subject(), &context);
+        assert_eq!(inspector.pixel(), Some(&last));
+        inspector.hover(Some([3, 1]));
+        inspector.forget();
+        assert_eq!((inspector.pixel(), inspector.hovered()), (None, Some([3, 1])));
+        assert_eq!(ask(&mut inspector, None), (true, Some(last)), "of another picture");
     }
 }

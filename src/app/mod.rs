@@ -338,6 +338,14 @@ mod tests {
         egui::RawInput { screen_rect: Some(screen), ..egui::RawInput::default() }
     }
 
+    /// How long the window may sleep after a frame that does this.
+    pub(super) fn sleep_after(context: &egui::Context, mut act: impl FnMut(&egui::Context)) -> Duration {
+        // What earlier frames have asked for is over.
+        (0..4).for_each(|_| drop(context.run_ui(input(), |_| {})));
+        let output = context.run_ui(input(), |ui| act(ui.ctx()));
+        output.viewport_output[&egui::ViewportId::ROOT].repaint_delay
+    }
+
     /// Draws frames until the condition holds.
     pub(super) fn until(
         window: &mut Window,

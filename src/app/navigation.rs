@@ -37,9 +37,6 @@ pub fn orbited_to(camera: &Camera, pivot: DVec3, eye: DVec3) -> Camera {
     let level = |arm: DVec3| arm - up * arm.dot(up);
     let (from, to) = (level(DQuat::from_axis_angle(-side, raised) * old), level(new));
     let turned = up.dot(from.cross(to)).atan2(from.dot(to));
-    if !(raised.is_finite() && turned.is_finite()) {
-        return *camera;
-    }
     let ahead = rotation(camera, turned, raised) * (camera.look_at - camera.look_from);
     kept(camera, Camera { look_from: eye, look_at: eye + ahead, ..*camera })
 }
@@ -131,10 +128,13 @@ mod tests {
         let quarter = std::f64::consts::FRAC_PI_2;
         close(orbit(&CAMERA, DVec3::ZERO, quarter, 0.0).look_from, DVec3::new(-4.0, 0.0, 0.0));
         close(look(&CAMERA, quarter, 0.0).look_at, DVec3::new(4.0, 0.0, 4.0));
-        assert!(orbit(&CAMERA, DVec3::ZERO, 0.0, 0.3).look_from.y > 0.0);
-        assert!(look(&CAMERA, 0.0, 0.3).look_at.y > 0.0);
+        let (sine, cosine) = 0.3_f64.sin_cos();
+        close(orbit(&CAMERA, DVec3::ZERO, 0.0, 0.3).look_from, 4.0 * DVec3::new(0.0, sine, cosine));
+        close(look(&CAMERA, 0.0, 0.3).look_at, 4.0 * DVec3::new(0.0, sine, 1.0 - cosine));
         close(dolly(&CAMERA, DVec3::ZERO, 0.5).look_from, DVec3::new(0.0, 0.0, 2.0));
-        close(fly(&CAMERA, DVec3::new(1.0, 2.0, 3.0)).look_from, DVec3::new(1.0, 2.0, 1.0));
+        let flown = fly(&CAMERA, DVec3::new(1.0, 2.0, 3.0));
+        close(flown.look_from, DVec3::new(1.0, 2.0, 1.0));
+        close(flown.look_at, DVec3::new(1.0, 2.0, -3.0));
         assert_eq!(focus(&CAMERA, DVec3::new(9.0, 9.0, 1.0)).focus_distance, Some(3.0));
         assert_eq!(recentre(&CAMERA, CAMERA.look_from), CAMERA, "no direction: not made");
         assert_eq!(focus(&CAMERA, DVec3::new(0.0, 0.0, 5.0)), CAMERA, "behind the eye: not made");
@@ -165,6 +165,69 @@ mod tests {
             }
         }
         assert_eq!(dolly(&CAMERA, CAMERA.look_from, 0.5).look_from, CAMERA.look_from);
+    }
+
+    #[test]
+    fn a_dolly_scales_distances_and_comes_nearer_to_the_depth_of_what_is_ahead() {
+        for (depth, factor, distance) in
+            [(1.0, 0.5, 1.0), (64.0, 0.5, 8.0), (1.0, 2.0, 8.0), (-1.0, 0.5, 2.0)]
+        {
+            let moved = dolly(&CAMERA, CAMERA.look_from - DVec3::Z * depth, factor);
+            let found = moved.look_from.distance(moved.look_at);
+            assert!((found - distance).abs() < 1e-9, "{depth}, {factor}: {found}");
+        }
+        let aside = dolly(&CAMERA, CAMERA.look_from + DVec3::X, 0.5);
+        assert_eq!((aside.look_from, aside.look_at), (DVec3::new(0.5, 0.0, 4.0), DVec3::new(0.5, 0.0, 2.0)));
+    }
+
+    #[test]
+    fn a_dolly_stops_where_rounding_would_turn_the_camera() {
+        // A billionth of the coordinates is a millionth.
+        let point = DVec3::new(0.0, 0.0, 1000.0);
+        let at =
+            |distance: f64| Camera { look_from: point + DVec3::Z * distance, look_at: DVec3::ZERO, ..CAMERA };
+        for (distance, factor, is_made) in [(1.5e-6, 0.7, true), (1.5e-6, 0.6, false), (0.5e-6, 1.5, true)] {
+            assert_eq!(dolly(&at(distance), point, factor) != at(distance), is_made, "{distance}, {factor}");
+        }
+    }
+
+    #[test]
+    fn a_turn_ends_a_degree_before_the_poles() {
+        for (up, degrees) in [(9.0, 1.0), (-9.0, 179.0)] {
+            let eye = orbit(&CAMERA, DVec3::ZERO, 0.0, up).look_from;
+            assert!((eye.angle_between(DVec3::Y).to_degrees() - degrees).abs() < 1e-6, "{up}: {eye}");
+        }
+    }
+
+    #[test]
+    fn an_eye_at_another_distance_looks_as_from_the_old_one() {
+        let orbited = orbit(&CAMERA, DVec3::ZERO, 0.7, 0.4);
+        for share in [0.5, 3.0] {
+            let found = orbited_to(&CAMERA, DVec3::ZERO, share * orbited.look_from);
+            assert_eq!(found.look_from, share * orbited.look_from);
+            let [ahead, expected] = [found, orbited].map(|camera| camera.look_at - camera.look_from);
+            assert!(ahead.distance(expected) < 1e-9, "{share}: {ahead}, not {expected}");
+        }
+        assert_eq!(orbited_to(&CAMERA, DVec3::ZERO, DVec3::ZERO), CAMERA, "there is no such side");
+    }
+
+    #[test]
+    fn an_eye_too_far_up_looks_down_as_far_as_it_can() {
+        // An orbit up and down about a pivot at the side goes around a smaller circle.
+        let (pivot, eye) = (DVec3::X * 3.0, DVec3::new(3.0, 5.0, 0.0));
+        let found = orbited_to(&CAMERA, pivot, eye);
+        assert_eq!(found.look_from, eye);
+        let off = (found.look_at - eye).angle_between(DVec3::NEG_Y).to_degrees();
+        assert!((off - 1.0).abs() < 1e-6, "{off} degrees from the pole");
+    }
+
+    #[test]
+    fn only_a_view_along_up_is_tilted() {
+        for (off, is_tilted) in [(0.9e-6, true), (1.1e-6, false)] {
+            let camera = Camera { look_from: DVec3::new(off, 1.0, 0.0), vup: DVec3::NEG_Z, ..CAMERA };
+            assert_eq!(upright(&camera, camera.look_at, DVec3::Y) != camera, is_tilted, "{off}");
+        }
+        assert_eq!(upright(&CAMERA, CAMERA.look_at, DVec3::ZERO), CAMERA);
     }
 
     #[test]

@@ -19,8 +19,11 @@ use super::title_bar;
 use super::window::Window;
 use crate::output::OutputFormat;
 use eframe::egui::{self, ViewportCommand};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
+
+/// Where the companion is written, from the working directory.
+const COMPANION: &str = "companion/index.html";
 
 /// Longer than the time between two pictures.
 const PICTURES_APART: Duration = Duration::from_millis(300);
@@ -188,7 +191,9 @@ impl Window {
                 let url = self.document().stage().map_or_else(|| crate::stages::BOOK_URL.into(), |s| s.url());
                 self.open_page(context, url);
             }
-            Command::Companion => self.open_companion(context),
+            Command::Companion => {
+                self.open_companion(context, &std::path::absolute(COMPANION).unwrap_or_default());
+            }
             Command::Stages => {
                 self.model.remembered.has_panels = true;
                 title_bar::open_stage_list(context);
@@ -216,14 +221,12 @@ impl Window {
     }
 
     /// Opens the companion at the stage's figure, if the page has been written.
-    fn open_companion(&mut self, context: &egui::Context) {
-        let page = std::path::absolute("companion/index.html").unwrap_or_default();
+    fn open_companion(&mut self, context: &egui::Context, page: &Path) {
         if page.is_file() {
-            self.open_page(context, companion::url(&page, self.document().stage()));
+            self.open_page(context, companion::url(page, self.document().stage()));
         } else {
-            let message =
-                "There is no companion/index.html here; write it with: weekender companion --out companion";
-            self.toasts.bad(message.to_owned());
+            let message = "write it with: weekender companion --out companion";
+            self.toasts.bad(format!("There is no {COMPANION} here; {message}"));
         }
     }
 

@@ -196,6 +196,9 @@ impl Window {
 mod tests {
     use super::*;
     use crate::app::model::kept::Kept;
+    use crate::app::model::kept_view::{KeptView, ShownSlots};
+    use crate::app::model::slots::Slot;
+    use crate::app::model::view::ViewState;
     use crate::app::recovery::Left;
     use crate::app::tests::window;
     use crate::film::Film;
@@ -235,9 +238,7 @@ mod tests {
     #[test]
     fn a_picture_that_could_not_be_written_lasts_once_it_is() {
         let mut window = window(STAGE);
-        let mut film = Film::new(4, 2, 1);
-        film.record(0..1, 0).unwrap();
-        let kept = Arc::new(Kept::new(window.document().clone(), film, Arc::default(), None));
+        let kept = kept(&window);
         let mut is_passing_after = |news| {
             window.take_news(news);
             window.model.view.slots.is_passing(&kept)
@@ -296,5 +297,78 @@ mod tests {
         let awaited: Vec<_> = slots.awaited().map(|(number, coming)| (number, coming.id.as_str())).collect();
         assert_eq!(awaited, [(one, "a"), (two, "b"), (three, "c")]);
         assert!(window.messages().is_empty(), "{:?}", window.messages());
+    }
+
+    /// What a window remembers that showed this slot.
+    fn shown(number: SlotNumber, kept: &Arc<Kept>) -> ShownSlots {
+        let mut view = ViewState::default();
+        view.slots.put(number, Slot { name: String::new(), kept: Arc::clone(kept) });
+        view.look(Some(number));
+        KeptView::of(&view).slots()
+    }
+
+    fn kept(window: &Window) -> Arc<Kept> {
+        let mut film = Film::new(4, 2, 1);
+        film.record(0..1, 0).unwrap();
+        Arc::new(Kept::new(window.document().clone(), film, Arc::default(), None))
+    }
+
+    #[test]
+    fn the_picture_that_is_to_be_shown_is_read_first() {
+        let directory = tempfile::tempdir().unwrap();
+        let [one, two, three, ..] = SlotNumber::ALL;
+        let entries = [one, two, three].map(|number| entry(Some(number), &number.to_string(), [4, 2]));
+        let files = holding(directory.path(), &entries);
+        let mut window = window(STAGE);
+        window.begin_slots(&files, u64::MAX);
+        window.recovery.shown_slots = Some(shown(three, &kept(&window)));
+        window.read_slots(&Context::default());
+        let (begin, mut read) = (Instant::now(), Vec::new());
+        while read.len() < 3 {
+            assert!(begin.elapsed() < Duration::from_secs(60), "only {read:?}");
+            std::thread::sleep(Duration::from_millis(1));
+            read.extend(window.recovery.reader.take().map(|arrival| arrival.id));
+        }
+        assert_eq!(read, ["3", "1", "2"]);
+    }
+
+    #[test]
+    fn slots_are_shown_again_once_their_pictures_are_there() {
+        let mut window = window(STAGE);
+        let (one, kept) = (SlotNumber::ALL[0], kept(&window));
+        window.model.view.slots.expect(one, entry(Some(one), "1", [4, 2]).coming());
+        window.recovery.shown_slots = Some(shown(one, &kept));
+        window.show_slots_again();
+        assert!(window.looked().is_none() && window.recovery.shown_slots.is_some());
+        window.model.view.slots.arrive("1", Some(kept));
+        window.show_slots_again();
+        assert_eq!(window.looked(), Some(one));
+        assert!(window.recovery.shown_slots.is_none(), "once");
+    }
+
+    #[test]
+    fn a_picture_that_cannot_be_read_is_kept_under_another_name() {
+        let directory = tempfile::tempdir().unwrap();
+        let three = SlotNumber::ALL[2];
+        let entry = entry(Some(three), "c", [4, 2]);
+        let mut window = window(STAGE);
+        window.recovery.files = Some(holding(directory.path(), std::slice::from_ref(&entry)));
+        let mut told = || {
+            window.leave_out(three, &entry.coming(), "it is damaged");
+            window.messages().pop().unwrap()
+        };
+        let first = told();
+        let begin = "Slot 3 (picture c) does not come back: it is damaged";
+        let aside =
+            first.strip_prefix(&format!("{begin}; it is kept as ")).unwrap_or_else(|| panic!("{first}"));
+        assert_eq!(std::fs::read_to_string(aside).unwrap(), "a film");
+        assert_eq!(told(), begin, "it is gone from its place");
+    }
+
+    #[test]
+    fn it_is_said_why_a_picture_is_not_written() {
+        let mut window = window(STAGE);
+        window.take_news(News::NotWritten { id: None, words: Some("the disk is full".to_owned()) });
+        assert_eq!(window.messages(), ["the disk is full"]);
     }
 }

@@ -59,7 +59,7 @@ fn whole(seconds: f64) -> String {
 mod tests {
     use super::*;
     use crate::film::ErrorEstimate;
-    use crate::progressive::Phase;
+    use crate::progressive::{HistoryPoint, Phase};
     use std::time::Duration;
 
     #[test]
@@ -99,5 +99,78 @@ mod tests {
             status.samples_per_pixel = samples;
             assert_eq!(prediction(&status, Some(0.002)).is_some(), is_predicted, "{samples}");
         }
+    }
+
+    fn at(
+        backend: &'static str,
+        samples_per_pixel: u64,
+        trace_seconds: f64,
+        rmse_estimate: f64,
+    ) -> HistoryPoint {
+        HistoryPoint { backend, samples_per_pixel, trace_seconds, rmse_estimate, rel_mse_estimate: 0.0 }
+    }
+
+    fn tracing(history: Vec<HistoryPoint>, seconds: f64, rmse: f64) -> Status {
+        Status {
+            samples_per_pixel: 1000,
+            phase: Phase::Tracing,
+            trace: Duration::from_secs_f64(seconds),
+            error: Some(ErrorEstimate { rmse, rmse_deviation: 0.0, rel_mse: 0.0 }),
+            history,
+            ..Status::default()
+        }
+    }
+
+    #[test]
+    fn the_newest_estimate_comes_after_those_of_the_history() {
+        let history = vec![
+            at("cpu", 1, 0.0, 0.5),
+            at("cpu", 2, 1.0, 0.25),
+            at("cpu", 4, 2.0, 0.0),
+            at("cpu", 8, 3.0, 0.125),
+        ];
+        let points = |status: &Status| points(status).iter().map(|p| (p.time, p.error)).collect::<Vec<_>>();
+        let mut status = tracing(history, 4.0, 0.0625);
+        assert_eq!(points(&status), [(1.0, 0.25), (3.0, 0.125), (4.0, 0.0625)]);
+        status.error = None;
+        assert_eq!(points(&status), [(1.0, 0.25), (3.0, 0.125)]);
+        status.error = Some(ErrorEstimate { rmse: 0.0, rmse_deviation: 0.0, rel_mse: 0.0 });
+        assert_eq!(points(&status), [(1.0, 0.25), (3.0, 0.125)]);
+    }
+
+    #[test]
+    fn only_the_clear_estimates_of_the_present_backend_count() {
+        let now = Point { time: 16.0, error: 0.02 };
+        let few = vec![at("gpu", 16, 4.0, 0.05), at("gpu", 200, 12.0, 0.027)];
+        let many = [few.clone(), vec![at("gpu", 400, 13.0, 0.026), at("gpu", 800, 14.0, 0.021)]].concat();
+        for counted in [few, many] {
+            let before = vec![at("gpu", 64, 1.0, 0.9), at("cpu", 128, 2.0, 0.8), at("gpu", 15, 3.0, 0.7)];
+            let points: Vec<Point> =
+                counted.iter().map(|p| Point { time: p.trace_seconds, error: p.rmse_estimate }).collect();
+            let expected = predict(&points, now, 0.01).unwrap();
+            let found = prediction(&tracing([before, counted].concat(), now.time, now.error), Some(0.01));
+            let from_now = |time: f64| time - now.time;
+            let (time, range) = (from_now(expected.time), expected.range.map(from_now));
+            assert_eq!(found, Some(Prediction { time, range }));
+        }
+        let status = tracing(Vec::new(), now.time, now.error);
+        assert!(prediction(&status, Some(0.01)).is_some());
+        let over = Status { phase: Phase::Failed("the device is gone".to_owned()), ..status.clone() };
+        assert_eq!(prediction(&over, Some(0.01)), None);
+        assert_eq!(prediction(&Status { error: None, ..status }, Some(0.01)), None);
+    }
+
+    #[test]
+    fn what_is_too_far_ahead_is_not_told() {
+        // Of ten seconds, four times as many halve the error.
+        let status = tracing(Vec::new(), 10.0, 0.004);
+        for (seconds, is_told) in [(999_999.0, true), (1_000_001.0, false)] {
+            let target = 0.004 / f64::sqrt((seconds + 10.0) / 10.0);
+            assert_eq!(prediction(&status, Some(target)).is_some(), is_told, "{seconds}");
+        }
+        let words = |range| prediction_words(&Prediction { time: 38.0, range });
+        assert_eq!(words([31.0, 999_999.0]), "in about 38 s (31 to 999999)");
+        assert_eq!(words([31.0, 1e6]), "in about 38 s (31 or more)");
+        assert_eq!(words([37.5, 1e6]), "in about 38 s (38 or more)");
     }
 }

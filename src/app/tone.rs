@@ -169,8 +169,9 @@ fn paint(ui: &mut Ui, histogram: &Histogram, exposure: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::kept::on_screen::{OnScreen, small_film};
     use crate::app::model::view::With;
-    use crate::app::tests::{Case, Drawings, dressed, facts_of, leave, part, rest_at};
+    use crate::app::tests::{Case, Drawings, dressed, facts_of, leave, part, rest_at, sleep_after};
     use crate::film::Film;
     use crate::progressive::{Phase, Status};
     use egui_kittest::Harness;
@@ -275,5 +276,40 @@ mod tests {
         rest_at(&mut harness, middle);
         drawings.add("the pointer is on it", &harness);
         drawings.keep("tone");
+    }
+
+    #[test]
+    fn a_picture_that_refines_is_counted_again_after_a_while_and_another_one_at_once() {
+        let (screen, context) = (OnScreen::new(small_film(8, 16.0)), egui::Context::default());
+        let mut tone = ToneUi::default();
+        let is_asked = |tone: &mut ToneUi, white: f64| {
+            screen.before_answers(|subject| {
+                tone.follow(subject, white, &context);
+                tone.waiting.strong_count() > 0
+            })
+        };
+        assert!(!is_asked(&mut tone, 1.0), "nobody looks at it");
+        tone.is_open = true;
+        assert!(is_asked(&mut tone, 1.0));
+        assert!(!is_asked(&mut tone, 1.0), "it is known");
+        let counted = tone.histogram.take().unwrap();
+        assert_eq!((counted.pixels, counted.clipped, counted.largest), (8, 1, 2.0));
+        assert!(is_asked(&mut tone, 4.0), "another white");
+        assert!(!is_asked(&mut tone, 4.0));
+        assert_eq!(tone.histogram.as_ref().map(|histogram| histogram.clipped), Some(0));
+
+        let film = screen.subject().film_id();
+        let (just_now, earlier) = (Instant::now() + Duration::from_secs(3600), Instant::now() - INTERVAL);
+        tone.asked = Some((film, 7, 4.0, just_now));
+        let mut is_waiting = true;
+        let sleep = sleep_after(&context, |context| {
+            tone.follow(&screen.subject(), 4.0, context);
+            is_waiting = tone.waiting.strong_count() > 0;
+        });
+        assert!(!is_waiting && sleep <= INTERVAL && sleep > INTERVAL / 2, "{sleep:?}");
+        tone.asked = Some((film, 7, 4.0, earlier));
+        assert!(is_asked(&mut tone, 4.0));
+        tone.asked = Some((FilmId::Live(9), 8, 4.0, just_now));
+        assert!(is_asked(&mut tone, 4.0), "another film");
     }
 }

@@ -310,3 +310,6 @@ fn document_of(options: &WindowOptions) -> Document {
     document.stop = stop.unwrap_or(document.origin.usual_stop());
     document
 }
+
+#[cfg(test)]
+mod tests;

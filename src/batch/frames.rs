@@ -122,12 +122,7 @@ impl<'a> Run<'a> {
                     self.rendering += begin.elapsed();
                 }
                 Ok(false) => return Ok(()),
-                Err(Failure::Run(error)) if self.rendered + self.kept > 0 => {
-                    let done = counted(u64::from(self.rendered + self.kept), "frame");
-                    return Err(Failure::BrokeOff(error.context(format!(
-                        "frame {frame} failed; {done} before it stay, and the same command goes on"
-                    ))));
-                }
+                Err(Failure::Run(error)) => return Err(broken_off(error, frame, self.rendered + self.kept)),
                 Err(error) => return Err(error),
             }
         }
@@ -254,6 +249,16 @@ impl<'a> Run<'a> {
     }
 }
 
+/// The failure of a frame before which `done` frames are whole.
+fn broken_off(error: anyhow::Error, frame: u32, done: u32) -> Failure {
+    if done == 0 {
+        return Failure::Run(error);
+    }
+    let done = counted(u64::from(done), "frame");
+    let words = format!("frame {frame} failed; {done} before it stay, and the same command goes on");
+    Failure::BrokeOff(error.context(words))
+}
+
 /// How far the animation is: the frame in work and its samples, frames done and in total, and how long rendering took for
 /// how many frames.
 fn so_far(
@@ -335,5 +340,59 @@ mod tests {
         let told = |took| so_far(3, 4, [2, 6], took);
         assert_eq!(told((Duration::ZERO, 0)), "frame 3: 2 of 6 frames done, 4 spp");
         assert_eq!(told((Duration::from_secs(5), 2)), "frame 3: 2 of 6 frames done, 4 spp, 10.0 s left");
+    }
+
+    #[test]
+    fn a_run_breaks_off_only_if_there_are_frames_that_stay() {
+        let failure = |done| broken_off(anyhow!("no space"), 7, done);
+        assert!(matches!(failure(0), Failure::Run(error) if format!("{error:#}") == "no space"));
+        for (done, words) in [(1, "1 frame before it stay"), (7, "7 frames before it stay")] {
+            let Failure::BrokeOff(error) = failure(done) else { panic!("{done}") };
+            let told = format!("frame 7 failed; {words}, and the same command goes on: no space");
+            assert_eq!(format!("{error:#}"), told);
+        }
+    }
+
+    #[test]
+    fn the_summary_counts_frames_and_names_files() {
+        let mut summary = Summary {
+            schema: SCHEMA,
+            version: "",
+            scene: "turn".to_owned(),
+            width: 24,
+            height: 14,
+            samples_per_pixel: 1,
+            first_frame: 2,
+            last_frame: 6,
+            frames: 5,
+            frames_done: 3,
+            rendered: 2,
+            kept: 1,
+            rendering_seconds: 3.0,
+            total_seconds: 75.0,
+            directory: PathBuf::from("d"),
+            first_file: PathBuf::from("d/2.png"),
+            last_file: PathBuf::from("d/6.png"),
+            animation: None,
+            warnings: Vec::new(),
+        };
+        let head = "scene    turn, 24x14, 1 sample per pixel\n";
+        assert_eq!(
+            summary.to_string(),
+            format!(
+                "{head}frames   3 of 5 done: 2 rendered, 1 already there\n\
+                 time     1 min 15 s (1.500 s for each frame rendered)\n\
+                 files    in d; run the same command again to go on\n"
+            )
+        );
+        (summary.frames_done, summary.rendered, summary.kept) = (5, 0, 5);
+        let whole = format!(
+            "{head}frames   5 of 5 done: 0 rendered, 5 already there\n\
+             time     1 min 15 s\n\
+             files    d/2.png to d/6.png\n"
+        );
+        assert_eq!(summary.to_string(), whole);
+        summary.animation = Some(PathBuf::from("a.png"));
+        assert_eq!(summary.to_string(), format!("{whole}         a.png\n"));
     }
 }

@@ -151,6 +151,33 @@ mod tests {
         Compared { hypothesis, misfit, is_noise, expected: Expected { pixels: Vec::new() } }
     }
 
+    /// A picture of a stage with a mistake in it, as [`Studio`] renders it.
+    fn mistaken(stage: &Stage, mistake: Mistake, effort: Effort) -> (Mine, Expected) {
+        let (width, height) = (48, 27);
+        let mut studio = Studio::new(&recipe_of(stage, width, height)).unwrap();
+        let hypothesis = Hypothesis::of(mistake, studio.recipe()).remove(0);
+        let expected = studio.render(&hypothesis, effort).unwrap();
+        let pixels = expected.pixels.iter().enumerate();
+        let row = |index: usize| index / width as usize;
+        let bytes = pixels
+            .map(|(index, pixel)| pixel.map(|x| hypothesis.byte_of(x, row(index), height as usize)))
+            .collect();
+        (Mine { width, height, bytes, format: "P3", damages: Vec::new() }, expected)
+    }
+
+    #[test]
+    fn the_picture_of_a_finding_has_all_samples() {
+        let stage = Stage::find("metal-fuzzy").unwrap();
+        for mistake in [Mistake::FlippedRows, Mistake::SkyReversed] {
+            let (mine, expected) = mistaken(stage, mistake, FINE);
+            let finding = judge(&mine, Some(stage)).unwrap();
+            assert!(!finding.is_right() && !finding.right.is_noise && finding.stage.id == stage.id);
+            let found = finding.mistake.unwrap();
+            assert_eq!(found.hypothesis.mistake, Some(mistake));
+            assert!(found.is_noise && found.expected.pixels == expected.pixels, "{mistake:?}");
+        }
+    }
+
     #[test]
     fn a_right_picture_ranks_first_then_a_whole_explanation_then_the_nearest_stage() {
         let finding = |right, mistake| Finding { stage: &Stage::ALL[0], right, mistake };

@@ -151,6 +151,36 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_that_no_hypothesis_explains_has_different_candidates() {
+        let stage = Stage::find("metal-fuzzy").unwrap();
+        let mut studio = Studio::new(&recipe_of(stage, 16, 9)).unwrap();
+        let right = Hypothesis::right(studio.recipe());
+        let expected = studio.render(&right, SMALL).unwrap();
+        let mine = |amplitude: u8| {
+            let byte = |index: usize, linear: f64| {
+                let (x, y) = (index % 16, index / 16);
+                let byte = right.byte_of(linear, y, 9);
+                match (x + y).is_multiple_of(2) {
+                    true => byte.saturating_add(amplitude),
+                    false => byte.saturating_sub(amplitude),
+                }
+            };
+            let pixels = expected.pixels.iter().enumerate();
+            let bytes = pixels.map(|(index, pixel)| pixel.map(|linear| byte(index, linear))).collect();
+            Mine { width: 16, height: 9, bytes, format: "P3", damages: Vec::new() }
+        };
+        let found = |amplitude: u8| -> Vec<&str> {
+            candidates(&mine(amplitude)).unwrap().into_iter().map(|stage| stage.id).collect()
+        };
+        assert_eq!(found(0)[0], "metal-fuzzy");
+        let mut ids = found(24);
+        assert!(ids.contains(&"metal-fuzzy"), "{ids:?}");
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), 4, "{ids:?}");
+    }
+
+    #[test]
     fn a_picture_has_at_least_a_pixel() {
         let stage = Stage::find("sky").unwrap();
         let size = |width, height| {

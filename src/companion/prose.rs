@@ -381,3 +381,6 @@ fn skip_to(rest: &mut Events<'_>, end: TagEnd) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -103,3 +103,37 @@ impl Site {
         }
     }
 }
+
+#[cfg(test)]
+impl Site {
+    /// Two chapters without text, two terms and two references, and the headings of the book.
+    pub fn made_up() -> Site {
+        let mut site = Site::read(&Library::Embedded, Measured::default(), &mut Vec::new()).unwrap();
+        let chapter = |number: u8, id: &str, book: Option<&str>| Chapter {
+            file: format!("{id}.md"),
+            number,
+            id: id.to_owned(),
+            title: format!("All {id}"),
+            short: format!("Some {id}"),
+            book: book.map(str::to_owned),
+            body: String::new(),
+            lines_before: 4,
+        };
+        site.chapters = vec![chapter(6, "normals", Some("6")), chapter(1, "languages", None)];
+        site.excerpts = BTreeMap::new();
+        let term = |key: &str, line, area| {
+            let value = Term { term: key.to_uppercase(), text: format!("A *{key}*."), area };
+            Entry { key: key.to_owned(), line, value }
+        };
+        site.terms =
+            vec![term("lane", 1, reference::Area::Parallelism), term("ray", 5, reference::Area::Rendering)];
+        let reference = |key: &str, line, year: Option<u16>| {
+            let (title, authors) = (format!("On {key}"), format!("{key} and others"));
+            let url = year.map(|year| format!("https://{key}.org/{year}"));
+            let value = Reference { title, authors, year, url, note: year.map(|_| "A *note*.".to_owned()) };
+            Entry { key: key.to_owned(), line, value }
+        };
+        site.references = vec![reference("first", 1, None), reference("second", 5, Some(1980))];
+        site
+    }
+}

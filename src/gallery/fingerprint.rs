@@ -109,6 +109,25 @@ mod tests {
     }
 
     #[test]
+    fn a_fingerprint_is_that_of_the_recipe_and_of_two_samples_of_a_picture_of_48_columns() {
+        let recipe = Quality::Quick.recipe(Stage::find("metal").unwrap());
+        assert_eq!((recipe.settings.width, recipe.settings.height), (480, 270));
+        let mut small = recipe.clone();
+        (small.settings.width, small.settings.height, small.settings.estimate_error) = (48, 27, true);
+        let job = small.job().unwrap();
+        let mut film = job.new_film();
+        let plain = CpuOptions { isa: Some(Isa::Portable), lanes: Some(1), ..CpuOptions::default() };
+        let mut renderer = CpuRenderer::new(plain).unwrap();
+        renderer.accumulate(&job, 0..2, &mut film, &AtomicBool::new(false)).unwrap();
+        let mut checksum = Checksum::default();
+        checksum.text(file::to_toml(&recipe).as_bytes());
+        for sum in film.halves().iter().flatten() {
+            checksum.words(&sum.0);
+        }
+        assert_eq!(Fingerprints::new().unwrap().of(&recipe).unwrap(), checksum.finish());
+    }
+
+    #[test]
     fn a_very_flat_picture_has_a_fingerprint() {
         let mut recipe = Quality::Quick.recipe(Stage::find("metal").unwrap());
         (recipe.settings.width, recipe.settings.height) = (4 * WIDTH, 1);

@@ -127,3 +127,25 @@ pub(super) fn tell(lines: &[String], is_good: bool) -> Result<ExitCode, Failure>
     console::write_out(&text).map_err(|error| Failure::Run(anyhow!(output_failure(&error))))?;
     Ok(if is_good { ExitCode::SUCCESS } else { ExitCode::from(FAILED) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn overlapping_samples_are_held_once() {
+        let of = |ranges: &[(u64, u64)]| {
+            let ranges = ranges.iter().map(|(start, end)| *start..*end);
+            SampleRanges::from_ranges(ranges).unwrap()
+        };
+        for (all, more, both) in [
+            (of(&[]), of(&[(2, 5)]), of(&[(2, 5)])),
+            (of(&[(0, 4)]), of(&[]), of(&[(0, 4)])),
+            (of(&[(0, 4)]), of(&[(2, 6)]), of(&[(0, 6)])),
+            (of(&[(4, 6), (8, 9)]), of(&[(0, 12)]), of(&[(0, 12)])),
+            (of(&[(0, 2), (6, 8)]), of(&[(1, 3), (7, 8), (9, 10)]), of(&[(0, 3), (6, 8), (9, 10)])),
+        ] {
+            assert_eq!(with(all.clone(), &more), both, "{all} and {more}");
+        }
+    }
+}

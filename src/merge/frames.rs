@@ -68,7 +68,7 @@ pub(super) fn watch(
         .collect();
     let (mut told, mut last) = (None, Instant::now());
     while !awaited.is_empty() && !interrupt.is_set() {
-        if told.is_none() || (told != Some(awaited.len()) && last.elapsed() >= every) {
+        if is_to_tell(told, awaited.len(), last.elapsed(), every) {
             console::note(&words(plan, awaited.len()));
             (told, last) = (Some(awaited.len()), Instant::now());
         }
@@ -97,6 +97,12 @@ pub(super) fn watch(
     console::note("interrupted; the same command goes on");
     console::note(&parts::remedy(plan, &parts_of(&lacking), &options.program));
     Ok(interrupt.exit_code())
+}
+
+/// Whether to tell that so many frames are awaited: at first, and when it is another number than was `told`, but not
+/// before `every` has passed `since` then.
+fn is_to_tell(told: Option<usize>, awaited: usize, since: Duration, every: Duration) -> bool {
+    told.is_none_or(|told| told != awaited && since >= every)
 }
 
 /// A frame that is not whole.
@@ -169,4 +175,25 @@ fn assemble(plan: &Plan<Frames>, options: &MergeOptions) -> Result<ExitCode, Fai
     }
     print(&format!("{}\n{}", words(plan, 0), wrote(&options.out))).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_told_at_first_and_then_when_it_has_changed_but_not_too_often() {
+        let every = Duration::from_secs(5);
+        let is_told = |told, millis| is_to_tell(told, 3, Duration::from_millis(millis), every);
+        assert!(is_told(None, 0));
+        assert!(is_told(Some(4), 5000) && is_told(Some(2), 9000));
+        assert!(!is_told(Some(4), 4999) && !is_told(Some(3), 4999) && !is_told(Some(3), 9000));
+    }
+
+    #[test]
+    fn parts_are_named_once() {
+        let frame = |(part, number)| Frame { part, number, state: FrameState::Missing };
+        let frames: Vec<Frame> = [(0, 1), (0, 2), (2, 7), (3, 8), (3, 9)].map(frame).into();
+        assert_eq!(parts_of(&frames), [0, 2, 3]);
+    }
 }

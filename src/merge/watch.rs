@@ -42,8 +42,7 @@ pub(super) fn run(
     loop {
         is_news |= look(plan, &mut sum, &mut awaited)?;
         let is_over = awaited.is_empty() || interrupt.is_set();
-        let is_due = last.is_none_or(|last| last.elapsed() >= every);
-        if is_over || (is_news && is_due) {
+        if is_over || is_news && is_due(last.map(|last| last.elapsed()), every) {
             // Checkpoints belong to the picture so far. They will grow, so they are taken away again.
             for part in &awaited {
                 sum.add(part.index, true).map_err(Failure::run)?;
@@ -78,6 +77,11 @@ pub(super) fn run(
     Ok(interrupt.exit_code())
 }
 
+/// Whether a picture may be written: the first at once, and the next when `every` has passed `since` the last.
+fn is_due(since: Option<Duration>, every: Duration) -> bool {
+    since.is_none_or(|since| since >= every)
+}
+
 /// Adds the parts that have become whole. Returns whether any file has changed.
 fn look(plan: &Plan<Samples>, sum: &mut PlanSum, awaited: &mut Vec<Awaited>) -> Result<bool, Failure> {
     let mut is_news = false;
@@ -100,4 +104,30 @@ fn look(plan: &Plan<Samples>, sum: &mut PlanSum, awaited: &mut Vec<Awaited>) -> 
 /// The file as it is now; `None` if there is none, or if it cannot be looked at.
 pub(super) fn stamp(path: &Path) -> Option<Stamp> {
     Stamp::of(path).ok().flatten()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_picture_is_due_at_once_and_the_next_after_the_pause() {
+        let is_due = |since: Option<u64>| is_due(since.map(Duration::from_secs), Duration::from_secs(60));
+        assert_eq!(
+            [None, Some(0), Some(59), Some(60), Some(61)].map(is_due),
+            [true, false, false, true, true]
+        );
+    }
+
+    #[test]
+    fn a_file_that_is_not_there_has_no_stamp_and_one_that_grows_another() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("part.exr");
+        assert_eq!(stamp(&path), None);
+        std::fs::write(&path, "a").unwrap();
+        let first = stamp(&path);
+        assert!(first.is_some() && stamp(&path) == first);
+        std::fs::write(&path, "longer").unwrap();
+        assert_ne!(stamp(&path), first);
+    }
 }

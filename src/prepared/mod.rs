@@ -286,3 +286,21 @@ fn block_limit(largest_radiance: f64) -> u32 {
     let fitting = (f64::from(u32::MAX) / largest).clamp(1.0, 128.0) as u32;
     1 << fitting.ilog2()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_block_is_the_most_samples_whose_sum_fits_32_bits() {
+        let limit = |units: f64| block_limit(units / FIXED_POINT_SCALE);
+        for power in 1..=7 {
+            // 2^power samples of this many units are 2^32 - 2^power, and one unit more makes 2^32.
+            let units = f64::from(1_u32 << (32 - power)) - 1.0;
+            assert_eq!(limit(units), 1_u32 << power, "{power}");
+            assert_eq!([limit(units + 0.5), limit(units + 1.0)], [1_u32 << (power - 1); 2], "{power}");
+        }
+        assert_eq!([0.0, 0.3, 1.0, 1000.0].map(limit), [128; 4]);
+        assert_eq!([4_294_967_295.0, 1e12].map(limit), [1; 2]);
+    }
+}

@@ -89,5 +89,38 @@ mod tests {
         let expected = 0.5 * 0.1 / f64::sqrt(23.0);
         assert!(uneven.holds() && (uneven.deviation / expected - 1.0).abs() < 0.02, "{uneven:?}");
         assert_eq!(of(&[[1.0, 1.0]]), None);
+        // Without an error or an estimate there is no ratio.
+        assert_eq!(of(&[[0.0, 1.0], [0.0, 2.0]]), None);
+        assert_eq!(of(&[[1.0, 0.0], [2.0, 0.0]]), None);
+    }
+
+    #[test]
+    fn a_ratio_is_that_of_the_roots_of_the_means() {
+        let curve = Curve { scene: "s".into(), backend: "cpu".into(), sampler: "sobol".into() };
+        let found = Calibration::of(&curve, 64, &[[1.0, 2.0], [3.0, 6.0], [5.0, 8.0]]).unwrap();
+        // Without one of the pictures, the sums are 8 of 14, 6 of 10 and 4 of 8.
+        let ratios = [8.0 / 14.0, 6.0 / 10.0, 4.0 / 8.0].map(f64::sqrt);
+        let mean = ratios.iter().sum::<f64>() / 3.0;
+        let squares: f64 = ratios.iter().map(|ratio| (ratio - mean) * (ratio - mean)).sum();
+        assert_eq!((found.curve, found.samples, found.seeds), (curve, 64, 3));
+        for (value, expected) in [
+            (found.predicted_rmse, 3.0_f64.sqrt()),
+            (found.actual_rmse, (16.0_f64 / 3.0).sqrt()),
+            (found.ratio, 0.75),
+            (found.deviation, (squares * 2.0 / 3.0).sqrt()),
+        ] {
+            assert!((value - expected).abs() < 1e-12, "{value} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_ratio_may_be_off_by_the_tolerance() {
+        let curve = Curve { scene: "s".into(), backend: "cpu".into(), sampler: "sobol".into() };
+        let holds = |ratio: f64| {
+            let pairs = [[ratio * ratio, 1.0]; 2];
+            Calibration::of(&curve, 16, &pairs).unwrap().holds()
+        };
+        let ratios = [0.949, 0.951, 1.0, 1.049, 1.051];
+        assert_eq!(ratios.map(holds), [false, true, true, true, false]);
     }
 }

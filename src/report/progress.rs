@@ -28,9 +28,7 @@ impl Progress {
 
     /// Shows `what`, which is not finished and has taken `within` of the expected time.
     pub(super) fn at(&mut self, what: &str, within: f64) {
-        let share = ((self.done + within) / self.total).clamp(0.0, 1.0);
-        let left = (share > 0.02).then(|| self.begin.elapsed().mul_f64((1.0 - share) / share));
-        let left = left.map_or_else(String::new, |left| format!(", {} left", HumanDuration(left)));
+        let (share, left) = so_far(self.done + within, self.total, self.begin.elapsed());
         let percent = if self.display.is_bar() { String::new() } else { format!("{:3.0} % ", 100.0 * share) };
         self.display.update((share * STEPS) as u64, || format!("{percent}{what}{left}"));
     }
@@ -43,5 +41,37 @@ impl Progress {
     /// Removes the bar.
     pub(super) fn clear(&self) {
         self.display.clear();
+    }
+}
+
+/// The share of `total` that is done, and how long the rest will take, in words, if `done` took `elapsed`.
+fn so_far(done: f64, total: f64, elapsed: Duration) -> (f64, String) {
+    let share = (done / total).clamp(0.0, 1.0);
+    let left = (share > 0.02).then(|| elapsed.mul_f64((1.0 - share) / share));
+    (share, left.map_or_else(String::new, |left| format!(", {} left", HumanDuration(left))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_follows_from_the_share_that_is_done() {
+        let ten = Duration::from_secs(10);
+        assert_eq!(so_far(2.0, 8.0, ten), (0.25, ", 30 seconds left".to_owned()));
+        assert_eq!(so_far(8.0, 16.0, ten), (0.5, ", 10 seconds left".to_owned()));
+        // At the beginning, nothing can be told.
+        assert_eq!(so_far(2.0, 100.0, ten), (0.02, String::new()));
+        assert_eq!(so_far(4.0, 100.0, ten), (0.04, ", 4 minutes left".to_owned()));
+        assert_eq!(so_far(9.0, 8.0, ten).0, 1.0);
+    }
+
+    #[test]
+    fn what_is_finished_adds_up() {
+        let mut progress = Progress::new(ProgressChoice::Off, 10.0);
+        progress.finished(2.0);
+        progress.finished(3.0);
+        assert_eq!((progress.done, progress.total), (5.0, 10.0));
+        assert!(Progress::new(ProgressChoice::Off, 0.0).total > 0.0);
     }
 }

@@ -51,7 +51,7 @@ fn first_hits(recipe: &Recipe) -> Option<FirstHits> {
     // If the tracer panics, its pictures have already shown that.
     let recorder = catch_unwind(|| PathRecorder::new(&job, isa, None)).ok()?;
     for step in 0..CHECKED_PIXELS * CHECKED_PIXELS {
-        let share = |step: u32, pixels: u32| (step * pixels / CHECKED_PIXELS).min(pixels - 1);
+        let share = |step: u32, pixels: u32| step * pixels / CHECKED_PIXELS;
         let pixel = [share(step % CHECKED_PIXELS, width), share(step / CHECKED_PIXELS, height)];
         let record = catch_unwind(AssertUnwindSafe(|| recorder.record(pixel, 0))).ok()?;
         let Some(ray) = record.rays.first() else { continue };

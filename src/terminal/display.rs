@@ -144,6 +144,29 @@ mod tests {
     }
 
     #[test]
+    fn a_line_is_asked_for_only_when_it_is_due_unless_it_is_announced() {
+        let interval = Duration::from_secs(3600);
+        let mut display = Display::Lines { next: Instant::now(), interval };
+        let mut asked = Vec::new();
+        let mut tell = |display: &mut Display, word: &'static str, must: bool| {
+            let words = || {
+                asked.push(word);
+                word.to_owned()
+            };
+            if must { display.announce(1, words) } else { display.update(1, words) }
+        };
+        tell(&mut display, "first", false);
+        tell(&mut display, "too soon", false);
+        tell(&mut display, "announced", true);
+        tell(&mut display, "too soon again", false);
+        let mut off = Display::Off;
+        tell(&mut off, "nothing", false);
+        tell(&mut off, "nothing", true);
+        assert_eq!(asked, ["first", "announced"]);
+        assert!(!display.is_bar() && !off.is_bar());
+    }
+
+    #[test]
     fn a_bar_shows_its_name_its_length_and_the_words_until_it_is_cleared() {
         let written = Written::default();
         let target = ProgressDrawTarget::term_like(Box::new(written.clone()));
@@ -153,7 +176,8 @@ mod tests {
         let shown = written.0.lock().unwrap().clone();
         // A name cannot control the terminal.
         assert!(shown.contains("a\\u{1b}b [====>   ] half\\u{1b} done"), "{shown:?}");
-        assert!(!bar.is_finished());
+        assert!(!bar.is_finished() && display.is_bar());
+        assert_eq!((bar.position(), bar.length()), (2, Some(4)));
         display.clear();
         assert!(bar.is_finished());
     }

@@ -9,3 +9,4 @@ mod handover;
 mod preview;
 mod stopping;
 mod together;
+mod told;

@@ -1,10 +1,15 @@
 //! What ends a render, pauses it, or starts another.
 
 use super::common::{CPU, Fake, PATIENCE, expected, job, started, wait_for, wait_until};
-use std::time::Duration;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::time::{Duration, Instant};
+use weekender::film::Film;
 use weekender::progressive::{
     EndReason, NOISE_TARGET_FIRST_SAMPLES, Phase, Plan, Progressive, RenderRequest, Stop,
 };
+use weekender::render::{BackendInfo, RenderError, RenderJob, Renderer, Stats};
 
 #[test]
 fn a_plan_of_samples_is_met_exactly() {
@@ -113,6 +118,59 @@ fn abandoned_work_leaves_nothing() {
     progressive.abandon();
     assert_eq!(progressive.wait_until_over().phase, Phase::Idle);
     assert_eq!(progressive.finish(), None);
+}
+
+/// A pass of it ends only when it is cancelled; `ended` is told whether it was.
+struct Endless {
+    begun: Sender<()>,
+    ended: Sender<bool>,
+}
+
+impl Renderer for Endless {
+    fn info(&self) -> BackendInfo {
+        Fake::new("cpu").info()
+    }
+
+    fn prepare(&mut self, _: &RenderJob, _: &AtomicBool) -> Result<(), RenderError> {
+        Ok(())
+    }
+
+    fn accumulate(
+        &mut self,
+        _: &RenderJob,
+        _: Range<u64>,
+        _: &mut Film,
+        cancel: &AtomicBool,
+    ) -> Result<Stats, RenderError> {
+        let _ = self.begun.send(());
+        let begin = Instant::now();
+        while !cancel.load(Ordering::Relaxed) && begin.elapsed() < PATIENCE {
+            std::thread::yield_now();
+        }
+        let _ = self.ended.send(cancel.load(Ordering::Relaxed));
+        Err(RenderError::Cancelled)
+    }
+}
+
+#[test]
+fn abandoning_and_dropping_cancel_the_pass() {
+    for is_dropped in [false, true] {
+        let ((begun, has_begun), (ended, has_ended)) = (channel(), channel());
+        let progressive = Progressive::with_factory(Box::new(move |_| {
+            Ok(Box::new(Endless { begun: begun.clone(), ended: ended.clone() }))
+        }));
+        let mut progressive = progressive.unwrap();
+        progressive.start(RenderRequest::new(job(2), CPU, Plan::endless()));
+        has_begun.recv_timeout(PATIENCE).unwrap();
+        if is_dropped {
+            drop(progressive);
+        } else {
+            progressive.abandon();
+            assert_eq!(progressive.wait_until_over().phase, Phase::Idle);
+            assert_eq!(progressive.finish(), None);
+        }
+        assert!(has_ended.recv_timeout(PATIENCE).unwrap(), "dropped: {is_dropped}");
+    }
 }
 
 #[test]

@@ -76,6 +76,25 @@ fn check_boxes_and_lists_do_what_they_say() {
 }
 
 #[test]
+fn panels_can_be_made_wider_up_to_a_limit() {
+    let harness = open(SMALL);
+    let mut sides: Vec<(f32, f64)> = harness
+        .root()
+        .children_recursive()
+        .filter(|node| node.accesskit_node().role() == egui::accesskit::Role::Splitter)
+        .filter(|node| node.rect().height() > node.rect().width())
+        .map(|node| {
+            let [least, most] =
+                [node.accesskit_node().min_numeric_value(), node.accesskit_node().max_numeric_value()];
+            (node.rect().left(), most.unwrap() / least.unwrap())
+        })
+        .collect();
+    sides.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let [(_, left), (_, right)] = sides[..] else { panic!("{sides:?}") };
+    assert!((left - 380.0 / 190.0).abs() < 1e-3 && (right - 420.0 / 190.0).abs() < 1e-3, "{left} {right}");
+}
+
+#[test]
 fn what_has_no_effect_is_disabled() {
     let harness = open("--stage ppm-tiny");
     for label in ["Field of view", "Defocus angle", "Focus distance", "Depth", "Sampler", "Seed"] {

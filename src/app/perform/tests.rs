@@ -2,10 +2,11 @@
 
 use super::*;
 use crate::app::model::crop::Crop;
+use crate::app::model::kept_view::ShownSlots;
 use crate::app::tests::window;
 use crate::kept;
 use crate::stages::Stage;
-use eframe::egui::{Context, Pos2, RawInput, Rect, ViewportId, vec2};
+use eframe::egui::{Context, OutputCommand, Pos2, RawInput, Rect, ViewportId, vec2};
 use std::collections::BTreeMap;
 
 /// A window in which most commands have something to do.
@@ -175,5 +176,53 @@ fn the_picture_is_zoomed_in_steps() {
     ] {
         let found = width(Some(command));
         assert!((found - expected).abs() < 0.1, "{command:?}: {found}, not {expected}");
+    }
+}
+
+#[test]
+fn the_companion_opens_at_the_stage_once_it_is_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let page = directory.path().join("index.html");
+    let (mut window, context) = (prepared(), Context::default());
+    let mut open = || {
+        let output = context.run_ui(RawInput::default(), |ui| window.open_companion(ui.ctx(), &page));
+        (window.messages().pop().unwrap(), output.platform_output.commands)
+    };
+    let (told, commands) = open();
+    let missing = "There is no companion/index.html here; write it with: weekender companion --out companion";
+    assert_eq!(told, missing);
+    assert!(commands.is_empty());
+    std::fs::write(&page, "").unwrap();
+    let (told, commands) = open();
+    let url = companion::url(&page, prepared().document().stage());
+    assert_eq!(told, format!("Opening {url}"));
+    assert!(
+        matches!(&commands[..], [OutputCommand::OpenUrl(asked)] if asked.url == url && asked.new_tab),
+        "{commands:?}"
+    );
+}
+
+#[test]
+fn a_command_ends_the_wait_for_slots_that_were_shown() {
+    let mut window = prepared();
+    for (command, is_enabled) in [(Command::Redo, false), (Command::Darker, true)] {
+        assert_eq!(window.disabled_reason(command).is_none(), is_enabled);
+        window.recovery.shown_slots = Some(ShownSlots::default());
+        window.perform(&Context::default(), command);
+        assert_eq!(window.recovery.shown_slots.is_none(), is_enabled, "{command:?}");
+        assert_eq!(window.performed(), Some(command));
+    }
+}
+
+#[test]
+fn a_view_that_a_picture_has_not_is_left() {
+    let mut window = prepared();
+    for (show, is_left) in [(Show::Picture, false), (Show::Normals, false), (Show::Difference, true)] {
+        window.model.view.choose(show);
+        window.leave_useless_show();
+        assert_eq!(window.show(), if is_left { Show::Picture } else { show });
+        let told = window.messages();
+        let is_told = told.iter().any(|text| text.starts_with(&format!("No {} here: ", show.name())));
+        assert_eq!(is_told, is_left, "{told:?}");
     }
 }

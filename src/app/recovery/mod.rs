@@ -259,7 +259,9 @@ impl Recovery {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
+    use crate::app::tests::sleep_after;
     use crate::stages::Stage;
+    use std::path::Path;
 
     fn metal() -> Document {
         Document::new(Origin::of_stage(Stage::find("metal").unwrap()))
@@ -327,5 +329,68 @@ mod tests {
         assert!(recovery.next_look >= now + LOOKS_APART, "the next look is later");
         recovery.next_look = now + Duration::from_secs(3600);
         assert!(!recovery.is_time(&context));
+    }
+
+    /// What three windows left in a directory.
+    fn left_by_three(directory: &Path) -> Recovery {
+        for name in ["window-1-1.exr", "window-2-1.exr", "window-3-1.exr"] {
+            std::fs::write(directory.join(name), "a film").unwrap();
+        }
+        let mut recovery = Recovery::new(Duration::from_secs(3600));
+        recovery.left = Left::all_in(directory);
+        recovery
+    }
+
+    fn films(recovery: &Recovery) -> Vec<PathBuf> {
+        recovery.left.iter().map(|left| left.path(Part::Film)).collect()
+    }
+
+    #[test]
+    fn what_is_not_opened_after_all_keeps_its_place() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut recovery = left_by_three(directory.path());
+        let all = films(&recovery);
+        assert_eq!(all.len(), 3);
+        for (from, to) in [(0, 0), (1, 1), (2, 2), (2, 9)] {
+            let left = recovery.left.remove(from);
+            recovery.put_back(to, left);
+            assert_eq!(films(&recovery), all, "{from} to {to}");
+        }
+        recovery.discard(3, Part::Film);
+        assert_eq!(films(&recovery), all, "there is none");
+        recovery.discard(1, Part::Film);
+        assert_eq!(films(&recovery), [all[0].clone(), all[2].clone()]);
+        assert_eq!([0, 1, 2].map(|index| all[index].exists()), [true, false, true]);
+    }
+
+    #[test]
+    fn one_thing_is_opened_at_a_time() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut recovery = left_by_three(directory.path());
+        let (all, context) = (films(&recovery), Context::default());
+        recovery.open(&context, 3, Part::Film);
+        assert!(recovery.opening.is_none(), "there is none");
+        for _ in 0..2 {
+            recovery.open(&context, 1, Part::Film);
+        }
+        assert_eq!(films(&recovery), [all[0].clone(), all[2].clone()]);
+        assert!(recovery.opening.as_ref().is_some_and(|(left, _)| left.path(Part::Film) == all[1]));
+        let arrival = recovery.arrivals.wait().unwrap();
+        assert!(arrival.opened.is_some_and(|opened| opened.is_err()) && arrival.restored.is_none());
+    }
+
+    #[test]
+    fn a_window_that_works_is_woken_for_the_next_look() {
+        let directory = tempfile::tempdir().unwrap();
+        let (mut recovery, context) = (Recovery::new(Duration::from_secs(3600)), Context::default());
+        let is_woken = |recovery: &mut Recovery| {
+            sleep_after(&context, |context| _ = recovery.is_time(context)) <= LOOKS_APART
+        };
+        recovery.is_working = true;
+        assert!(!is_woken(&mut recovery), "it keeps nothing");
+        recovery.files = Some(RecoveryFiles::claim(directory.path()).unwrap());
+        assert!(is_woken(&mut recovery));
+        recovery.is_working = false;
+        assert!(!is_woken(&mut recovery));
     }
 }

@@ -156,6 +156,7 @@ mod tests {
     use crate::stages::Stage;
     use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
     use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT, Queryable};
 
     #[test]
     fn the_ends_lie_as_the_scene_is_seen() {
@@ -286,5 +287,12 @@ mod tests {
             assert_eq!((touch.is_move, touch.is_orbit, touch.pivot), (true, true, Some(ABOVE.look_at)));
             assert!(harness.state().commands.is_empty(), "a drag is no click");
         }
+    }
+
+    #[test]
+    fn the_axes_can_be_used_without_a_pointer() {
+        let harness = axes(ABOVE, ROOM);
+        let found = |name: &str| !harness.get_by_label(name).accesskit_node().is_disabled();
+        assert!(found("Axes") && Viewpoint::ALL.iter().all(|side| found(side.name())));
     }
 }

@@ -206,3 +206,6 @@ fn section(site: &Site, place: usize, text: &Markup, faults: &mut Vec<Fault>) ->
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,59 @@
+//! A kept film on the screen, for tests of what asks films.
+
+use super::{KeptThread, Subject};
+use crate::app::model::document::Document;
+use crate::app::model::kept::Kept;
+use crate::app::model::origin::Origin;
+use crate::app::model::slots::{Slot, SlotNumber};
+use crate::app::model::view::ViewState;
+use crate::app::tracer::Tracer;
+use crate::film::{Film, PixelSum};
+use crate::stages::Stage;
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+
+/// Everything that a film on the screen needs.
+pub struct OnScreen {
+    live: Document,
+    main: Tracer,
+    view: ViewState,
+    thread: KeptThread,
+}
+
+impl OnScreen {
+    /// Shows a kept film of a stage.
+    pub fn new(film: Film) -> Self {
+        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
+        let mut view = ViewState::default();
+        view.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept });
+        view.look(Some(SlotNumber::ALL[0]));
+        let live = Document::new(Origin::usual());
+        OnScreen { live, main: Tracer::new().unwrap(), view, thread: KeptThread::default() }
+    }
+
+    /// The film.
+    pub fn subject(&self) -> Subject<'_> {
+        Subject::new(&self.view, (&self.live, &self.main), None, &self.thread)
+    }
+
+    /// Does this before the film answers anything, and waits until everything that it asks has been answered.
+    pub fn before_answers<T>(&self, act: impl FnOnce(&Subject<'_>) -> T) -> T {
+        let (open, gate) = channel::<()>();
+        self.thread.run(move || _ = gate.recv());
+        let done = act(&self.subject());
+        let (answer, answers) = channel();
+        self.thread.run(move || answer.send(()).unwrap());
+        drop(open);
+        answers.recv().unwrap();
+        done
+    }
+}
+
+/// A film of 4x2 pixels with this many samples, black but for the last pixel, whose values sum up to `sum`.
+pub fn small_film(samples: u64, sum: f64) -> Film {
+    let mut film = Film::new(4, 2, 1);
+    film.halves_mut()[0][7] = PixelSum([(sum * f64::from(1 << 24)) as u64; 3]);
+    film.record(0..samples, 0).unwrap();
+    film
+}

@@ -1,0 +1,128 @@
+//! Made-up texts as HTML, and what is wrong with them.
+
+use super::*;
+use crate::kept;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// The HTML of a text of the first chapter.
+fn converted(site: &Site, text: &str, uses: &mut Uses, faults: &mut Vec<Fault>) -> String {
+    let of_text = Chapter { body: text.to_owned(), ..site.chapters[0].clone() };
+    chapter(site, &of_text, uses, faults).into_string()
+}
+
+/// The HTML of a text that has no faults.
+fn alone(site: &Site, text: &str) -> String {
+    let mut faults = Vec::new();
+    let html = converted(site, text, &mut Uses::default(), &mut faults);
+    assert_eq!(faults, [], "{text}");
+    html
+}
+
+#[test]
+fn links_lead_to_what_they_name() {
+    let site = Site::made_up();
+    for (target, html) in [
+        ("#there", "<a href=\"#there\">x</a>"),
+        ("https://a.org/b", "<a href=\"https://a.org/b\">x</a>"),
+        ("mailto:a@b.org", "<a href=\"mailto:a@b.org\">x</a>"),
+        ("page:normals", "<a href=\"#normals\" title=\"Chapter 6: All normals\">x</a>"),
+        ("page:languages#two", "<a href=\"#languages-two\" title=\"All languages\">x</a>"),
+        ("glossary:lane", "<a id=\"use-lane\" class=\"term\" href=\"#term-lane\">x</a>"),
+        ("source:src/lib.rs", "x (<code class=\"path\">src/lib.rs</code>)"),
+    ] {
+        assert_eq!(alone(&site, &format!("[x]({target})")), format!("<p>{html}</p>\n"));
+    }
+}
+
+#[test]
+fn links_are_noted_with_their_lines_and_only_the_first_to_a_term_can_be_returned_to() {
+    let (site, mut uses, mut faults) = (Site::made_up(), Uses::default(), Vec::new());
+    let text =
+        "[a](#there)\n\n[b](page:languages#two) [c](glossary:ray)\n\n[d](glossary:ray)\n\n[e](page:nowhere)";
+    let html = converted(&site, text, &mut uses, &mut faults);
+    let target = |anchor: &str, line| (anchor.to_owned(), "normals.md".to_owned(), line);
+    assert_eq!(uses.targets, [target("there", 5), target("languages-two", 7)]);
+    assert_eq!(uses.terms, BTreeMap::from([("ray".to_owned(), "Some normals".to_owned())]));
+    assert_eq!(html.matches("id=\"use-ray\"").count(), 1, "{html}");
+    assert!(html.contains("<a class=\"term\" href=\"#term-ray\">d</a>"), "{html}");
+    assert_eq!(faults, [Fault::new("normals.md", 11, "the page has no chapter \"nowhere\"")]);
+}
+
+#[test]
+fn citations_are_sorted_numbers_in_brackets() {
+    let site = Site::made_up();
+    let [first, second] = [("first", 1), ("second", 2)]
+        .map(|(key, n)| format!("<a href=\"#ref-{key}\" title=\"{key} and others: On {key}\">{n}</a>"));
+    assert_eq!(alone(&site, "[@second]"), format!("<p><span class=\"cite\">[{second}]</span></p>\n"));
+    assert_eq!(
+        alone(&site, "[@second; @first]"),
+        format!("<p><span class=\"cite\">[{first}, {second}]</span></p>\n")
+    );
+}
+
+#[test]
+fn a_short_text_has_no_paragraph_around_it() {
+    let (site, mut uses, mut faults) = (Site::made_up(), Uses::default(), Vec::new());
+    let mut short = |text: &str| short_text(&site, "a.toml", 9, text, &mut uses, &mut faults).into_string();
+    assert_eq!(short(" a *b* c\n"), "a <em>b</em> c");
+    assert_eq!(short("- a"), "<ul>\n<li>a</li>\n</ul>\n");
+    assert_eq!(short("\n[x](nowhere)"), "x");
+    assert_eq!((faults.len(), faults[0].file.as_str(), faults[0].line), (1, "a.toml", 9));
+}
+
+#[test]
+fn a_mark_after_a_formula_stays_with_it() {
+    let site = Site::made_up();
+    for (text, is_kept) in [("$x$, y", true), ("$x$) y", true), ("$x$ y", false), ("$x$-y", false)] {
+        assert_eq!(alone(&site, text).contains("<span class=\"nb\">"), is_kept, "{text}");
+    }
+}
+
+#[test]
+fn texts_are_as_kept() {
+    let (site, mut uses) = (Site::made_up(), Uses::default());
+    let mut told = String::new();
+    for text in [
+        "Some *words* and `code`, \"quoted\".",
+        "## A Title with `code`\n\n### A part\n\n#### A smaller one\n\n## A Title with `code`",
+        "# Too high\n\n##### Too low",
+        "## 6.1 Shading with Surface Normals\n\n## 6.2 Something Else\n\n## 6.99 Nothing",
+        "```rust\nfn a() -> u32 { 1 }\n```\n\n    indented\n\n```\nplain <b>\n```\n\n```cobol\nx\n```",
+        "| a | b |\n|---|--:|\n| 1 | 2 |",
+        "A formula $\\frac{1}{2}$, another ($x$) and $\\nosuch$.\n\n$$y = x^2$$\n\n$$\\nosuch$$",
+        "[@first], [@second; @nobody] and [unknown].",
+        "[a](glossary:lane) [b](glossary:lane) [c](glossary:nothing)",
+        "[a](book:6) [b](book:6.1) [c](book:6.99)",
+        "[a](source:shaders/path.wgsl) [b](source:src/../x) [c](source:lib.rs) [d](other.md) [e](http://a.org)",
+        "<https://a.org/> <nobody@a.org> [f][g]\n\n[g]: nowhere.md",
+        "<b>bold</b>\n\n<div>\n</div>\n\n![a *picture*](a.png) after",
+        "{{nothing}}\n\nafter {{figure sky}}\n\n{{ figure sky }}\n\n{{figure sky}}\n\n{{glossary}}",
+        "- one\n- two with [a link](#a-b)\n\n1. first\n2. second\n\n> quoted",
+    ] {
+        let mut faults = Vec::new();
+        let html = converted(&site, text, &mut uses, &mut faults);
+        writeln!(told, "=== {text}\n--- as HTML\n{}", html.trim_end()).unwrap();
+        for fault in faults {
+            writeln!(told, "--- {fault}").unwrap();
+        }
+    }
+    let figures: Vec<&str> = uses.figures.iter().map(|figure| figure.title).collect();
+    writeln!(told, "=== {:?}\n{:?}\n{:?}\n{figures:?}", uses.terms, uses.targets, uses.anchors).unwrap();
+    kept::check("companion_texts", &told);
+}
+
+#[test]
+fn what_nothing_refers_to_and_links_to_nothing_are_faults() {
+    let (site, mut uses, mut faults) = (Site::made_up(), Uses::default(), Vec::new());
+    converted(&site, "## Here\n\n[a](glossary:lane) [b](#normals-here) [c](#gone)", &mut uses, &mut faults);
+    site.check(&uses, &mut faults);
+    let unlinked = "no chapter links the term \"ray\"; link it as [text](glossary:ray), or remove it";
+    assert_eq!(
+        faults,
+        [
+            Fault::new("docs/companion/glossary.toml", 5, unlinked),
+            Fault::new("normals.md", 7, "nothing on the page has the anchor #gone"),
+        ]
+    );
+}
