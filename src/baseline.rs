@@ -245,6 +245,51 @@ fn scene_text(scene: &Scene, camera: &Camera) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Material, Sky};
+
+    #[test]
+    fn a_scene_file_has_the_lens_that_is_in_effect_and_every_number_in_its_place() {
+        let mut scene = Scene {
+            sky: Sky { bottom: DVec3::new(0.5, 0.25, 0.75), top: DVec3::new(1.0, 2.0, 3.0) },
+            ..Scene::default()
+        };
+        let albedo = DVec3::new(0.1, 0.2, 0.3);
+        let materials = [
+            Material::Dielectric { refraction_index: 1.5 },
+            Material::Metal { albedo, fuzz: 0.4 },
+            Material::Lambertian { albedo },
+        ];
+        for (material, radius) in materials.into_iter().zip([0.5, 2.5, 100.0]) {
+            let index = scene.add_material(material.kind(), material);
+            scene.add_sphere(DVec3::new(4.0, 5.0, 6.0), radius, index);
+        }
+        // It looks along x, so what is up is y however far up is inclined.
+        let camera = Camera {
+            look_from: DVec3::new(3.0, 7.0, 8.0),
+            look_at: DVec3::new(-1.0, 7.0, 8.0),
+            vup: DVec3::new(3.0, 2.0, 0.0),
+            vfov_degrees: 40.0,
+            defocus_angle_degrees: 2.0,
+            focus_distance: None,
+        };
+        let numbers = |line: &str| -> Vec<f64> {
+            line.split(' ').skip(1).map(|word| word.parse().unwrap_or(f64::NAN)).collect()
+        };
+        let expected = [
+            ("camera", &[3.0, 7.0, 8.0, -1.0, 7.0, 8.0, 0.0, 1.0, 0.0, 40.0, 2.0, 4.0][..]),
+            ("sky", &[0.5, 0.25, 0.75, 1.0, 2.0, 3.0]),
+            ("dielectric", &[4.0, 5.0, 6.0, 0.5, 1.5]),
+            ("metal", &[4.0, 5.0, 6.0, 2.5, 0.1, 0.2, 0.3, 0.4]),
+            ("lambertian", &[4.0, 5.0, 6.0, 100.0, 0.1, 0.2, 0.3]),
+        ];
+        let text = scene_text(&scene, &camera);
+        assert_eq!(text.lines().count(), expected.len(), "{text}");
+        for (line, (word, values)) in text.lines().zip(expected) {
+            assert_eq!((line.split(' ').next(), numbers(line).as_slice()), (Some(word), values), "{text}");
+        }
+        let nearer = scene_text(&scene, &Camera { focus_distance: Some(2.5), ..camera });
+        assert_eq!(nearer.lines().next().and_then(|line| line.split(' ').next_back()), Some("2.5"));
+    }
 
     #[test]
     fn only_the_whole_line_of_figures_is_read() {

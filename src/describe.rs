@@ -119,6 +119,10 @@ mod tests {
             camera_words(&camera),
             "from 13,2,3.5 to 1,-2,0, vfov 20 degrees, defocus 0.6 degrees, focus at 10"
         );
+        // A lens without a distance of its own is focused on what it looks at.
+        let (look_from, look_at) = (DVec3::new(3.0, 1.0, 0.0), DVec3::new(0.0, 1.0, 4.0));
+        let words = camera_words(&Camera { look_from, look_at, focus_distance: None, ..camera });
+        assert!(words.ends_with("focus at 5"), "{words}");
     }
 
     #[test]
@@ -135,7 +139,11 @@ mod tests {
         // The status can be that of a later pass.
         let status = Status { samples_per_pixel: 12, ..Status::default() };
         let description = describe(&recipe, None, &film, &status, None);
-        assert_eq!(description.get(key::SAMPLES), Some("10"));
+        assert_eq!((description.get(key::SAMPLES), description.get(key::SECONDS)), (Some("10"), None));
+        // Earlier samples took their time, too.
+        let status = Status { trace: std::time::Duration::from_millis(1500), ..status };
+        let description = describe(&recipe, None, &film, &status, Some(2.5));
+        assert_eq!(description.get(key::SECONDS), Some("4"));
     }
 
     #[test]

@@ -227,3 +227,52 @@ impl fmt::Display for Info {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::animation::Turn;
+    use crate::output::FrameRate;
+    use crate::plan::{Manifest, divide};
+
+    /// What is told of a plan that divides `work` of a small picture with 6 samples per pixel.
+    fn told<W: Work>(work: W, estimate_error: bool) -> (Info, String) {
+        let directory = tempfile::tempdir().unwrap();
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (16, 9, 6);
+        recipe.settings.estimate_error = estimate_error;
+        let manifest = Manifest {
+            command: "weekender plan".to_owned(),
+            scene: recipe.name.clone(),
+            ..Manifest::new(work)
+        };
+        Plan::write(directory.path(), &recipe, &recipe.job().unwrap(), manifest).unwrap();
+        let info = Info::of(directory.path()).unwrap();
+        let text = info.to_string();
+        (info, text)
+    }
+
+    #[test]
+    fn a_plan_has_the_samples_of_its_range_wherever_that_begins() {
+        for (range, parts, estimate_error, words) in [
+            (7..50, 2, true, "samples  43 per pixel (7..50) in 2 parts"),
+            (0..50, 1, false, "samples  50 per pixel (0..50) in 1 part"),
+            (4096..4097, 1, true, "samples  1 per pixel (4096..4097) in 1 part"),
+        ] {
+            let division = divide(range.clone(), parts).unwrap();
+            let (info, text) = told(Samples::new(&range, &division), estimate_error);
+            assert_eq!(info.samples_per_pixel, Some(range.end - range.start));
+            assert_eq!(info.halves, Some(if estimate_error { 2 } else { 1 }));
+            assert!(text.contains(words) && text.contains("three-spheres, 16x9, "), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_plan_of_frames_has_the_samples_of_each_frame() {
+        let rate = FrameRate { frames: 30, seconds: 1 };
+        let work = Frames::new(&(5..9), Some(Turn::FramesPerTurn(12)), rate, 2).unwrap();
+        let (info, text) = told(work, true);
+        assert_eq!((info.samples_per_pixel, info.parts), (Some(6), Some(2)));
+        assert!(text.contains("samples  6 per pixel of the frames 5..9 in 2 parts"), "{text}");
+    }
+}

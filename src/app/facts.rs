@@ -13,6 +13,8 @@ use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+const NO_RAYS: &str = "This stage traces no rays: its picture depends only on the position of each pixel";
+
 /// A snapshot of the window at the start of the frame.
 pub struct Facts {
     /// What the user has chosen.
@@ -68,8 +70,7 @@ impl Facts {
 
     /// Why the document's camera has no effect, if so.
     pub fn no_rays(&self) -> Option<&'static str> {
-        (self.document().rules().shading == Shading::ImageGradient)
-            .then_some("This stage traces no rays: its picture depends only on the position of each pixel")
+        (self.document().rules().shading == Shading::ImageGradient).then_some(NO_RAYS)
     }
 
     /// Whether menus list the command: those for empty slots are left out.
@@ -296,8 +297,10 @@ impl Facts {
                 }
                 Some(_) => None,
             },
-            Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy if self.no_rays().is_some() => {
-                self.no_rays().map(str::to_owned)
+            Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy
+                if shading == Shading::ImageGradient =>
+            {
+                no(NO_RAYS)
             }
             Show::Bounces if shading != Shading::Path => {
                 no("In this stage rays end at their first hit, so each path is one ray")

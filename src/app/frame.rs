@@ -286,10 +286,6 @@ impl eframe::App for Window {
         self.write_recovery(context);
     }
 
-    fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        self.remember(storage);
-    }
-
     fn on_exit(&mut self, _: Option<&eframe::glow::Context>) {
         self.end_in_order();
     }

@@ -54,6 +54,7 @@ mod receive;
 mod recovery;
 mod rescue;
 mod second;
+mod settings;
 mod sight;
 mod sizer;
 mod slot_files;
@@ -109,8 +110,9 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
             "there is no display to open a window on (neither DISPLAY nor WAYLAND_DISPLAY is set); {REMEDY}"
         );
     }
+    let state = |name: &str| state_directory().map(|state| state.join(name));
     let options =
-        WindowOptions { state_directory: state_directory().map(|state| state.join("windows")), ..options };
+        WindowOptions { state_directory: state("windows"), settings: state("settings.json"), ..options };
     let drawn = Arc::new(OnceLock::<egui::Context>::new());
     let waker = Arc::clone(&drawn);
     // SIGTERM, as at the end of a desktop session, closes the window in order.
@@ -124,7 +126,7 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
         let (native, options) = (native_options(renderer), options.clone());
         let (drawn, heeded) = (Arc::clone(&drawn), Arc::clone(&interrupt));
         let create = Box::new(|context: &eframe::CreationContext<'_>| {
-            let mut window = create(options, &context.egui_ctx, context.storage)?;
+            let mut window = create(options, &context.egui_ctx)?;
             window.show_thumbnails(cache_directory());
             window.heed(heeded);
             // A second renderer has a context of its own, but the first one never drew.
@@ -145,12 +147,8 @@ pub fn run(options: WindowOptions) -> Result<ExitCode> {
 }
 
 /// Makes the window before its first frame, which would have egui's own style otherwise.
-fn create(
-    options: WindowOptions,
-    context: &egui::Context,
-    storage: Option<&dyn eframe::Storage>,
-) -> Result<Window> {
-    let mut window = Window::new(options, storage)?;
+fn create(options: WindowOptions, context: &egui::Context) -> Result<Window> {
+    let mut window = Window::new(options)?;
     window.dress(context);
     Ok(window)
 }
@@ -208,7 +206,7 @@ mod tests {
 
     /// The window of a command line, without a display.
     pub(super) fn window(words: &str) -> Window {
-        Window::new(options(words), None).unwrap()
+        Window::new(options(words)).unwrap()
     }
 
     fn options(words: &str) -> WindowOptions {
@@ -375,7 +373,7 @@ mod tests {
         let context = egui::Context::default();
         let own = context.global_style();
         let options = options("weekender --stage normals --size 16x9 --samples 1");
-        let mut window = create(options, &context, None).unwrap();
+        let mut window = create(options, &context).unwrap();
         let mut styles = Vec::new();
         for _ in 0..3 {
             let _ = context.run_ui(input(), |ui| {

@@ -18,10 +18,8 @@ impl Window {
         let chosen = view.slots.chosen();
         match (command, chosen) {
             (SlotCommand::Keep, _) => {
-                let is_free = |number: &SlotNumber| {
-                    view.slots.get(*number).is_none() && !self.slot_actions.is_wanted(*number)
-                };
-                if let Some(number) = SlotNumber::ALL.into_iter().find(is_free) {
+                let number = view.slots.free().find(|number| !self.slot_actions.is_wanted(*number));
+                if let Some(number) = number {
                     self.slot_actions.want(number);
                 }
             }
@@ -168,8 +166,104 @@ impl Window {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::kept::Kept;
     use crate::app::model::slots::Coming;
     use crate::app::tests::{until, window};
+    use crate::film::PixelSum;
+    use std::sync::Arc;
+
+    /// A window with a finished picture of 4 samples per pixel.
+    fn finished(context: &egui::Context) -> Window {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
+        let is_over =
+            |window: &Window| window.main.has_samples(window.document()) && window.status().phase.is_over();
+        until(&mut window, context, "the end", is_over);
+        assert_eq!(window.status().samples_per_pixel, 4);
+        window
+    }
+
+    /// A film of 16x9 pixels with so many samples.
+    fn film(samples: u64) -> Film {
+        let mut film = Film::new(16, 9, 2);
+        for (half, value) in film.halves_mut().iter_mut().zip([3, 4]) {
+            half.iter_mut().for_each(|sum| *sum = PixelSum([(samples * (samples + value)) << 20; 3]));
+        }
+        film.record(0..samples, 0).unwrap();
+        film
+    }
+
+    #[test]
+    fn the_picture_on_the_screen_is_compared_and_the_live_one_if_its_slot_is_shown() {
+        let context = egui::Context::default();
+        let mut window = finished(&context);
+        let [one, two, ..] = SlotNumber::ALL;
+        for (number, name, samples) in [(one, "first", 5), (two, "second", 6)] {
+            let kept = Kept::new(window.document().clone(), film(samples), Arc::default(), None);
+            window.model.view.slots.put(number, Slot { name: name.to_owned(), kept: Arc::new(kept) });
+        }
+        let live = ("the live picture: ", ", 16x9, 4 samples,");
+        let first = ("slot 1: first: ", ", 16x9, 5 samples,");
+        let second = ("slot 2: second: ", ", 16x9, 6 samples,");
+        for (looked, chosen, expected) in [
+            (None, one, [first, live]),
+            (Some(one), one, [first, live]),
+            (Some(two), two, [second, live]),
+            (Some(one), two, [second, first]),
+            (Some(two), one, [first, second]),
+        ] {
+            window.model.view.look(looked);
+            window.model.view.slots.choose(chosen);
+            window.perform_on_slots(&context, SlotCommand::OnlyNoise);
+            until(&mut window, &context, "a finding", |window| window.only_noise().is_some());
+            let (headline, text) = window.only_noise().unwrap().unwrap();
+            assert_ne!(headline, "Identical to the bit", "{looked:?} {chosen}");
+            for (line, (name, samples)) in text.lines().zip(expected) {
+                assert!(line.contains(name) && line.contains(samples), "{looked:?} {chosen}: {line}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_kept_goes_to_a_slot_that_awaits_no_picture() {
+        let context = egui::Context::default();
+        let mut window = finished(&context);
+        let [one, two, three, ..] = SlotNumber::ALL;
+        let coming = Coming {
+            name: "earlier".to_owned(),
+            id: "a".to_owned(),
+            size: [16, 9],
+            samples: 7,
+            has_own_size: true,
+        };
+        window.model.view.slots.expect(one, coming);
+        for number in [two, three] {
+            window.perform_on_slots(&context, SlotCommand::Keep);
+            assert!(window.slot_actions.is_wanted(number) && !window.slot_actions.is_wanted(one), "{number}");
+        }
+    }
+
+    #[test]
+    fn a_slot_goes_on_unless_the_live_picture_has_all_of_it() {
+        let context = egui::Context::default();
+        let mut window = finished(&context);
+        let kept = Kept::new(window.document().clone(), film(5), Arc::default(), None);
+        let one = SlotNumber::ALL[0];
+        window.model.view.slots.put(one, Slot { name: String::new(), kept: Arc::new(kept) });
+        let same = window.document().clone();
+        let mut other = same.clone();
+        other.settings.seed += 1;
+        for (document, samples, goes_on) in [(&same, 4, false), (&same, 5, true), (&other, 1, true)] {
+            window.model.view.look(Some(one));
+            let (document, film) = (document.clone(), film(samples));
+            window.go_on_from(Reopened { document: document.clone(), film, seconds: Some(7.0) });
+            assert_eq!(window.looked(), None);
+            let taken = window.pending_film.take().map(|film| film.sample_count());
+            assert_eq!(taken, goes_on.then_some(samples));
+            assert_eq!(window.seconds_before == Some(7.0), goes_on, "{samples}");
+            assert!(*window.document() == document);
+            window.seconds_before = Some(0.0);
+        }
+    }
 
     #[test]
     fn a_picture_that_no_slot_has_room_for_is_not_kept() {
@@ -184,5 +278,57 @@ mod tests {
         let told = window.messages();
         assert!(told.iter().any(|text| text.starts_with("Not kept: the picture takes ")), "{told:?}");
         assert!(!window.slot_actions.is_wanted(two));
+    }
+
+    #[test]
+    fn commands_for_a_slot_are_for_the_one_that_is_meant_not_the_one_that_is_shown() {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
+        let context = egui::Context::default();
+        let [one, two, three, four, ..] = SlotNumber::ALL;
+        for (number, name, size) in [(one, "first", [16, 9]), (two, "second", [8, 6])] {
+            let (mut document, mut film) = (window.document().clone(), Film::new(size[0], size[1], 2));
+            document.give_size(size);
+            film.record(0..4, 0).unwrap();
+            let kept = Kept::new(document, film, Arc::default(), None);
+            window.model.view.slots.put(number, Slot { name: name.to_owned(), kept: Arc::new(kept) });
+        }
+        window.model.view.look(Some(one));
+        window.model.view.slots.choose(two);
+        let told = |window: &mut Window, command| {
+            window.perform_on_slots(&context, command);
+            window.messages().pop().unwrap_or_default()
+        };
+        let deleted = "Deleted slot 2: second; Slots > Bring back the slot returns it";
+        assert_eq!(told(&mut window, SlotCommand::Delete), deleted);
+        assert!(window.slot(one).is_some() && window.slot(two).is_none());
+        assert_eq!(told(&mut window, SlotCommand::BringBack), "Brought back slot 2: second");
+        assert!(window.slot(one).is_some() && window.slot(two).is_some());
+        window.perform_on_slots(&context, SlotCommand::Open);
+        assert_eq!(window.slot_actions.reopened.wait().unwrap().unwrap().document.size(), [8, 6]);
+        window.perform_on_slots(&context, SlotCommand::TakeSize);
+        assert_eq!(window.document().size(), [8, 6]);
+        window.perform_on_slots(&context, SlotCommand::Wipe);
+        assert_eq!((window.model.view.compared_slot(), window.looked()), (Some(two), Some(one)));
+        for command in [SlotCommand::Keep, SlotCommand::Keep, SlotCommand::KeepIn(two)] {
+            window.perform_on_slots(&context, command);
+        }
+        assert_eq!(window.slot_actions.take_wanted(), [three, four, two]);
+    }
+
+    #[test]
+    fn a_picture_that_takes_the_place_of_another_is_told_with_both_names() {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
+        let number = SlotNumber::ALL[1];
+        let mut told = |samples| {
+            let kept = Kept::new(window.document().clone(), film(samples), Arc::default(), None);
+            window.put(Copied { number, kept });
+            window.messages().pop().unwrap()
+        };
+        let (first, second) = (told(5), told(6));
+        assert!(first.starts_with("Kept in slot 2: 11.4 ") && first.contains(", 5 samples ("), "{first}");
+        assert!(first.ends_with(')'), "it was free: {first}");
+        assert!(second.starts_with("Kept in slot 2: 11.4 ") && second.contains(", 6 samples ("), "{second}");
+        assert!(second.contains("), in place of 11.4 ") && second.ends_with(", 5 samples"), "{second}");
+        assert_eq!(window.slot(number).map(|(_, samples)| samples), Some(6));
     }
 }

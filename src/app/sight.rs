@@ -91,8 +91,11 @@ impl Sighted {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::model::slots::SlotNumber;
+    use crate::app::model::kept::Kept;
+    use crate::app::model::slots::{Slot, SlotNumber};
     use crate::app::model::tone::Tone;
+    use crate::film::Film;
+    use crate::progressive::ReferenceMeans;
 
     fn stage(id: &str) -> (&'static Stage, Document) {
         let stage = Stage::find(id).unwrap();
@@ -174,5 +177,29 @@ mod tests {
         assert!(!sight.lasts(&document, &other));
         let again = Document::new(Origin::of_stage(stage));
         assert!(!sight.lasts(&again, &view) && sight.is_of_another(&again));
+    }
+
+    #[test]
+    fn what_is_kept_or_loaded_during_a_sight_stays() {
+        let (stage, mut document) = stage("metal");
+        let (mut view, mut placement) = (ViewState::default(), Placement::default());
+        let one = SlotNumber::ALL[0];
+        for is_there in [true, false] {
+            let sight = Sighted::begin(stage, &mut document, &mut view, &mut placement);
+            if is_there {
+                let mut film = Film::new(4, 2, 1);
+                film.record(0..1, 0).unwrap();
+                let kept = Arc::new(Kept::new(document.clone(), film, Arc::default(), None));
+                view.slots.put(one, Slot { name: String::new(), kept });
+                let means = vec![[0.0; 3]];
+                view.reference =
+                    Some(Arc::new(ReferenceMeans { width: 1, height: 1, means, identity: None }));
+            } else {
+                view.slots.delete(one);
+                view.reference = None;
+            }
+            sight.end(&mut document, &mut view, &mut placement);
+            assert_eq!((view.slots.get(one).is_some(), view.reference.is_some()), (is_there, is_there));
+        }
     }
 }

@@ -110,7 +110,7 @@ mod tests {
         let grey = row(&|_| 100);
         let at = |shade: &dyn Fn(usize) -> u8| {
             let share = grey.most_different_column(&row(shade))?;
-            Some((share * 192.0).round() / 2.0)
+            Some((share * 768.0).round() / 8.0)
         };
         // Columns 16 to 79 can have the divider; what is at the edge is seen from six columns away.
         assert_eq!(at(&|x| if x < 4 { 200 } else { 100 }), None, "too near to the edge");
@@ -135,7 +135,16 @@ mod tests {
         let id = first.id(&context, square);
         let known = |id| context.tex_manager().read().meta(id).map(|meta| (meta.size, meta.options));
         assert_eq!(known(id), Some(([2, 2], square)));
+        let _earlier = context.tex_manager().write().take_delta();
         assert_eq!(first.id(&context, smooth), id);
+        let uploaded = context.tex_manager().write().take_delta();
+        assert!(
+            uploaded
+                .set
+                .iter()
+                .any(|(at, delta)| *at == id && delta.iter().any(|delta| delta.options == smooth)),
+            "it is smoothed at once"
+        );
         let mut second = Texture::new([1, 3], &[0; 9], Some(first));
         assert_eq!(known(id).map(|(size, _)| size), Some([1, 3]), "it is uploaded at once");
         assert_eq!(second.id(&context, smooth), id);

@@ -18,7 +18,6 @@ use super::model::crop::Crop;
 use super::model::device::{Device, DeviceOptions};
 use super::model::document::Document;
 use super::model::origin::{Origin, Source};
-use super::model::remembered::Remembered;
 use super::model::view::ViewState;
 use super::packet::Packet;
 use super::paths::Paths;
@@ -27,6 +26,7 @@ use super::places::Place;
 use super::present::Presenter;
 use super::recovery::Recovery;
 use super::second::Second;
+use super::settings::{Read, SettingsFile};
 use super::sight::Sighted;
 use super::sizer::Sizer;
 use super::slot_files::DISK_LIMIT;
@@ -47,10 +47,8 @@ use crate::render::RenderJob;
 use crate::saved::SavedFilm;
 use crate::stages::Stage;
 use anyhow::{Context as _, Result};
+use eframe::egui::Context;
 use std::path::PathBuf;
-
-/// Not "window", because eframe uses that key for position and size.
-const STORAGE_KEY: &str = "weekender";
 
 /// For how many frames a new window's size is compared with the screen, because the system reports it late.
 const FRAMES_TO_FIT: u8 = 120;
@@ -85,6 +83,8 @@ pub struct Window {
     /// The sight that is shown.
     pub(super) sight: Option<Sighted>,
     pub(super) recovery: Recovery,
+    /// Where the settings are remembered.
+    pub(super) settings: Option<SettingsFile>,
     /// The flight of the camera, if it moves by itself.
     pub(super) flight: Option<Flight>,
     /// Commands to be carried out.
@@ -127,10 +127,13 @@ impl Window {
     ///
     /// # Errors
     /// If the system cannot start a thread, or the frame log cannot be written.
-    pub fn new(options: WindowOptions, storage: Option<&dyn eframe::Storage>) -> Result<Self> {
-        let earlier: Option<Remembered> = storage.and_then(|storage| eframe::get_value(storage, STORAGE_KEY));
+    pub fn new(options: WindowOptions) -> Result<Self> {
+        let (settings, earlier, message) = match options.settings.as_deref().map(SettingsFile::read) {
+            Some(Read { file, settings, message }) => (Some(file), settings, message),
+            None => (None, None, None),
+        };
         let is_first = earlier.is_none();
-        let mut remembered = earlier.unwrap_or_default().mended();
+        let mut remembered = earlier.unwrap_or_default();
         if is_first || options.is_device_given {
             remembered.device = Device::of(&options.backend);
         }
@@ -193,6 +196,7 @@ impl Window {
             thumbnails: Thumbnails::default(),
             sight: None,
             recovery: Recovery::new(options.autosave_every),
+            settings,
             flight: None,
             commands: Vec::new(),
             pending_resume,
@@ -214,12 +218,31 @@ impl Window {
             frames_to_fit: FRAMES_TO_FIT,
             crashes_at: options.crashes_at,
         };
+        if let Some(message) = message {
+            window.toasts.bad(message);
+        }
         if let Some(directory) = &options.state_directory {
             let may_restore = !options.is_picture_given && !options.is_fresh;
             let limit = options.kept_limit.unwrap_or(DISK_LIMIT);
             window.begin_recovery(directory, may_restore, (options.stop, limit));
         }
         Ok(window)
+    }
+
+    /// Has the settings written soon if they have changed.
+    pub(super) fn keep_settings(&mut self, context: &Context) {
+        let Some(file) = &mut self.settings else { return };
+        if let Some(reason) = file.keep(context, &self.model.remembered) {
+            self.toasts.bad(format!("The settings are not kept: {reason}"));
+        }
+    }
+
+    /// Writes the settings for the last time.
+    pub(super) fn finish_settings(&mut self) {
+        let Some(mut file) = self.settings.take() else { return };
+        if let Err(reason) = file.finish(&self.model.remembered) {
+            crate::console::note(&format!("weekender: the settings are not kept: {reason}"));
+        }
     }
 
     /// The document that is shown.
@@ -284,11 +307,6 @@ impl Window {
         self.pending_film = Some(film.film);
         self.seconds_before = film.seconds;
         self.changes.adopt(&self.model.document);
-    }
-
-    /// Saves the settings for the next run.
-    pub(super) fn remember(&self, storage: &mut dyn eframe::Storage) {
-        eframe::set_value(storage, STORAGE_KEY, &self.model.remembered);
     }
 }
 

@@ -276,24 +276,64 @@ mod tests {
         assert_eq!(Spread::of([]), None);
     }
 
+    fn row(kind: Kind, runs: Vec<Run>) -> Row {
+        Row {
+            name: String::new(),
+            kind,
+            lanes: 4,
+            threads: 1,
+            samples_per_pixel: 1,
+            runs,
+            paths_per_second: None,
+            rays_per_second: None,
+            lanes_in_use: None,
+            ratio_to_baseline: None,
+            efficiency: None,
+            skipped: None,
+        }
+    }
+
+    #[test]
+    fn rows_are_compared_with_the_baseline_of_their_own_scene() {
+        let run = |paths: u64| Run {
+            seconds: 2.0,
+            paths,
+            rays: 7 * paths,
+            busy_lanes: 0,
+            offered_lanes: 0,
+            rmse: None,
+        };
+        let ratios = |rows: Vec<Row>| -> Vec<Option<f64>> {
+            let mut figures = SceneFigures {
+                scene: "book".to_owned(),
+                width: 4,
+                height: 3,
+                max_depth: 2,
+                sampler: "sobol",
+                spheres: 1,
+                rows,
+            };
+            figures.sum_up();
+            figures.rows.iter().map(|row| row.ratio_to_baseline).collect()
+        };
+        // The medians of the baseline are 10 in the first scene and 40 in the second.
+        let first = vec![
+            row(Kind::Packets, vec![run(80), run(60), run(90)]),
+            row(Kind::Baseline, vec![run(20), run(10), run(90)]),
+            row(Kind::Gpu, Vec::new()),
+        ];
+        assert_eq!(ratios(first), [Some(4.0), Some(1.0), None]);
+        let second = vec![row(Kind::Baseline, vec![run(80)]), row(Kind::Packets, vec![run(20)])];
+        assert_eq!(ratios(second), [Some(1.0), Some(0.25)]);
+        let without = vec![row(Kind::Packets, vec![run(80)]), row(Kind::Baseline, Vec::new())];
+        assert_eq!(ratios(without), [None, None]);
+    }
+
     #[test]
     fn a_row_sums_up_its_runs() {
         let run = Run { seconds: 2.0, paths: 8, rays: 20, busy_lanes: 3, offered_lanes: 4, rmse: Some(0.5) };
         let row = |kind| {
-            let mut row = Row {
-                name: String::new(),
-                kind,
-                lanes: 4,
-                threads: 1,
-                samples_per_pixel: 1,
-                runs: vec![run, Run { seconds: 1.0, ..run }, Run { seconds: 4.0, ..run }],
-                paths_per_second: None,
-                rays_per_second: None,
-                lanes_in_use: None,
-                ratio_to_baseline: None,
-                efficiency: None,
-                skipped: None,
-            };
+            let mut row = row(kind, vec![run, Run { seconds: 1.0, ..run }, Run { seconds: 4.0, ..run }]);
             row.sum_up();
             row
         };

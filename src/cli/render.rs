@@ -69,6 +69,8 @@ pub struct WindowOptions {
     pub autosave_every: Duration,
     /// The directory in which the window keeps what it shows; without one, it keeps nothing.
     pub state_directory: Option<PathBuf>,
+    /// The file of the settings, which all windows share; without one, nothing is remembered.
+    pub settings: Option<PathBuf>,
     /// What kept pictures may take in that directory, bytes, if not the usual limit.
     pub kept_limit: Option<u64>,
     /// What draws the window.
@@ -211,6 +213,7 @@ fn window(raw: &RawRender, backend: BackendChoice) -> Result<WindowOptions, CliE
         is_fresh: raw.fresh,
         autosave_every: raw.autosave_every.unwrap_or(CHECKPOINT_INTERVAL),
         state_directory: None,
+        settings: None,
         kept_limit: None,
         draw_with: raw.draw_with,
         frame_log: raw.frame_log.clone(),

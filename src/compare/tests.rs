@@ -1,8 +1,17 @@
-//! Films whose noise is unusual: none, or more than their difference.
+//! Films whose noise is unusual: none, or more than their difference. What a backend renders beside a file.
 
-use super::{PairedSamples, Side, compare};
-use crate::film::{Film, fixed_point};
+use super::side::Rendering;
+use super::{PairedSamples, Side, beside, both, compare, sides};
+use crate::backends::BackendChoice;
+use crate::cli::{CompareOptions, CompareSide};
+use crate::film::{Description, Film, checkpoint, fixed_point};
+use crate::output::Encoding;
+use crate::recipe::Recipe;
+use crate::recipe::file::to_picture_toml;
+use crate::render_cpu::CpuOptions;
+use crate::stages::Transfer;
 use std::hash::{DefaultHasher, Hash, Hasher};
+use std::sync::Arc;
 
 /// A film with one sample in each half, of the radiance that `value` returns for half and pixel.
 fn side(value: impl Fn(u32, u32) -> f64) -> Side {
@@ -45,4 +54,129 @@ fn blocks_that_are_nearer_than_the_halves_allow_are_remarked_on() {
     assert!(!is_remarked_on(&one, &other, None));
     // Pictures of the same samples may be as near as they like.
     assert!(!is_remarked_on(&one, &swapped, Some(PairedSamples::default())));
+}
+
+fn one_thread() -> BackendChoice {
+    BackendChoice::Cpu(CpuOptions { threads: Some(1), ..CpuOptions::default() })
+}
+
+fn backend() -> CompareSide {
+    CompareSide::Backend { name: "cpu".to_owned(), choice: one_thread() }
+}
+
+/// Three spheres at 8x6 with 5 samples per pixel.
+fn small() -> Recipe {
+    let mut recipe = Recipe::find("three-spheres").unwrap();
+    (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (8, 6, 5);
+    recipe
+}
+
+/// A film of `recipe` that holds the samples 4..6 and 8..11.
+fn read_film(recipe: &Recipe) -> Side {
+    let mut film = recipe.job().unwrap().new_film();
+    for range in [4..6, 8..11] {
+        film.record(range, 0).unwrap();
+    }
+    Side::of_rendered("film.exr".to_owned(), recipe.clone(), Arc::new(film)).unwrap()
+}
+
+#[test]
+fn a_backend_renders_what_was_asked_for_else_what_the_film_holds_else_what_the_recipe_says() {
+    let recipe = small();
+    let mut seeded = recipe.clone();
+    seeded.settings.seed = 7;
+    let film = read_film(&recipe);
+    let other = read_film(&seeded);
+    let picture = Side { film: None, job: None, ..read_film(&recipe) };
+    for (read, asked, expected) in [
+        (&film, None, "4..6, 8..11"),
+        (&film, Some(2), "0..2"),
+        (&film, Some(5), "0..5"),
+        (&film, Some(9), "0..9"),
+        (&other, None, "0..5"),
+        (&other, Some(9), "0..9"),
+        (&picture, None, "0..3"),
+        (&picture, Some(9), "0..9"),
+    ] {
+        // The recipe's own size and samples are not those of the file.
+        let mut recipe = recipe.clone();
+        (recipe.settings.width, recipe.settings.height, recipe.samples_per_pixel) = (40, 30, 3);
+        let options = CompareOptions { recipe, samples: asked, ..options_of(backend(), backend()) };
+        let mut rendering = Rendering::start(&one_thread(), "cpu").unwrap();
+        let rendered = beside(&options, read, &mut rendering).unwrap();
+        let found = rendered.film.unwrap();
+        assert_eq!(found.samples().to_string(), expected, "{asked:?}");
+        assert_eq!((found.width(), found.height(), rendered.name.as_str()), (8, 6, "cpu"));
+    }
+}
+
+/// How `first` and `second` are compared, with the recipe of [`small`].
+fn options_of(first: CompareSide, second: CompareSide) -> CompareOptions {
+    CompareOptions {
+        sides: [first, second],
+        recipe: small(),
+        samples: None,
+        encoding: Encoding::Book(Transfer::Gamma2),
+        heat_map: None,
+        json: None,
+    }
+}
+
+#[test]
+fn a_backend_and_a_file_keep_their_order() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("film.exr");
+    let recipe = small();
+    let mut film = recipe.job().unwrap().new_film();
+    film.halves_mut()[0].iter_mut().for_each(|sum| sum.add(fixed_point([50.0; 3]).unwrap()));
+    film.record(0..2, 0).unwrap();
+    checkpoint::save(&path, &film, &Description::new(&to_picture_toml(&recipe))).unwrap();
+    let file = || CompareSide::File(path.clone());
+    let name = path.display().to_string();
+    for (options, names) in [
+        (options_of(file(), backend()), [name.as_str(), "cpu"]),
+        (options_of(backend(), file()), ["cpu", name.as_str()]),
+    ] {
+        let (found, paired) = sides(&options).unwrap();
+        assert_eq!(found.each_ref().map(|side| side.name.as_str()), names);
+        assert!(paired.is_none());
+        // The film in the file is far brighter than any picture of the scene.
+        let is_file_brighter = (compare(&found[0], &found[1], None).bias < 0.0) == (names[1] == "cpu");
+        assert!(is_file_brighter, "{names:?}");
+    }
+    let (found, paired) = sides(&options_of(file(), file())).unwrap();
+    assert!(paired.is_none() && compare(&found[0], &found[1], None).is_same);
+}
+
+#[test]
+fn each_of_two_backends_renders_its_own_side() {
+    let recipe = small();
+    let start = |choice, name| Rendering::start(&choice, name).unwrap();
+    let mut reference = start(BackendChoice::Reference { threads: Some(1) }, "reference");
+    let mut cpu = start(one_thread(), "cpu");
+    let (sides, paired) = both(&recipe, 6, &mut reference, &mut cpu).unwrap();
+    assert_eq!(sides.each_ref().map(|side| side.name.as_str()), ["reference", "cpu"]);
+    let job = recipe.job().unwrap();
+    for (side, rendering) in sides.iter().zip([&mut reference, &mut cpu]) {
+        let film = side.film.as_ref().unwrap();
+        assert_eq!(film.samples().to_string(), "0..6");
+        let alone = rendering.render(&recipe, &job, std::iter::once(0..6)).unwrap();
+        assert_eq!(film, alone.film.as_ref().unwrap());
+    }
+    assert_eq!(paired.count, 6 * 8 * 6);
+    // Two of one kind are told apart.
+    let (sides, _) = both(&recipe, 1, &mut cpu, &mut start(one_thread(), "cpu")).unwrap();
+    assert_eq!(sides.each_ref().map(|side| side.name.as_str()), ["cpu (first)", "cpu (second)"]);
+}
+
+#[test]
+fn two_backends_render_the_samples_that_were_asked_for_else_those_of_the_recipe() {
+    for (asked, count) in [(None, 5), (Some(2), 2), (Some(7), 7)] {
+        let options = CompareOptions { samples: asked, ..options_of(backend(), backend()) };
+        let (found, paired) = sides(&options).unwrap();
+        for side in &found {
+            assert_eq!(side.film.as_ref().unwrap().samples().to_string(), format!("0..{count}"));
+        }
+        assert_eq!(paired.map(|paired| (paired.count, paired.parted)), Some((count * 8 * 6, 0)));
+    }
 }

@@ -180,6 +180,15 @@ fn assemble(plan: &Plan<Frames>, options: &MergeOptions) -> Result<ExitCode, Fai
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::animation::Turn;
+    use crate::cli::MergeSource;
+    use crate::film::{Description, Film, fixed_point, key};
+    use crate::output::{FrameRate, write_image};
+    use crate::plan::Manifest;
+    use crate::recipe::{Recipe, file};
+    use crate::stages::Transfer;
+    use std::io::BufReader;
+    use std::path::{Path, PathBuf};
 
     #[test]
     fn a_number_is_told_at_first_and_then_when_it_has_changed_but_not_too_often() {
@@ -188,6 +197,89 @@ mod tests {
         assert!(is_told(None, 0));
         assert!(is_told(Some(4), 5000) && is_told(Some(2), 9000));
         assert!(!is_told(Some(4), 4999) && !is_told(Some(3), 4999) && !is_told(Some(3), 9000));
+    }
+
+    const SIZE: [u32; 2] = [4, 3];
+
+    /// A plan of the frames 5 to 8 in two parts, whose files are whole and of a grey of their own.
+    fn planned(directory: &Path) -> Plan<Frames> {
+        let rate = FrameRate { frames: 12, seconds: 1 };
+        let work = Frames::new(&(5..9), Some(Turn::FramesPerTurn(20)), rate, 2).unwrap();
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        ([recipe.settings.width, recipe.settings.height], recipe.samples_per_pixel) = (SIZE, 1);
+        let plan = Plan::write(directory, &recipe, &recipe.job().unwrap(), Manifest::new(work)).unwrap();
+        for number in 5..9 {
+            let recipe = plan.recipe.at_frame(&plan.camera_path(), number);
+            let mut film = Film::new(SIZE[0], SIZE[1], 1);
+            let grey = fixed_point([f64::from(number) / 10.0; 3]).unwrap();
+            film.halves_mut()[0].iter_mut().for_each(|sum| sum.add(grey));
+            film.record(0..1, 0).unwrap();
+            let mut description = Description::new(&file::to_picture_toml(&recipe));
+            description.set(key::SOFTWARE, SOFTWARE);
+            description.set(key::SAMPLES, 1);
+            write_image(&plan.names().path(number), &film, Transfer::Linear, &description).unwrap();
+        }
+        plan
+    }
+
+    fn into(plan: &Plan<Frames>, out: &[PathBuf]) -> MergeOptions {
+        MergeOptions {
+            source: MergeSource::Plan(plan.path.clone()),
+            out: out.to_vec(),
+            watch: None,
+            check: false,
+            program: "weekender".to_owned(),
+        }
+    }
+
+    /// The first byte of each frame of an animated PNG, and the delay of the first.
+    fn greys(path: &Path) -> (Vec<u8>, [u16; 2]) {
+        let file = BufReader::new(std::fs::File::open(path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let control = *reader.info().frame_control().unwrap();
+        let frames = reader.info().animation_control().unwrap().num_frames;
+        let mut first_byte = || {
+            let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+            reader.next_frame(&mut pixels).unwrap();
+            pixels[0]
+        };
+        ((0..frames).map(|_| first_byte()).collect(), [control.delay_num, control.delay_den])
+    }
+
+    #[test]
+    fn frames_that_do_not_begin_at_0_are_merged_in_their_order() {
+        let directory = tempfile::tempdir().unwrap();
+        let plan = planned(directory.path());
+        let out = ["a.png", "b.png"].map(|name| directory.path().join(name));
+        assert_eq!(lacking(&plan).len(), 0);
+        assert_eq!(merge(&plan, &into(&plan, &out)).unwrap(), ExitCode::SUCCESS);
+        // Frame number 5 has the radiance 5/10, of which 256 levels show level 128, and so on.
+        for out in &out {
+            assert_eq!(greys(out), (vec![128, 153, 179, 204], [1, 12]));
+        }
+        assert_eq!(words(&plan, 0), "4 of 4 frames are whole");
+    }
+
+    #[test]
+    fn a_frame_that_is_missing_is_of_the_part_that_has_its_number() {
+        let directory = tempfile::tempdir().unwrap();
+        let plan = planned(directory.path());
+        for number in [6, 8] {
+            std::fs::remove_file(plan.names().path(number)).unwrap();
+        }
+        std::fs::copy(plan.names().path(5), plan.names().path(7)).unwrap();
+        let lacking = lacking(&plan);
+        let lines: Vec<String> = lacking.iter().map(|frame| frame.line(&plan)).collect();
+        assert_eq!(
+            [&lines[0], &lines[2]],
+            ["part 0: frame-0006.png is missing", "part 1: frame-0008.png is missing"]
+        );
+        assert!(lines[1].starts_with("part 1: ") && lines[1].contains("is of another picture"), "{lines:?}");
+        assert_eq!((lines.len(), parts_of(&lacking)), (3, vec![0, 1]));
+        assert_eq!(words(&plan, lacking.len()), "1 of 4 frames are whole");
+        let out = [directory.path().join("a.png")];
+        assert_eq!(merge(&plan, &into(&plan, &out)).unwrap(), ExitCode::from(FAILED));
+        assert!(!out[0].exists());
     }
 
     #[test]

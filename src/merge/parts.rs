@@ -197,3 +197,55 @@ pub(super) fn remedy<W: Work>(plan: &Plan<W>, parts: &[usize], program: &str) ->
 pub(super) fn numbers(lacking: &Lacking) -> Vec<usize> {
     lacking.iter().map(|(index, _)| *index).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{Manifest, Part};
+    use crate::recipe::Recipe;
+    use tempfile::TempDir;
+
+    /// A plan of the samples 7 to 49 in parts of 23 and 20.
+    fn planned() -> (TempDir, Plan<Samples>) {
+        let directory = tempfile::tempdir().unwrap();
+        let mut recipe = Recipe::find("three-spheres").unwrap();
+        (recipe.settings.width, recipe.settings.height) = (4, 3);
+        let part = |file: &str, samples| Part { file: file.to_owned(), samples };
+        let parts = vec![part("part-0.exr", [7, 30]), part("part-1.exr", [30, 50])];
+        let work = Samples { samples: [7, 50], block: 1, parts };
+        let plan = Plan::write(directory.path(), &recipe, &recipe.job().unwrap(), Manifest::new(work));
+        (directory, plan.unwrap())
+    }
+
+    #[test]
+    fn a_part_has_as_many_samples_as_its_range_wherever_that_begins() {
+        let (_directory, plan) = planned();
+        let state = |index: usize, start: u64, end: u64| {
+            state_of(&plan, index, &SampleRanges::from_ranges(std::iter::once(start..end)).unwrap())
+        };
+        assert_eq!((state(0, 7, 30), state(1, 30, 50)), (State::Whole, State::Whole));
+        assert_eq!(state(1, 30, 41), State::Unfinished { missing: 9 });
+        let State::Wrong(words) = state(1, 29, 50) else { panic!("a sample of the part before") };
+        assert!(words.contains("part-1.exr holds the samples 29..50, but this part has 30..50"), "{words}");
+        assert_eq!(
+            line(&plan, 1, &State::Unfinished { missing: 9 }),
+            "part 1: part-1.exr has 11 of 20 samples per pixel"
+        );
+        assert_eq!(line(&plan, 0, &State::Missing), "part 0: part-0.exr is missing (samples 7..30)");
+    }
+
+    #[test]
+    fn a_sum_tells_how_many_samples_of_the_plan_it_has() {
+        let (_directory, plan) = planned();
+        let mut sum = PlanSum::new(&plan).unwrap();
+        assert_eq!(sum.words(), "0 of 43 samples per pixel (); 0 of 2 parts are whole");
+        let mut film = plan.job.new_film();
+        film.record(30..50, 0).unwrap();
+        let description = describe(&plan.recipe, None, &film, &Status::default(), None);
+        checkpoint::save(&plan.beside("part-1.exr"), &film, &description).unwrap();
+        assert_eq!(sum.add(1, false).unwrap(), &State::Whole);
+        assert_eq!(sum.words(), "20 of 43 samples per pixel (30..50); 1 of 2 parts are whole");
+        assert_eq!((sum.is_whole(0), sum.is_whole(1)), (false, true));
+        assert_eq!(numbers(&sum.lacking()), [0]);
+    }
+}

@@ -265,6 +265,26 @@ mod tests {
         assert!(errors.flip > 0.0, "{errors:?}");
     }
 
+    /// Every error is that of the reference and of the picture together, as the two are independent.
+    #[test]
+    fn the_error_of_the_reference_is_subtracted() {
+        let mut film = Film::new(16, 9, 2);
+        for (half, radiance) in film.halves_mut().iter_mut().zip([0.25, 0.75]) {
+            half.iter_mut().for_each(|sum| sum.add(fixed_point([radiance; 3]).unwrap()));
+        }
+        film.record(0..2, 0).unwrap();
+        let reference = ReferencePicture::of_film("grey", "", &film, Transfer::Linear).unwrap();
+        // Its mean is 0.5, and its error a quarter of the squared difference of the halves.
+        let near = |found: f64, expected: f64| (found - expected).abs() < 1e-12;
+        assert!(near(reference.used.mse, 0.0625) && near(reference.used.rel_mse, 0.0625 / 0.26));
+        let errors = reference.errors(&[[1.0; 3]; 16 * 9]);
+        assert!(near(errors.mse, 0.25 - 0.0625), "{errors:?}");
+        assert!(near(errors.rel_mse, (0.25 - 0.0625) / 0.26), "{errors:?}");
+        // A picture that is nearer than the reference can be has a negative error.
+        let errors = reference.errors(&film_means(&film));
+        assert!(near(errors.mse, -0.0625) && near(errors.rel_mse, -0.0625 / 0.26), "{errors:?}");
+    }
+
     #[test]
     fn passes_grow_and_progress_is_told_between_them() {
         let (_directory, path) = place();

@@ -112,3 +112,74 @@ fn index(job: &RenderJob, scene_index: &[u32]) -> Option<Slider> {
         ..Slider::new("index", "Index of refraction", [0.5, 2.5, 0.01], value)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+    use crate::scene::Scene;
+    use crate::scene::builtin::{LeftSphere, metals, three_spheres};
+    use glam::DVec3;
+
+    /// The sliders of a scene whose records are those of its spheres from the last to the first.
+    fn sliders_of(scene: Scene, samples: u64) -> Vec<Slider> {
+        let count = scene.spheres.len() as u32;
+        let recipe = Recipe::find("three-spheres").unwrap();
+        let job = RenderJob::new(scene, recipe.camera, recipe.settings, recipe.rules).unwrap();
+        sliders(&job, samples, &(0..count).rev().collect::<Vec<u32>>())
+    }
+
+    /// Label, value, rows and inverse rows.
+    type Told<'a> = (&'a str, f64, &'a [usize], &'a [usize]);
+
+    /// The sliders with this key.
+    fn with_key<'a>(sliders: &'a [Slider], key: &str) -> Vec<Told<'a>> {
+        let found = sliders.iter().filter(|slider| slider.key == key);
+        found.map(|s| (s.label.as_str(), s.value, s.rows.as_slice(), s.inverse_rows.as_slice())).collect()
+    }
+
+    /// The spheres are the ground, the middle one, the glass, the bubble in it, and the metal.
+    #[test]
+    fn a_slider_moves_the_spheres_of_its_material_and_the_bubble_in_the_glass() {
+        let hollow = sliders_of(three_spheres(LeftSphere::HollowGlass), 64);
+        assert_eq!(with_key(&hollow, "index"), [("Index of refraction", 1.5, &[2][..], &[1][..])]);
+        assert_eq!(with_key(&hollow, "fuzz"), [("Fuzz (right)", 1.0, &[0][..], &[][..])]);
+        // A bubble of air under water stands alone.
+        let bubble = sliders_of(three_spheres(LeftSphere::Glass(1.0 / 1.33)), 64);
+        assert_eq!(with_key(&bubble, "index"), [("Index of refraction", 1.0 / 1.33, &[1][..], &[][..])]);
+        // What has the index 1 is its own inverse, and is written once.
+        let air = sliders_of(three_spheres(LeftSphere::Glass(1.0)), 64);
+        assert_eq!(with_key(&air, "index"), [("Index of refraction", 1.0, &[1][..], &[][..])]);
+        let metals = sliders_of(metals(0.3, 1.0), 64);
+        assert_eq!(
+            with_key(&metals, "fuzz"),
+            [("Fuzz (left)", 0.3, &[1][..], &[][..]), ("Fuzz (right)", 1.0, &[0][..], &[][..])]
+        );
+        assert!(with_key(&metals, "index").is_empty());
+    }
+
+    #[test]
+    fn of_many_metals_the_largest_has_a_slider_for_all_its_spheres() {
+        let mut scene = Scene::default();
+        for (name, fuzz, radii) in
+            [("small", 0.1, &[0.1, 0.2][..]), ("large", 2.5, &[0.3, 0.7]), ("middle", 0.4, &[0.6])]
+        {
+            let material = scene.add_material(name, Material::Metal { albedo: DVec3::ONE, fuzz });
+            for radius in radii {
+                scene.add_sphere(DVec3::X * (scene.spheres.len() as f64 * 3.0), *radius, material);
+            }
+        }
+        // A fuzz above 1 counts as 1.
+        assert_eq!(with_key(&sliders_of(scene, 64), "fuzz"), [("Fuzz (large)", 1.0, &[1, 2][..], &[][..])]);
+    }
+
+    #[test]
+    fn a_lens_and_samples_need_more_than_one_sample() {
+        let keys = |samples: u64| -> Vec<&str> {
+            let sliders = sliders_of(three_spheres(LeftSphere::HollowGlass), samples);
+            sliders.iter().map(|slider| slider.key).collect()
+        };
+        assert_eq!(keys(2), ["vfov", "defocus", "focus", "fuzz", "index", "depth", "samples"]);
+        assert_eq!(keys(1), ["vfov", "fuzz", "index", "depth"]);
+    }
+}

@@ -178,15 +178,24 @@ fn decoded(path: &Path) -> (u32, Vec<(u16, u16, Vec<u8>)>) {
 #[test]
 fn an_animated_png_has_all_frames_and_exact_delays() {
     let directory = temp();
-    for (flags, delay) in [(&[][..], (1, 30)), (&["--fps", "30000/1001"][..], (1001, 30_000))] {
+    for (flags, delay, range) in [
+        (&[][..], (1, 30), 0_u32..6),
+        (&["--fps", "30000/1001"], (1001, 30_000), 0..6),
+        (&["--frames", "2..5"], (1, 30), 2..5),
+    ] {
         let json = render(directory.path(), &[&["--turntable=6", "--out", "turn.png"], flags].concat());
         assert_eq!(json["animation"], "turn.png");
+        assert_eq!(
+            (&json["first_frame"], &json["last_frame"]),
+            (&range.start.into(), &(range.end - 1).into())
+        );
+        assert_eq!((&json["frames"], &json["frames_done"]), (&range.len().into(), &range.len().into()));
         let (plays, frames) = decoded(&directory.path().join("turn.png"));
-        assert_eq!((plays, frames.len()), (0, 6), "it repeats without end");
-        for (index, (number, denominator, found)) in frames.iter().enumerate() {
-            assert_eq!((*number, *denominator), delay);
-            let frame = directory.path().join(format!("turn-frames/frame-{index:04}.png"));
-            assert!(*found == pixels(&frame), "frame {index}");
+        assert_eq!((plays, frames.len()), (0, range.len()), "it repeats without end");
+        for (number, (delay_number, denominator, found)) in range.zip(&frames) {
+            assert_eq!((*delay_number, *denominator), delay);
+            let frame = directory.path().join(format!("turn-frames/frame-{number:04}.png"));
+            assert!(*found == pixels(&frame), "frame {number}");
         }
     }
     let description = read_description(&directory.path().join("turn.png")).unwrap();

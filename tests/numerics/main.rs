@@ -19,4 +19,5 @@ mod parity;
 mod reflections;
 mod sampling;
 mod statistics;
+mod steep_glass;
 mod stiff;

@@ -21,7 +21,10 @@ fn the_parts_of_a_plan_add_up_to_one_run_to_the_bit() {
             render_part(at, &directory, part as u32);
         }
         let told = succeeds(at, &["merge", &directory, "--out", "merged.exr", "--out", "merged.png"]);
-        assert!(told.contains(&format!("({range})")) && told.contains("merged.png"), "{told}");
+        let (start, end) = range.split_once("..").unwrap();
+        let count = end.parse::<u64>().unwrap() - start.parse::<u64>().unwrap();
+        let words = format!("{count} of {count} samples per pixel ({range})");
+        assert!(told.contains(&words) && told.contains("merged.png"), "{told}");
         let kept: Vec<&str> = flags
             .chunks(2)
             .filter(|pair| !["--parts", "--samples", "--sample-range"].contains(&pair[0]))

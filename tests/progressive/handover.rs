@@ -131,6 +131,30 @@ fn the_history_of_a_film_with_other_samples_misses_no_power_of_two() {
     assert_eq!(history, [5, 11, 19, 35, 67, 131]);
 }
 
+/// A film that has samples before, in and behind those of the plan.
+#[test]
+fn what_is_planned_counts_the_samples_that_the_film_has_elsewhere() {
+    let mut film = job(2).new_film();
+    let mut fake = Fake { pause: Duration::ZERO, ..Fake::new("before") };
+    for range in [0..3, 12..14, 1000..1010] {
+        fake.accumulate(&job(2), range, &mut film, &AtomicBool::new(false)).unwrap();
+    }
+    let mut progressive = Progressive::with_factory(factory()).unwrap();
+    let plan = Plan { first_sample: 8, ..Plan::samples(20) };
+    progressive.start(RenderRequest { film: Some(film), ..RenderRequest::new(job(2), CPU, plan) });
+    let status = progressive.wait_until_over();
+    // Ten of the twelve samples 8..20 are new, and thirteen others stay.
+    assert_eq!((status.planned_samples_per_pixel, status.samples_per_pixel), (25, 25));
+    assert_eq!(status.contributions.iter().map(|part| part.samples_per_pixel).sum::<u64>(), 10);
+    // A longer plan begins where the first one did.
+    progressive.set_plan(Plan { first_sample: 8, ..Plan::samples(30) });
+    wait_for(&progressive, 35);
+    let status = progressive.wait_until_over();
+    assert_eq!((status.planned_samples_per_pixel, status.samples_per_pixel), (35, 35));
+    let film = progressive.finish().unwrap();
+    assert_eq!(film.samples().to_string(), "0..3, 8..30, 1000..1010");
+}
+
 #[test]
 fn pictures_come_when_asked_for_and_films_can_be_looked_at() {
     let progressive = started(CPU, Plan::samples(64));

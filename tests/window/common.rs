@@ -24,7 +24,7 @@ pub fn window(arguments: &str) -> Window {
 pub fn window_of_new_user(arguments: &str) -> Window {
     let words = std::iter::once("weekender").chain(arguments.split_whitespace());
     match cli::parse(words.map(Into::into)).unwrap() {
-        Request::Window(options) => Window::new(*options, None).unwrap(),
+        Request::Window(options) => Window::new(*options).unwrap(),
         other => panic!("{arguments}: {other:?}"),
     }
 }

@@ -1,12 +1,11 @@
 //! The card that a new user sees.
 
 use crate::common::{control, drag_from, hold, middle, open, open_sized, opened, send, until, window};
-use crate::remembered::Storage;
+use crate::remembered::remembering;
 use eframe::egui::{Key, Rect, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
-use weekender::cli::{self, Request};
 
 const ABOUT: &str = "Every picture of Ray Tracing in One Weekend, rendered while you watch.";
 const STEPS: [&str; 3] = [
@@ -105,14 +104,15 @@ fn each_step_is_ticked_off_once_it_is_done() {
 
 #[test]
 fn a_closed_card_returns_only_when_asked() {
-    let mut harness = first();
+    let directory = tempfile::tempdir().unwrap();
+    let settings = directory.path().join("settings.json");
+    let mut harness = remembering("", &settings);
+    assert!(has_card(&harness));
     harness.key_press(Key::Escape);
     harness.run_steps(3);
     assert!(!has_card(&harness));
-    let mut storage = Storage::default();
-    eframe::App::save(harness.state_mut(), &mut storage);
-    let Request::Window(options) = cli::parse(["weekender".into()]).unwrap() else { panic!() };
-    let mut again = opened(Window::new(*options, Some(&storage)).unwrap());
+    harness.state_mut().end_in_order();
+    let mut again = remembering("", &settings);
     assert!(!has_card(&again));
     assert_eq!(again.state().document().name(), "three-spheres");
     control(&again, "Help").click();

@@ -11,7 +11,7 @@ fn open(state: &Path, arguments: &str) -> Harness<'static, Window> {
     let words = std::iter::once("weekender").chain(arguments.split_whitespace());
     let Request::Window(options) = cli::parse(words.map(Into::into)).unwrap() else { panic!("no window") };
     let options = WindowOptions { state_directory: Some(state.to_owned()), ..*options };
-    let mut window = Window::new(options, None).unwrap();
+    let mut window = Window::new(options).unwrap();
     window.remembered_mut().first_steps.is_over = true;
     let mut harness = opened(window);
     until(&mut harness, "a picture", has_samples(1));

@@ -41,6 +41,7 @@ mod recovered;
 mod remembered;
 mod resuming;
 mod session;
+mod shown_slots;
 mod sights;
 mod size;
 mod sizes;

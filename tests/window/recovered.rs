@@ -146,7 +146,7 @@ fn a_scene_whose_file_is_gone_is_shown_as_it_was() {
 fn what_cannot_be_written_is_told_and_rendering_goes_on() {
     for (ending, told) in [("exr", "Not autosaved: "), ("json", "What this window shows is not kept: ")] {
         let state = tempfile::tempdir().unwrap();
-        let window = Window::new(options(ENDLESS, state.path(), SOON), None).unwrap();
+        let window = Window::new(options(ENDLESS, state.path(), SOON)).unwrap();
         let [lock] = files(state.path(), "lock").try_into().unwrap();
         // Nothing can be written where a folder is.
         fs::create_dir_all(lock.with_extension(ending).join("full")).unwrap();
@@ -163,7 +163,7 @@ fn a_window_that_is_closed_before_its_film_was_read_leaves_it_with_its_picture()
     let mut first = window(state.path(), ENDLESS);
     until_film(&mut first, state.path());
     close(first);
-    Window::new(options("", state.path(), SOON), None).unwrap().end_in_order();
+    Window::new(options("", state.path(), SOON)).unwrap().end_in_order();
     assert!(state.path().join("session.exr").exists());
     let note = fs::read_to_string(state.path().join("session.json")).unwrap();
     assert!(note.contains("\"has_film\": true"), "{note}");
@@ -177,7 +177,7 @@ fn who_changes_the_picture_before_its_film_was_read_is_offered_the_film() {
     close(first);
     let samples = checkpoint::load(&state.path().join("session.exr")).unwrap().film.sample_count();
     // The reading has not even begun.
-    let mut next = Window::new(options("", state.path(), SOON), None).unwrap();
+    let mut next = Window::new(options("", state.path(), SOON)).unwrap();
     next.document_mut().camera.vfov_degrees = 33.0;
     next.end_in_order();
     drop(next);
@@ -215,6 +215,6 @@ fn a_paused_render_is_paused_in_the_next_window() {
     send(&mut first, Command::Pause);
     assert!(first.state().is_paused());
     close(first);
-    let next = opened(Window::new(options("", state.path(), LONG), None).unwrap());
+    let next = opened(Window::new(options("", state.path(), LONG)).unwrap());
     assert!(next.state().is_paused());
 }

@@ -1,36 +1,25 @@
 //! Settings that are kept from one run to the next.
 
-use crate::common::{SMALL, open, send};
+use crate::common::{SMALL, opened, send, until};
+use eframe::App;
+use egui_kittest::Harness;
+use std::fs;
+use std::path::Path;
 use weekender::app::{Command, Device, Theme, Window};
-use weekender::cli::{self, Request};
+use weekender::cli::{self, Request, WindowOptions};
 
-/// What eframe stores in a file.
-#[derive(Default)]
-pub struct Storage(std::collections::HashMap<String, String>);
-
-impl eframe::Storage for Storage {
-    fn get_string(&self, key: &str) -> Option<String> {
-        self.0.get(key).cloned()
-    }
-
-    fn set_string(&mut self, key: &str, value: String) {
-        self.0.insert(key.to_owned(), value);
-    }
-
-    fn remove_string(&mut self, key: &str) {
-        self.0.remove(key);
-    }
-
-    fn flush(&mut self) {}
+/// A window that has its settings in this file.
+pub fn remembering(arguments: &str, settings: &Path) -> Harness<'static, Window> {
+    let words = std::iter::once("weekender").chain(arguments.split_whitespace());
+    let Request::Window(options) = cli::parse(words.map(Into::into)).unwrap() else { panic!("no window") };
+    opened(Window::new(WindowOptions { settings: Some(settings.to_owned()), ..*options }).unwrap())
 }
 
 #[test]
 fn settings_are_remembered() {
-    let options = |arguments: &str| match cli::parse(arguments.split_whitespace().map(Into::into)).unwrap() {
-        Request::Window(options) => *options,
-        other => panic!("{other:?}"),
-    };
-    let mut harness = open(SMALL);
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("settings.json");
+    let mut harness = remembering(SMALL, &path);
     for command in [
         Command::Theme(Theme::Light),
         Command::Plot,
@@ -41,21 +30,53 @@ fn settings_are_remembered() {
         send(&mut harness, command);
     }
     harness.state_mut().remembered_mut().threads = Some(1);
-    let mut storage = Storage::default();
-    eframe::App::save(harness.state_mut(), &mut storage);
     let kept = harness.state_mut().remembered_mut().clone();
-    let names: Vec<&str> = storage.0.keys().map(String::as_str).collect();
-    assert!(!names.contains(&"window"), "the window's place and size would be lost: {names:?}");
+    harness.state_mut().on_exit(None);
+    drop(harness);
 
-    let mut again = Window::new(options("weekender --stage metal"), Some(&storage)).unwrap();
-    assert_eq!(*again.remembered_mut(), kept);
+    let mut again = remembering("--stage metal", &path);
+    assert_eq!(*again.state_mut().remembered_mut(), kept);
     assert_eq!((kept.theme, kept.has_plot, kept.has_info), (Theme::Light, true, false));
     assert_eq!((kept.device, kept.bookmarks.len(), kept.threads), (Device::Reference, 1, Some(1)));
     // The command line overrides remembered settings.
-    let mut told = Window::new(options("weekender --stage metal --device cpu"), Some(&storage)).unwrap();
-    assert_eq!(told.remembered_mut().device, Device::Cpu);
-    // Settings that cannot be read are ignored.
-    storage.0.values_mut().for_each(|value| *value = "(theme: Purple)".to_owned());
-    let mut fresh = Window::new(options("weekender --stage metal"), Some(&storage)).unwrap();
-    assert_eq!(fresh.remembered_mut().theme, Theme::System);
+    let mut told = remembering("--stage metal --device cpu", &path);
+    assert_eq!(told.state_mut().remembered_mut().device, Device::Cpu);
+}
+
+#[test]
+fn settings_are_written_soon_and_by_several_windows() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("settings.json");
+    let mut first = remembering("--stage metal --size 16x9", &path);
+    until(&mut first, "the settings are written", |_| path.exists());
+    let mut second = remembering("--stage glass-schlick --size 16x9", &path);
+    send(&mut first, Command::AddBookmark);
+    until(&mut first, "the bookmark is written", |_| fs::read_to_string(&path).unwrap().contains("metal 1"));
+    send(&mut second, Command::AddBookmark);
+    for harness in [&mut second, &mut first] {
+        harness.state_mut().on_exit(None);
+    }
+    let mut third = remembering("--stage metal --size 16x9", &path);
+    let names: Vec<String> =
+        third.state_mut().remembered_mut().bookmarks.iter().map(|bookmark| bookmark.name.clone()).collect();
+    assert_eq!(names, ["glass-schlick 1", "metal 1"]);
+}
+
+#[test]
+fn settings_that_cannot_be_read_or_written_are_told_of() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("settings.json");
+    fs::write(&path, "damaged").unwrap();
+    let harness = remembering("--stage metal --size 16x9", &path);
+    let told = harness.state().messages().pop().unwrap();
+    assert!(told.starts_with("The settings start anew: ") && told.ends_with(".damaged-1"), "{told}");
+    let path = directory.path().join("directory.json");
+    fs::create_dir(&path).unwrap();
+    let mut harness = remembering("--stage metal --size 16x9", &path);
+    let told = harness.state().messages().pop().unwrap();
+    assert!(told.starts_with("The usual settings are used: cannot read "), "{told}");
+    send(&mut harness, Command::Plot);
+    until(&mut harness, "it is told", |window| {
+        window.messages().iter().any(|told| told.starts_with("The settings are not kept: cannot read "))
+    });
 }

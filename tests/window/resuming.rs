@@ -73,7 +73,7 @@ fn the_film_of_another_picture_is_refused() {
     // A film that replaces it later is refused, too, and the picture starts from the beginning.
     let cli::Request::Window(options) = parse("--samples 50").unwrap() else { panic!("no window") };
     save_film(&path, "--seed 9");
-    let mut harness = opened(weekender::app::Window::new(*options, None).unwrap());
+    let mut harness = opened(weekender::app::Window::new(*options).unwrap());
     until(&mut harness, "refused", |window| {
         window
             .messages()

@@ -1,7 +1,6 @@
 //! What a window keeps for the next one: the film of a long render, and what it shows.
 
 use crate::common::{drag_from, has_samples, middle, opened, save, send, until};
-use crate::remembered::Storage;
 use eframe::App;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -27,7 +26,7 @@ pub fn options(arguments: &str, state: &Path, autosave_every: Duration) -> Windo
 
 /// A window of a user who knows the first steps.
 pub fn kept_in(state: &Path, arguments: &str, every: Duration) -> Harness<'static, Window> {
-    let mut window = Window::new(options(arguments, state, every), None).unwrap();
+    let mut window = Window::new(options(arguments, state, every)).unwrap();
     window.remembered_mut().first_steps.is_over = true;
     opened(window)
 }
@@ -38,7 +37,6 @@ pub fn window(state: &Path, arguments: &str) -> Harness<'static, Window> {
 
 /// Closes the window as eframe does.
 pub fn close(mut harness: Harness<'_, Window>) {
-    harness.state_mut().save(&mut Storage::default());
     harness.state_mut().on_exit(None);
 }
 

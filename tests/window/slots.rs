@@ -22,18 +22,18 @@ const THREE: SlotNumber = SlotNumber::ALL[2];
 /// A pixel in the sky above the left ball.
 const AT: [u32; 2] = [9, 2];
 
-fn is_done(window: &Window) -> bool {
+pub fn is_done(window: &Window) -> bool {
     matches!(window.status().phase, Phase::Done(_)) && has_samples(1)(window)
 }
 
 /// A window with a finished picture of this many samples.
-fn finished(samples: u64) -> Harness<'static, Window> {
+pub fn finished(samples: u64) -> Harness<'static, Window> {
     let mut harness = open(&format!("{SMALL} --samples {samples}"));
     until(&mut harness, "the end", is_done);
     harness
 }
 
-fn keep(harness: &mut Harness<'_, Window>, command: Command, number: SlotNumber) {
+pub fn keep(harness: &mut Harness<'_, Window>, command: Command, number: SlotNumber) {
     send(harness, command);
     until(harness, "a kept picture", |window| window.slot(number).is_some());
 }

@@ -251,3 +251,84 @@ fn the_neighbours_of_a_stage_are_those_of_the_book() {
     let other = Document::new(Origin::of_case(&shown_cases()[0]));
     assert_eq!((id(&other, false), id(&other, true)), (None, Some("ppm-tiny")));
 }
+
+const THREE: SlotNumber = SlotNumber::ALL[2];
+
+/// A slot with the picture of a document.
+fn slot_of(document: &Document) -> Slot {
+    let [width, height] = document.size();
+    let mut film = Film::new(width, height, document.settings.half_count());
+    film.record(0..2, 0).unwrap();
+    let kept = Kept::new(document.clone(), film, Arc::default(), None);
+    Slot { name: "mine".to_owned(), kept: Arc::new(kept) }
+}
+
+/// A window at the picture of a document, with these slots.
+fn with_slots(live: Document, documents: &[Document]) -> Facts {
+    let mut facts = early(live, ViewState::default());
+    for (number, document) in SlotNumber::ALL.into_iter().zip(documents) {
+        facts.model.view.slots.put(number, slot_of(document));
+    }
+    done(&mut facts);
+    facts
+}
+
+#[test]
+fn slots_are_compared_by_the_sizes_of_the_two_pictures() {
+    let sized = |size| {
+        let mut document = stage("metal");
+        document.give_size(size);
+        document
+    };
+    let mut facts = with_slots(sized([4, 2]), &[sized([5, 2]), sized([5, 2]), sized([4, 2])]);
+    // What is looked at, which slot is meant, and the sizes that are told.
+    for (looked, chosen, told) in [
+        (None, ONE, Some("Slot 1 is 5x2 and the picture is 4x2, so ")),
+        (None, THREE, None),
+        (Some(ONE), ONE, Some("Slot 1 is 5x2 and the picture is 4x2, so ")),
+        (Some(ONE), TWO, None),
+        (Some(ONE), THREE, Some("Slot 3 is 4x2 and slot 1 is 5x2, so ")),
+        (Some(THREE), THREE, None),
+        (Some(THREE), TWO, Some("Slot 2 is 5x2 and slot 3 is 4x2, so ")),
+    ] {
+        facts.model.view.look(looked);
+        facts.model.view.slots.choose(chosen);
+        for command in [SlotCommand::Difference, SlotCommand::OnlyNoise] {
+            let reason = facts.disabled_reason(Command::Slot(command));
+            assert_eq!(reason.is_some(), told.is_some(), "{looked:?} {chosen}: {reason:?}");
+            assert!(reason.unwrap_or_default().starts_with(told.unwrap_or_default()), "{looked:?} {chosen}");
+        }
+        // It is the live picture that gets the size of a slot.
+        let has_size = facts.disabled_reason(Command::Slot(SlotCommand::TakeSize)).is_some();
+        assert_eq!(has_size, chosen == THREE, "{looked:?} {chosen}");
+    }
+}
+
+#[test]
+fn views_are_those_of_the_picture_on_the_screen() {
+    let mut one_half = stage("metal");
+    one_half.settings.estimate_error = false;
+    let mut wide = stage("metal");
+    wide.give_size([5, 2]);
+    for (other, show, reason) in [
+        (one_half, Show::Error, "The film has one half"),
+        (wide, Show::Difference, "The reference film is 4x2 and the picture is 5x2"),
+        (stage("normals"), Show::Bounces, "In this stage rays end at their first hit"),
+        (stage("ppm-gradient"), Show::Normals, "This stage traces no rays"),
+    ] {
+        for is_live in [true, false] {
+            // One of them is live, and the other one is in a slot.
+            let (live, kept) =
+                if is_live { (other.clone(), stage("metal")) } else { (stage("metal"), other.clone()) };
+            let mut facts = with_slots(live, &[kept]);
+            facts.model.view.reference = reference([4, 2]);
+            for looked in [None, Some(ONE)] {
+                facts.model.view.look(looked);
+                let is_other = is_live == looked.is_none();
+                let told = facts.disabled_reason(Command::Show(show));
+                assert_eq!(told.is_some(), is_other, "{show:?} {is_live} {looked:?}: {told:?}");
+                assert!(!is_other || told.is_some_and(|told| told.starts_with(reason)), "{show:?}");
+            }
+        }
+    }
+}

@@ -1,6 +1,9 @@
 //! Tests of frames.
 
 use super::*;
+use crate::app::kept::on_screen::small_film;
+use crate::app::model::crop::Crop;
+use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::kept_view::ShownSlots;
 use crate::app::model::slots::{Slot, SlotNumber};
@@ -103,4 +106,66 @@ fn the_screen_of_a_new_window_is_looked_at_for_a_while() {
         }
         assert_eq!(is_fitted_on(Some(vec2(1024.0, 768.0))), is_fitted, "after {frames} frames");
     }
+}
+
+/// Puts a film of this picture into the first slot.
+fn keep(window: &mut Window, document: Document, film: Film) -> Arc<Kept> {
+    let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
+    let slot = Slot { name: String::new(), kept: Arc::clone(&kept) };
+    window.model.view.slots.put(SlotNumber::ALL[0], slot);
+    kept
+}
+
+#[test]
+fn layers_are_those_of_the_picture_on_the_screen() {
+    let mut window = window("weekender --stage normals --size 16x9 --samples 1 --device cpu");
+    let context = egui::Context::default();
+    // The middle of the live picture is a sphere, whose normal is level; that of the other one is the sky.
+    let mut document = window.document().clone();
+    document.camera.look_at = document.camera.look_from + DVec3::new(0.0, 2.0, -1.0);
+    let mut film = Film::new(16, 9, 1);
+    film.record(0..1, 0).unwrap();
+    keep(&mut window, document, film);
+    window.model.view.choose(Show::Normals);
+    window.model.view.look(Some(SlotNumber::ALL[0]));
+    let green = |window: &Window| window.layers.value_at([8, 4]).map(|(_, value)| value[1]);
+    until(&mut window, &context, "the layer of the slot", |window| window.layer_samples() > 0);
+    assert!(green(&window).is_some_and(|green| green > 0.6), "{:?}", green(&window));
+    window.model.view.look(None);
+    until(&mut window, &context, "the layer of the live picture", |window| {
+        green(window).is_some_and(|green| green < 0.6)
+    });
+}
+
+#[test]
+fn a_part_is_saved_of_the_picture_on_the_screen() {
+    let mut window = window("weekender --stage normals --size 16x9 --samples 1 --device cpu");
+    let (context, directory) = (egui::Context::default(), tempfile::tempdir().unwrap());
+    let mut document = window.document().clone();
+    document.give_size([4, 2]);
+    // Black but for its last pixel.
+    keep(&mut window, document, small_film(7, 14.0));
+    window.model.view.look(Some(SlotNumber::ALL[0]));
+    let path = directory.path().join("part.png");
+    window.pending_crop = Some((Crop { first: [2, 0], size: [2, 2] }, path.clone()));
+    let _ = context.run_ui(egui::RawInput::default(), |ui| window.follow(ui.ctx()));
+    assert!(window.pending_crop.is_none());
+    assert_eq!(window.files.saved.wait(), Some(Ok(path.clone())));
+    let part = image::open(path).unwrap().to_rgb8();
+    assert_eq!(
+        (part.dimensions(), part.get_pixel(0, 0).0, part.get_pixel(1, 1).0),
+        ((2, 2), [0; 3], [255; 3])
+    );
+}
+
+#[test]
+fn the_picture_that_a_key_would_flip_to_is_at_hand() {
+    let mut window = window("weekender --stage normals --size 16x9 --samples 1 --device cpu");
+    let mut film = Film::new(16, 9, 1);
+    film.record(0..1, 0).unwrap();
+    let document = window.document().clone();
+    let kept = keep(&mut window, document, film);
+    let is_there = |window: &Window| window.slot_actions.picture.shown(&kept).is_some();
+    until(&mut window, &egui::Context::default(), "its picture", is_there);
+    assert_eq!(window.looked(), None);
 }

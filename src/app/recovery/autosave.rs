@@ -230,6 +230,8 @@ impl Writing {
 mod tests {
     use super::*;
     use crate::app::model::origin::Origin;
+    use crate::app::tests::{until, window};
+    use crate::app::window::Window;
 
     #[test]
     fn slow_writing_takes_a_small_share_of_the_time() {
@@ -274,5 +276,61 @@ mod tests {
         assert_eq!(tell(Err("the disk is full")), None);
         assert_eq!(tell(Ok(1)), None);
         assert!(tell(Err("the disk is full")).is_some(), "again after it worked");
+    }
+
+    /// A window with a finished picture of 4 samples per pixel.
+    fn finished(context: &Context) -> Window {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --samples 4 --device cpu");
+        let is_over =
+            |window: &Window| window.main.has_samples(window.document()) && window.status().phase.is_over();
+        until(&mut window, context, "the end", is_over);
+        window
+    }
+
+    #[test]
+    fn a_film_is_written_unless_all_of_it_was() {
+        let (context, directory) = (Context::default(), tempfile::tempdir().unwrap());
+        let (window, path) = (finished(&context), directory.path().join("film.exr"));
+        let (document, status) = (window.document().clone(), window.status());
+        let mut other = document.clone();
+        other.settings.seed += 1;
+        for (held, is_written) in [
+            (None, true),
+            (Some((&document, 3)), true),
+            (Some((&document, 4)), false),
+            (Some((&document, 5)), false),
+            (Some((&other, 4)), true),
+            (Some((&other, 100)), true),
+        ] {
+            let mut autosave = Autosave::new(Duration::ZERO);
+            autosave.holds(held.map(|(document, samples)| Saved { document: document.clone(), samples }));
+            assert_eq!(autosave.look(&context, &path, (&document, &window.main), status, Some(0.0)), None);
+            autosave.finish();
+            let saved = autosave.saved().unwrap();
+            assert!(saved.document.has_same_film(&document));
+            assert_eq!(std::fs::remove_file(&path).is_ok(), is_written, "{:?}", held.map(|(_, held)| held));
+            assert!(!is_written || saved.samples == 4);
+        }
+    }
+
+    #[test]
+    fn a_film_is_long_if_all_its_samples_together_took_long() {
+        let window = finished(&Context::default());
+        let (document, status) = (window.document(), window.status());
+        let autosave = Autosave::new(Duration::from_secs(3600));
+        let is_long = |document: &Document, status: &Status, before: Option<f64>| {
+            autosave.is_long(document, &window.main, status, before)
+        };
+        let traced = |seconds| Status { trace: Duration::from_secs(seconds), ..status.clone() };
+        assert!(is_long(document, &traced(3600), Some(0.0)) && !is_long(document, &traced(3599), Some(0.0)));
+        assert!(
+            is_long(document, &traced(600), Some(3000.0)) && !is_long(document, &traced(600), Some(2999.0))
+        );
+        assert!(is_long(document, &traced(0), None), "nobody knows how long it took");
+        let mut other = document.clone();
+        other.settings.seed += 1;
+        assert!(!is_long(&other, &traced(3600), None), "it has no film yet");
+        let none = Status { samples_per_pixel: 0, ..traced(3600) };
+        assert!(!is_long(document, &none, None));
     }
 }

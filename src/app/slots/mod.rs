@@ -113,3 +113,46 @@ impl SlotActions {
         });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::model::origin::Origin;
+    use crate::progressive::Status;
+    use std::time::Duration;
+
+    #[test]
+    fn a_film_goes_on_with_the_seconds_of_all_its_samples() {
+        for (before, seconds) in [(Some(5.0), Some(7.0)), (Some(0.0), Some(2.0)), (None, None)] {
+            let status = Status { trace: Duration::from_secs(2), ..Status::default() };
+            let (document, mut film) = (Document::new(Origin::usual()), Film::new(4, 2, 1));
+            film.record(0..7, 0).unwrap();
+            let kept = Arc::new(Kept::new(document, film, Arc::new(status), before));
+            let actions = SlotActions::default();
+            actions.reopen(&Context::default(), &kept);
+            let reopened = actions.reopened.wait().unwrap().unwrap();
+            assert_eq!((reopened.film.sample_count(), reopened.seconds), (7, seconds));
+            assert!(reopened.document == kept.document);
+        }
+    }
+
+    #[test]
+    fn a_slot_waits_for_one_picture_until_it_is_there() {
+        let (mut actions, context) = (SlotActions::default(), Context::default());
+        let [one, two, ..] = SlotNumber::ALL;
+        for number in [one, two, one] {
+            actions.want(number);
+        }
+        assert!(actions.is_wanted(one) && actions.is_wanted(two) && !actions.is_copying());
+        assert_eq!(actions.take_wanted(), [one, two]);
+        assert!(!actions.is_wanted(one));
+        let request = Arc::new(());
+        actions.awaited.push((one, Arc::downgrade(&request)));
+        assert!(actions.is_wanted(one) && !actions.is_wanted(two) && actions.is_copying());
+        drop(request);
+        assert!(!actions.is_wanted(one) && !actions.is_copying());
+        let (document, main) = (Document::new(Origin::usual()), Tracer::new().unwrap());
+        actions.copy(&context, two, (&document, &main), None);
+        assert!(actions.awaited.iter().all(|(number, _)| *number == two), "the first request is forgotten");
+    }
+}

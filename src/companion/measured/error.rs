@@ -112,6 +112,75 @@ fn three_digits(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::{Value, json};
+
+    /// The measurements of curves: scene, tracer and seconds per sample. All have the error .04 with one sample.
+    fn kept(curves: &[(&str, &str, f64)]) -> Kept {
+        let point = |samples: u64, seconds: f64| {
+            let mse = 0.0016 / samples as f64;
+            json!({
+                "samples": samples, "trace_seconds": seconds, "wall_seconds": seconds, "device_seconds": null,
+                "mse": mse, "rel_mse": mse, "flip": 0.1, "mse_estimate": null, "rejected": 0,
+            })
+        };
+        let run = |(scene, backend, seconds): &(&str, &str, f64)| {
+            let points: Vec<Value> =
+                (0..7).map(|power| 1_u64 << power).map(|n| point(n, seconds * n as f64)).collect();
+            json!({
+                "scene": scene, "backend": backend, "sampler": "sobol", "seed": 0, "about": backend,
+                "prepare_seconds": 0.0, "points": points,
+            })
+        };
+        let report = json!({
+            "schema": 1,
+            "settings": {
+                "software": "Weekender", "size": [48, 27], "seeds": 1, "time_limit": 10.0, "max_samples": 64,
+                "estimate_error": true, "reference_samples": 512, "reference": "cpu",
+            },
+            "references": [],
+            "runs": curves.iter().map(run).collect::<Vec<Value>>(),
+            "rounding": [],
+        });
+        let (file, command) = ("error.json".to_owned(), "weekender report".to_owned());
+        Kept { file, command, machine: None, date: None, text: report.to_string() }
+    }
+
+    /// The texts of the cells of each row.
+    fn rows(html: &str) -> Vec<Vec<String>> {
+        let (_, body) = html.split_once("<tbody>").unwrap();
+        let text = |cell: &str| cell.rsplit('>').next().unwrap_or_default().to_owned();
+        let cells = |row: &str| -> Vec<String> {
+            let (cells, _) = row.rsplit_once("</t").unwrap();
+            cells.split("</t").map(text).collect()
+        };
+        let rows = body.split("<tr").skip(1);
+        rows.map(|row| cells(row.split("</tr>").next().unwrap_or_default())).collect()
+    }
+
+    #[test]
+    fn each_tracer_is_compared_with_c89_in_its_own_scene() {
+        // The error is .01 with 16 samples, and would be .001 with 1600.
+        let kept = kept(&[
+            ("book", "cpu", 0.01),
+            ("book", "c89", 0.5),
+            ("metals", "c89", 2.0),
+            ("metals", "gpu", 0.001),
+            ("dust", "cpu", 0.04),
+        ]);
+        let html = table(&kept).unwrap().into_string();
+        let expected: [&[&str]; 8] = [
+            &["book"],
+            &["packets, all threads", "sobol", "−0.50", "0.160 s", "~16.0 s", "50.0"],
+            &["C89, 1 thread", "sobol", "−0.50", "8.00 s", "~800 s", "1.0"],
+            &["metals"],
+            &["C89, 1 thread", "sobol", "−0.50", "32.0 s", "~3200 s", "1.0"],
+            &["GPU", "sobol", "−0.50", "0.0160 s", "~1.60 s", "2000.0"],
+            &["dust"],
+            &["packets, all threads", "sobol", "−0.50", "0.640 s", "~64.0 s", ""],
+        ];
+        assert_eq!(rows(&html), expected, "{html}");
+        assert!(html.contains("48 × 27, 1 pictures each. "), "{html}");
+    }
 
     #[test]
     fn times_have_three_digits_but_at_most_six_decimals() {

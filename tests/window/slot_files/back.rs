@@ -72,7 +72,7 @@ fn a_comparison_with_a_slot_comes_back() {
     assert_eq!(next.state().looked(), None);
     // What the user looks at by now stays.
     close(next);
-    let mut other = Window::new(options("", state.path(), LONG), None).unwrap();
+    let mut other = Window::new(options("", state.path(), LONG)).unwrap();
     other.send(Command::NextStage);
     let mut other = opened(other);
     until_back(&mut other, &[TWO]);
@@ -86,7 +86,7 @@ fn a_slot_whose_picture_is_still_being_read_says_so() {
     close(first);
     for _ in 0..2 {
         // Before its first frame, a window reads nothing.
-        let mut next = Window::new(options("", state.path(), LONG), None).unwrap();
+        let mut next = Window::new(options("", state.path(), LONG)).unwrap();
         for command in [SlotCommand::Look(TWO), SlotCommand::KeepIn(TWO)] {
             let reason = next.disabled_reason(Command::Slot(command)).unwrap();
             assert!(reason.starts_with("Slot 2 is still being read"), "{reason}");

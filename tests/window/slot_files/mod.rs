@@ -27,7 +27,7 @@ pub const PICTURE: &str = "--stage glass-schlick --size 32x18 --samples 4 --devi
 pub fn limited(state: &Path, arguments: &str, limit: Option<u64>) -> Harness<'static, Window> {
     let mut options = options(arguments, state, LONG);
     options.kept_limit = limit;
-    let mut window = Window::new(options, None).unwrap();
+    let mut window = Window::new(options).unwrap();
     window.remembered_mut().first_steps.is_over = true;
     window.remembered_mut().sizing = weekender::app::Sizing::Book;
     opened(window)

@@ -173,3 +173,20 @@ fn the_chosen_picture_decides_the_room_unless_it_has_a_size_of_its_own() {
     slots.put(SlotNumber::ALL[2], own);
     assert_eq!(slots.room(), Some([40, 21]), "the first one");
 }
+
+#[test]
+fn looking_again_at_what_is_shown_changes_nothing() {
+    let mut slots = with(&[ONE, TWO]);
+    for (first, second) in [(Some(ONE), Some(TWO)), (Some(TWO), Some(ONE)), (Some(ONE), None)] {
+        slots.look(first);
+        slots.look(second);
+        let places = slots.places();
+        slots.look(second);
+        assert_eq!(slots.places(), places);
+        slots.swap();
+        assert_eq!(slots.looked(), first);
+    }
+    // A picture in the slot that is shown is shown, too.
+    slots.put(ONE, slot(film(4, 2, 2)));
+    assert_eq!((slots.looked(), slots.other()), (Some(ONE), None), "the live picture was before");
+}

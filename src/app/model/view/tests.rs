@@ -160,3 +160,51 @@ fn what_is_subtracted_is_the_film_of_the_shown_difference() {
     view.toggle(Mode::Wipe, With::Stage);
     assert!(view.subtracted(Some(&other)).is_none());
 }
+
+/// A view with three slots in use, whose pictures have these sizes.
+fn with_sizes(sizes: [[u32; 2]; 3]) -> ViewState {
+    let mut view = ViewState::default();
+    for (number, size) in SlotNumber::ALL.into_iter().zip(sizes) {
+        let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        document.give_size(size);
+        let mut film = Film::new(size[0], size[1], 1);
+        film.record(0..1, 0).unwrap();
+        let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
+        view.slots.put(number, Slot { name: String::new(), kept });
+    }
+    view
+}
+
+#[test]
+fn two_slots_are_compared_by_their_own_sizes() {
+    let mut live = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+    live.give_size([4, 2]);
+    let three = SlotNumber::ALL[2];
+    let mut view = with_sizes([[4, 2], [8, 8], [8, 8]]);
+    for (looked, with, is_possible) in
+        [(None, ONE, true), (None, TWO, false), (Some(TWO), three, true), (Some(TWO), ONE, false)]
+    {
+        view.end_comparison();
+        view.look(looked);
+        assert_eq!(view.shown_document(&live).size(), looked.map_or([4, 2], |_| [8, 8]));
+        view.toggle(Mode::Difference, With::Slot(with));
+        assert_eq!(view.compared(&live).is_some(), is_possible, "{looked:?} and {with}");
+    }
+    view.toggle(Mode::Wipe, With::Slot(ONE));
+    let wiped = view.wiped(&live).map(|(kept, fitted)| (kept.size(), fitted.part()));
+    assert_eq!(wiped, Some(([4, 2], [0.0, 0.25, 1.0, 0.75])), "in the place of the slot that is shown");
+}
+
+#[test]
+fn looking_again_at_what_is_shown_keeps_the_comparison() {
+    let (mut view, _) = with_slots();
+    view.look(Some(TWO));
+    view.toggle(Mode::Wipe, With::Slot(ONE));
+    (view.divider, view.is_divider_unplaced) = (0.25, false);
+    view.look(Some(TWO));
+    assert_eq!(
+        (view.mode(), view.compared_slot(), view.slots.looked()),
+        (Some(Mode::Wipe), Some(ONE), Some(TWO))
+    );
+    assert_eq!((view.divider, view.is_divider_unplaced), (0.25, false));
+}

@@ -1,0 +1,181 @@
+//! Tests of the status bar.
+
+use super::*;
+use crate::app::tests::{Drawings, facts_of, part as dressed, rest_at};
+use crate::film::ErrorEstimate;
+use crate::render::Stats;
+use egui::Rect;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use std::time::Duration;
+
+#[test]
+fn the_prediction_follows_the_root_of_the_time() {
+    let mut status = Status {
+        samples_per_pixel: 100,
+        phase: Phase::Tracing,
+        trace: Duration::from_secs(1),
+        error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 0.0, rel_mse: 0.0 }),
+        ..Status::default()
+    };
+    let words = error_words(&status, Some(0.002));
+    assert!(words.starts_with("error 0.00400, 0.002 in about 3 s ("), "{words}");
+    assert_eq!(error_words(&status, None), "error 0.00400");
+    assert_eq!(error_words(&status, Some(0.01)), "error 0.00400, below 0.01");
+    status.samples_per_pixel = 1;
+    assert_eq!(error_words(&status, Some(0.002)), "error 0.00400", "too early for a prediction");
+    status.error = None;
+    assert_eq!(error_words(&status, Some(0.01)), "error –");
+}
+
+fn part(name: &'static str, device: &str, samples_per_pixel: u64) -> Contribution {
+    let backend = BackendInfo { name, device: device.to_owned(), lanes: 16, threads: 2 };
+    Contribution { backend, samples_per_pixel }
+}
+
+/// The status of a film with these contributions.
+fn status_of(contributions: Vec<Contribution>) -> Status {
+    Status {
+        run: 3,
+        phase: Phase::Tracing,
+        backend: contributions.last().map(|part| part.backend.clone()),
+        samples_per_pixel: contributions.iter().map(|part| part.samples_per_pixel).sum(),
+        stats: Stats { paths: 1_000_000, rays: 2_560_000, ..Stats::default() },
+        trace: Duration::from_secs(2),
+        error: Some(ErrorEstimate { rmse: 0.004, rmse_deviation: 1e-5, rel_mse: 0.0 }),
+        contributions,
+        ..Status::default()
+    }
+}
+
+fn parts() -> [Contribution; 3] {
+    let gpu = "A Graphics Adapter With Quite a Name (discrete, Vulkan, driver 550.54 (of a vendor))";
+    [part("cpu", "avx2", 100), part("gpu", gpu, 200), part("reference", "f64", 20)]
+}
+
+const STOP: Stop = Stop { samples: None, seconds: None, noise: Some(0.002) };
+
+fn of(status: &Status) -> Bar<'_> {
+    Bar { status, stop: STOP, is_paused: false, speed: status.paths_per_second(), next: None }
+}
+
+#[test]
+fn the_figures_are_those_of_the_status() {
+    let mut status = status_of(parts()[..1].to_vec());
+    (status.stats.busy_lanes, status.stats.offered_lanes) = (3, 4);
+    let texts: Vec<String> = figures(&of(&status)).into_iter().map(|(text, ..)| text).collect();
+    let figures = ["tracing", "100 spp", "2.0 s", "0.5 Mpaths/s", "2.56 rays/path", "16 lanes 75 % full"];
+    assert_eq!(texts[..6], figures);
+    assert!(texts[6].starts_with("error 0.00400, 0.002 in about"), "{texts:?}");
+}
+
+#[test]
+fn nothing_in_the_bar_covers_anything_else() {
+    for width in [480.0, 640.0, 800.0, 960.0, 1120.0, 1280.0, 1440.0, 1920.0] {
+        for count in 0..=3 {
+            let status = status_of(parts()[..count].to_vec());
+            let harness = Harness::builder().with_size([width, 200.0]).build_ui(|ui| bar(ui, &of(&status)));
+            let rects: Vec<(String, Rect)> = harness
+                .get_all_by_role(egui::Role::Label)
+                .map(|node| (node.value().unwrap_or_default(), node.rect()))
+                .collect();
+            assert!(rects.len() >= 7, "{rects:?}");
+            for (index, (text, rect)) in rects.iter().enumerate() {
+                assert!(rect.right() <= width + 0.5, "{width}: {text} ends at {}", rect.right());
+                for (other, theirs) in &rects[..index] {
+                    assert!(!rect.shrink(1.0).intersects(*theirs), "{width}: {text} covers {other}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_bar_gives_each_figure_its_place_and_its_tip() {
+    let mut status = status_of(parts().to_vec());
+    (status.rejected_samples, status.doubt) = (12345, Some("few pixels".to_owned()));
+    let mut drawings = Drawings::default();
+    for (width, next) in [(1296.0, None), (1600.0, Some(Device::Gpu)), (640.0, None)] {
+        let mut harness = dressed([width, 140.0], |ui| bar(ui, &Bar { next, ..of(&status) }));
+        drawings.add(&format!("{width} points"), &harness);
+        let figures = harness.get_all_by_role(egui::Role::Label).map(|node| node.rect().center());
+        for (index, at) in figures.collect::<Vec<_>>().into_iter().enumerate() {
+            rest_at(&mut harness, at);
+            drawings.add(&format!("figure {index}"), &harness);
+        }
+    }
+    drawings.keep("status_bar");
+}
+
+#[test]
+fn who_traced_is_said_in_few_words() {
+    let [cpu, gpu, _] = parts();
+    let one = status_of(vec![cpu.clone()]);
+    assert_eq!(who(&one, None), ["cpu avx2, 2 threads", "cpu avx2"]);
+    assert_eq!(who(&one, Some(Device::Gpu))[1], "cpu avx2; GPU is being prepared");
+    let done = Status { phase: Phase::Done(crate::progressive::EndReason::Samples), ..one };
+    assert_eq!(who(&done, Some(Device::Gpu))[1], "cpu avx2; GPU is next");
+    assert_eq!(
+        who(&status_of(vec![cpu, gpu]), None),
+        ["cpu avx2 33 % + gpu A Graphics Adapter With Quite a Name 67 %", "cpu 33 % + gpu 67 %"]
+    );
+    let one_thread = BackendInfo { threads: 1, ..part("cpu", "avx2", 1).backend };
+    let alone = Contribution { backend: one_thread, samples_per_pixel: 1 };
+    assert_eq!(who(&status_of(vec![alone]), None)[0], "cpu avx2, 1 thread");
+}
+
+#[test]
+fn thousands_are_grouped() {
+    assert_eq!(grouped(0), "0");
+    assert_eq!(grouped(1234567), "1\u{a0}234\u{a0}567");
+}
+
+#[test]
+fn rejected_samples_stand_out() {
+    let colour = |rejected_samples| {
+        let status = Status { rejected_samples, ..Status::default() };
+        let harness = Harness::new_ui(|ui| rejected(ui, &status));
+        let colour = harness.output().shapes.iter().find_map(|clipped| match &clipped.shape {
+            egui::Shape::Text(text) => text.galley.job.sections.first().map(|part| part.format.color),
+            _ => None,
+        });
+        colour.unwrap()
+    };
+    assert_ne!(colour(0), colour(1));
+}
+
+#[test]
+fn the_lanes_are_those_of_the_last_backend_that_has_packets() {
+    let with = |name: &'static str, lanes: usize| {
+        let Contribution { backend, samples_per_pixel } = part(name, "a device", 1);
+        Contribution { backend: BackendInfo { lanes, ..backend }, samples_per_pixel }
+    };
+    let told = |parts: Vec<Contribution>| {
+        let mut status = status_of(parts);
+        (status.stats.busy_lanes, status.stats.offered_lanes) = (1, 4);
+        figures(&of(&status)).into_iter().map(|(text, ..)| text).find(|text| text.contains("lanes"))
+    };
+    let (narrow, wide, gpu) = (with("cpu", 4), with("cpu", 16), with("gpu", 1));
+    for (parts, expected) in [
+        (vec![wide.clone(), narrow.clone()], Some("4 lanes 25 % full")),
+        (vec![narrow.clone(), wide.clone()], Some("16 lanes 25 % full")),
+        (vec![wide, narrow, gpu.clone()], Some("4 lanes 25 % full")),
+        (vec![gpu], None),
+    ] {
+        assert_eq!(told(parts.clone()).as_deref(), expected, "{parts:?}");
+    }
+}
+
+#[test]
+fn a_chosen_device_is_next_until_it_traces_again() {
+    let mut facts = facts_of("--stage metal");
+    assert_eq!(next_device(&facts), None, "nothing has traced");
+    for (chosen, next) in
+        [(Device::Reference, None), (Device::Cpu, Some(Device::Cpu)), (Device::Gpu, Some(Device::Gpu))]
+    {
+        // The reference has traced last.
+        facts.status = std::sync::Arc::new(status_of(parts().to_vec()));
+        facts.model.remembered.device = chosen;
+        assert_eq!(next_device(&facts), next);
+    }
+}
