@@ -335,11 +335,14 @@ fn resolves_to_the_films_picture() {
     for transfer in [Transfer::Linear, Transfer::Gamma2, Transfer::LinearAboveGamma2] {
         let picture = gpu.resolve(&job, &film, transfer).unwrap();
         let expected = film.to_rgb8(transfer);
+        let mut apart = 0;
         for (word, rgb) in picture.iter().zip(expected.chunks_exact(3)) {
             let bytes = word.to_le_bytes();
             assert_eq!(bytes[3], 255);
             assert!(bytes.iter().zip(rgb).all(|(a, b)| a.abs_diff(*b) <= 1), "{bytes:?} {rgb:?}");
+            apart += bytes.iter().zip(rgb).filter(|(a, b)| a != b).count();
         }
+        assert!(apart < 80, "{apart} bytes of {} are a step apart", expected.len());
     }
 }
 

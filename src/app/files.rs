@@ -191,6 +191,8 @@ fn read<T: Send + 'static>(
 mod tests {
     use super::*;
     use crate::app::kept::on_screen::{OnScreen, small_film};
+    use crate::app::model::origin::Origin;
+    use crate::stages::Stage;
 
     #[test]
     fn a_text_is_written_or_it_is_said_why_not() {
@@ -223,6 +225,22 @@ mod tests {
         }
         let refused = save(OutputFormat::Png, "b.exr").unwrap_err();
         assert!(refused.ends_with("b.exr does not end in .png"), "{refused}");
+    }
+
+    #[test]
+    fn a_picture_of_changed_spheres_does_not_say_that_it_is_the_stage() {
+        let document = || Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        let told = |document: Document| {
+            let film = small_film(1, 0.5);
+            let screen = OnScreen::of(document, film.clone());
+            let subject = screen.subject();
+            let description = describer(&subject)(&film);
+            description.get(key::STAGE).map(str::to_owned)
+        };
+        assert_eq!(told(document()).as_deref(), Some("metal"));
+        let mut changed = document();
+        changed.checked = Document::new(Origin::of_stage(&Stage::ALL[0])).checked;
+        assert_eq!(told(changed), None);
     }
 
     #[test]

@@ -367,4 +367,26 @@ mod tests {
         let held = |stop| plan(stop, false, true, Preview::NONE).stop.samples;
         assert_eq!([stop, Stop::at_samples(3), Stop::default()].map(held), [Some(8), Some(3), Some(8)]);
     }
+
+    #[test]
+    fn a_pause_holds_only_renders_that_began_during_it() {
+        let mut document = Document::new(Origin::usual());
+        document.set_size([16, 9]);
+        let (backend, stop) = (BackendChoice::Cpu(CpuOptions::default()), Stop::at_samples(100));
+        let want = |is_paused: bool| {
+            let view = View::Picture;
+            Want { document: &document, backend: &backend, stop, view, is_moving: false, is_paused }
+        };
+        let end = |tracer: &Tracer| tracer.told.as_ref().and_then(|(_, plan)| plan.stop.samples);
+        let mut tracer = Tracer::new().unwrap();
+        for (began_paused, ends) in [(false, [100_u64; 4]), (true, [8, 8, 100, 100])] {
+            tracer.start(&want(began_paused), Preview::NONE, None).unwrap();
+            let mut found = vec![end(&tracer)];
+            for is_paused in [true, false, true] {
+                tracer.adjust(&want(is_paused));
+                found.push(end(&tracer));
+            }
+            assert_eq!(found, ends.map(Some), "began during a pause: {began_paused}");
+        }
+    }
 }

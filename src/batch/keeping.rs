@@ -151,8 +151,9 @@ mod tests {
     use super::*;
     use crate::batch::files::Places;
     use crate::batch::tests::options;
-    use crate::film::checkpoint;
-    use crate::progressive::{Plan, RenderRequest};
+    use crate::film::{checkpoint, key};
+    use crate::progressive::{Contribution, Plan, RenderRequest};
+    use crate::render::BackendInfo;
 
     #[test]
     fn what_could_not_be_written_is_written_again_even_without_new_samples() {
@@ -197,5 +198,27 @@ mod tests {
         drop(progressive);
         assert!(keeper.finish() >= seen.last().copied());
         assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_checkpoint_tells_the_seconds_of_the_film_that_is_in_it() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("film.exr");
+        let render = options(&["--checkpoint", path.to_str().unwrap()]);
+        let keeper = Keeper::new(&render, Places::of(&render).checkpoint.unwrap(), 2, Some(1.0));
+        let mut film = render.job.new_film();
+        film.record(0..6, 0).unwrap();
+        let backend = BackendInfo { name: "cpu", device: String::new(), lanes: 8, threads: 1 };
+        // The status was read when there were four samples more.
+        let status = Status {
+            backend: Some(backend.clone()),
+            contributions: vec![Contribution { backend, samples_per_pixel: 8 }],
+            trace: Duration::from_secs(16),
+            ..Status::default()
+        };
+        keeper.writer.write(&film, &status);
+        assert_eq!(keeper.finish(), Some(6));
+        let description = checkpoint::load(&path).unwrap().description;
+        assert_eq!(description.get(key::SECONDS), Some("9"));
     }
 }

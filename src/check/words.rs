@@ -197,4 +197,21 @@ mod tests {
             assert_eq!(told.contains("there may be a second mistake"), !explains_all, "{told}");
         }
     }
+
+    #[test]
+    fn a_right_picture_in_a_damaged_file_is_not_right_for_other_programs() {
+        let stage = Stage::find("metal").unwrap();
+        let right = Compared {
+            hypothesis: Hypothesis::right(&stage.recipe()),
+            misfit: 0.0,
+            is_noise: true,
+            expected: Expected { pixels: Vec::new() },
+        };
+        let finding = Finding { stage, right, mistake: None };
+        let damage = Damage { title: "it is torn".to_owned(), remedy: "mend it" };
+        for (damages, is_right) in [(Vec::new(), true), (vec![damage], false)] {
+            let found = FindingJson::new(Path::new("a.ppm"), &mine([40, 20], damages), &finding, &[]);
+            assert_eq!((found.is_right, found.damages.is_empty()), (is_right, is_right));
+        }
+    }
 }

@@ -288,3 +288,26 @@ impl Detail {
 fn positive(length: f64) -> f64 {
     if length > 0.0 { length } else { f64::INFINITY }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_hierarchy_serves_only_groups_with_the_same_anchored_spheres() {
+        let groups = |indices: &[u32], roots: Roots| {
+            let anchored = |&index: &u32| Anchored { index, roots, under_eye: false, near: DVec3::ZERO };
+            Groups {
+                opaque: vec![0, 3],
+                anchored: indices.iter().map(anchored).collect(),
+                ..Groups::default()
+            }
+        };
+        let one = groups(&[1], Roots::Nearer);
+        assert!(one.share_hierarchy(&groups(&[1], Roots::Both)), "only the roots differ");
+        let others: [&[u32]; 3] = [&[], &[2], &[1, 2]];
+        for other in others {
+            assert!(!one.share_hierarchy(&groups(other, Roots::Nearer)), "{other:?}");
+        }
+    }
+}

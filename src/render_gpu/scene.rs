@@ -95,3 +95,25 @@ impl SceneData {
         }));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::recipe::Recipe;
+
+    #[test]
+    fn both_hierarchies_know_which_sphere_of_the_scene_each_row_is() {
+        let job = Recipe::find("field:500").unwrap().job().unwrap();
+        let prepared = PreparedScene::<f32>::new(&job);
+        let of = |kind| SceneData::new(&job, &prepared, kind).unwrap();
+        let (narrow, wide) = (of(HierarchyKind::Bvh2), of(HierarchyKind::Cwbvh));
+        assert!(narrow.spheres != wide.spheres, "they have orders of their own");
+        let by_index = |data: &SceneData| {
+            let spheres = data.scene_index.iter().copied().zip(data.spheres.iter().copied());
+            let mut rows: Vec<(u32, [f32; 4])> = spheres.collect();
+            rows.sort_by_key(|row| row.0);
+            rows
+        };
+        assert_eq!(by_index(&wide), by_index(&narrow));
+    }
+}

@@ -166,3 +166,21 @@ impl CameraData {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_picture_that_traces_no_rays_does_not_depend_on_the_camera() {
+        for (shading, has_rays) in [
+            (Shading::ImageGradient, false),
+            (Shading::FirstHitRed, true),
+            (Shading::Normals, true),
+            (Shading::Path, true),
+        ] {
+            let stage = Stage::ALL.iter().find(|stage| stage.setup.rules.shading == shading).unwrap();
+            assert_eq!(StageData::new(stage).unwrap().has_rays, has_rays, "{}", stage.id);
+        }
+    }
+}

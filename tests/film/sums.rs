@@ -26,6 +26,15 @@ fn a_copy_is_the_film() {
 }
 
 #[test]
+fn a_copy_knows_how_many_samples_were_rejected() {
+    let mut film = Film::new(2, 1, 2);
+    film.record(0..4, 3).unwrap();
+    let copy = film.try_copy().unwrap();
+    assert_eq!(copy.rejected(), 3);
+    assert_eq!(copy, film);
+}
+
+#[test]
 fn the_order_of_samples_does_not_matter() {
     let forward = noisy_film(5, 3, 2, &[0..100, 100..128]);
     let backward = noisy_film(5, 3, 2, &[100..128, 7..100, 0..7]);

@@ -321,4 +321,24 @@ mod tests {
             assert!(dialog.state().is_open && dialog.state().commands.is_empty(), "nothing is found");
         });
     }
+
+    #[test]
+    fn after_typing_enter_runs_the_best_match() {
+        alone("dialogs::palette::tests::after_typing_enter_runs_the_best_match", || {
+            let mut dialog = dialog();
+            dialog.run_steps(3);
+            press(&mut dialog, Key::ArrowDown, 3);
+            assert_eq!(dialog.state().palette.chosen, 3);
+            dialog.get_by_label("Command").type_text("o");
+            dialog.run_steps(3);
+            assert_eq!(dialog.state().palette.text, "o");
+            let facts = &dialog.state().facts;
+            let is_enabled = |command| facts.disabled_reason(command).is_none();
+            let found = matching("o", listed(facts), is_enabled);
+            assert!(found.len() > 4, "the place chosen before is there, too");
+            let best = found[0].0;
+            press(&mut dialog, Key::Enter, 1);
+            assert_eq!(dialog.state().commands, [best]);
+        });
+    }
 }

@@ -23,7 +23,11 @@ pub struct OnScreen {
 impl OnScreen {
     /// Shows a kept film of a stage.
     pub fn new(film: Film) -> Self {
-        let document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));
+        OnScreen::of(Document::new(Origin::of_stage(Stage::find("metal").unwrap())), film)
+    }
+
+    /// Shows a kept film of a document.
+    pub fn of(document: Document, film: Film) -> Self {
         let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
         let mut view = ViewState::default();
         view.slots.put(SlotNumber::ALL[0], Slot { name: String::new(), kept });

@@ -147,6 +147,15 @@ mod tests {
     }
 
     #[test]
+    fn the_command_names_every_device_but_the_cpu() {
+        let document = Document::new(Origin::of_stage(&Stage::ALL[0]));
+        for device in ["gpu", "cpu,gpu", "reference"] {
+            let line = document.command_line(4, device, None);
+            assert!(line.contains(&format!(" --device={device} ")), "{line}");
+        }
+    }
+
+    #[test]
     fn names_are_quoted_where_a_shell_needs_it() {
         assert_eq!(quoted("a-b.toml"), "a-b.toml");
         assert_eq!(quoted("13,2,3"), "13,2,3");

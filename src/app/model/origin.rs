@@ -140,4 +140,12 @@ mod tests {
         assert_eq!(stop("ppm-tiny").samples, Some(1));
         assert_eq!(stop("book"), Stop { samples: None, seconds: None, noise: Some(Stop::NOISE) });
     }
+
+    #[test]
+    fn a_noisy_picture_without_an_error_estimate_ends_with_its_samples() {
+        let mut recipe = Stage::find("book").unwrap().recipe();
+        recipe.settings.estimate_error = false;
+        recipe.samples_per_pixel = 12;
+        assert_eq!(Origin::new(recipe, Source::Embedded).usual_stop(), Stop::at_samples(12));
+    }
 }

@@ -217,4 +217,14 @@ mod tests {
         let expected = [4, 9, 8, 7, 6, 5, 3, 2].map(|number| PathBuf::from(format!("/of/{number}.png")));
         assert_eq!(remembered.recent, expected);
     }
+
+    #[test]
+    fn a_relative_path_is_remembered_as_an_absolute_one() {
+        let absolute = std::env::current_dir().unwrap().join("a.png");
+        let mut remembered = Remembered::default();
+        for path in [Path::new("a.png"), absolute.as_path(), Path::new("a.png")] {
+            remembered.note_recent(path);
+            assert_eq!(remembered.recent, std::slice::from_ref(&absolute));
+        }
+    }
 }

@@ -175,4 +175,18 @@ mod tests {
         assert!(Outline::new(&camera, 1.0, DVec3::ZERO, 1.0, None).points.is_empty(), "the eye is on it");
         assert!(Outline::new(&camera, 1.0, DVec3::ZERO, 9.0, None).points.is_empty(), "the eye is in it");
     }
+
+    #[test]
+    fn the_ground_hides_the_lower_half_of_a_sphere_that_is_sunk_into_it() {
+        let mut scene = Scene::default();
+        let center = DVec3::new(0.0, 0.0, -4.0);
+        scene.add_sphere(center, 0.5, 0);
+        scene.add_sphere(DVec3::new(0.0, -1000.0, 0.0), 1000.0, 0);
+        let camera = Camera { look_from: DVec3::new(0.0, 1.0, 0.0), look_at: center, ..Camera::BOOK };
+        let outline = Outline::new(&camera, 1.0, center, 0.5, Some(&scene));
+        let is_visible = [POINTS / 4, 3 * POINTS / 4].map(|index| outline.points[index].is_visible);
+        assert_eq!(is_visible, [true, false], "above and below its centre");
+        let visible = outline.points.iter().filter(|point| point.is_visible).count();
+        assert!(visible > POINTS / 4 && visible < 3 * POINTS / 4, "{visible}");
+    }
 }

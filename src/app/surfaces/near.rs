@@ -201,4 +201,16 @@ mod tests {
         near.each(DVec3::new(4.0, 0.0, 0.0), 0.9, |index, _| seen.push(index));
         assert!(seen.is_empty());
     }
+
+    #[test]
+    fn a_sphere_is_no_obstacle_to_moves_within_it_and_out_of_it() {
+        let mut scene = Scene::default();
+        let grey = scene.add_material("grey", Material::Lambertian { albedo: DVec3::splat(0.5) });
+        scene.add_sphere(DVec3::ZERO, 2.0, grey);
+        let near = Near { scene: &scene, tree: None };
+        for to in [DVec3::new(0.5, 0.0, 0.0), DVec3::new(-1.5, 0.5, 0.0), DVec3::new(-9.0, 0.0, 0.0)] {
+            let reached = near.slide(DVec3::X, to, 0.01, None);
+            assert!(reached.distance(to) < 1e-12, "{reached} {to}");
+        }
+    }
 }

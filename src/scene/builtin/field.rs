@@ -164,6 +164,21 @@ mod tests {
     }
 
     #[test]
+    fn a_field_with_a_changed_part_is_no_longer_the_field() {
+        let (scene, _) = field(17);
+        assert!(is_field(&scene, 17) && !is_field(&scene, 16));
+        let mut other = scene.clone();
+        other.sky.top.x *= 0.5;
+        assert!(!is_field(&other, 17), "another sky");
+        let mut other = scene.clone();
+        other.spheres[0].radius *= 2.0;
+        assert!(!is_field(&other, 17), "another ground");
+        let mut other = scene.clone();
+        other.spheres[17].material = 0;
+        assert!(!is_field(&other, 17), "another sphere");
+    }
+
+    #[test]
     fn hues_run_from_red_over_green_to_blue() {
         assert_eq!(hue(0.0, 1.0, 1.0), DVec3::X);
         assert_eq!(hue(1.0 / 3.0, 1.0, 1.0), DVec3::Y);
