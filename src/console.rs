@@ -7,7 +7,6 @@
 use std::borrow::Cow;
 use std::fmt::Write as _;
 use std::io::{self, Write};
-use std::path::Path;
 
 /// Longest line for a person, in characters. The middle of longer lines is left out.
 const LINE_LIMIT: usize = 1200;
@@ -76,11 +75,6 @@ pub fn printable(text: &str) -> Cow<'_, str> {
         if is_steering(c) || is_blank_control(c) { c.escape_default().to_string() } else { c.to_string() }
     };
     Cow::Owned(text.chars().map(escaped).collect())
-}
-
-/// A path as [`printable`] text.
-pub fn printable_path(path: &Path) -> String {
-    printable(&path.to_string_lossy()).into_owned()
 }
 
 /// JSON that a terminal can show safely: some control characters are legal in JSON, and these are escaped.

@@ -1,8 +1,10 @@
 //! `weekender info`: what a film, picture, scene file or plan says about itself.
 
 use crate::cli::{InfoOptions, JsonTarget};
+use crate::console::printable;
 use crate::describe::{counted, seconds};
 use crate::failure::Failure;
+use crate::files::ShownPath;
 use crate::film::{CheckpointError, ErrorEstimate, FilmHead, checkpoint, key};
 use crate::memory;
 use crate::plan::{AnyPlan, Frames, Plan, Samples, Work};
@@ -63,7 +65,7 @@ struct Info {
 
 impl Info {
     fn of(path: &Path) -> Result<Info, Failure> {
-        if AnyPlan::is_at(path) {
+        if AnyPlan::is_at(path) || path.is_dir() {
             return Ok(match AnyPlan::load(path).map_err(Failure::input)? {
                 AnyPlan::Samples(plan) => Info::of_samples(&plan),
                 AnyPlan::Frames(plan) => Info::of_frames(&plan),
@@ -99,7 +101,7 @@ impl Info {
         Info {
             schema: SCHEMA,
             kind,
-            file: path.display().to_string(),
+            file: path.to_string_lossy().into_owned(),
             bytes: std::fs::metadata(path).map_or(0, |found| found.len()),
             scene: recipe.name.clone(),
             stage: None,
@@ -169,8 +171,7 @@ impl Info {
                 let error: Option<ErrorEstimate> = read.film.error();
                 (self.rmse_estimate, self.rmse_deviation) =
                     (error.map(|error| error.rmse), error.map(|error| error.rmse_deviation));
-                self.error_words =
-                    error.map(|error| format!("{:.3e} {} RMSE", error.rmse, error.uncertainty()));
+                self.error_words = error.map(|error| error.words());
             }
             Err(CheckpointError::Memory { reason, .. }) => self.error_words = Some(reason.to_string()),
             Err(error) => return Err(error),
@@ -181,14 +182,15 @@ impl Info {
 
 impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:<9}{}, {}", self.kind, self.file, memory::words(self.bytes))?;
+        write!(f, "{:<9}{}, {}", self.kind, self.file.shown(), memory::words(self.bytes))?;
         if let Some(version) = self.film_version {
             write!(f, ", version {version}")?;
         }
         let Info { scene, width, height, max_depth, sampler, seed, .. } = self;
+        let scene = printable(scene);
         writeln!(f, "\nscene    {scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}")?;
         if let Some(stage) = &self.stage {
-            writeln!(f, "stage    {stage}")?;
+            writeln!(f, "stage    {}", printable(stage))?;
         }
         if let Some(samples) = self.samples_per_pixel {
             write!(f, "samples  {samples} per pixel")?;
@@ -221,7 +223,7 @@ impl fmt::Display for Info {
         ];
         for (name, value) in lines {
             if let Some(value) = value {
-                writeln!(f, "{name:<9}{value}")?;
+                writeln!(f, "{name:<9}{}", printable(&value))?;
             }
         }
         Ok(())

@@ -47,6 +47,7 @@ fn a_film_is_kept_as_often_as_was_asked_for() {
         let flags = ["--checkpoint", "film.exr", "--every", every, "--log", "run.log"];
         let output = program(directory.path(), &[&picture[..], &flags].concat()).output().unwrap();
         assert!(output.status.success(), "{:?}", said(&output));
+        fs::remove_file(directory.path().join("film.exr")).unwrap();
         let log = fs::read_to_string(directory.path().join("run.log")).unwrap();
         log.lines().filter(|line| line.contains("checkpoint: ")).count()
     };

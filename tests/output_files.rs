@@ -190,7 +190,7 @@ fn what_cannot_be_written_is_found_beforehand() {
         ("file/", "choose another"),
     ] {
         let message = check_writable(&at(name)).unwrap_err().to_string();
-        assert!(message.contains(reason) && message.contains(name), "{message}");
+        assert!(message.contains(reason) && message.contains(&name.replace('\0', "\\u{0}")), "{message}");
         assert!(replace_file(&at(name), |_| Ok(())).is_err());
     }
     assert!(check_writable(Path::new("")).is_err());

@@ -2,7 +2,7 @@
 
 use crate::cli::RenderOptions;
 use crate::describe::describe;
-use crate::files::FileIdentity;
+use crate::files::{FileIdentity, ShownPath};
 use crate::film::{Description, Film, SaveOutcome, SharedFile, key};
 use crate::output::{Forms, OutputFormat, write_image_as};
 use crate::progressive::Status;
@@ -53,19 +53,23 @@ impl Places {
         Places { checkpoint: render.checkpoint.as_deref().map(SharedPlace::new), out }
     }
 
-    /// Both films, each with its path.
-    fn films<'a>(&'a self, render: &'a RenderOptions) -> impl Iterator<Item = (&'a Path, &'a SharedPlace)> {
+    /// Both films, each with its flag and its path.
+    pub fn films<'a>(
+        &'a self,
+        render: &'a RenderOptions,
+    ) -> impl Iterator<Item = (&'static str, &'a Path, &'a SharedPlace)> {
         let out = match &self.out {
-            Out::Film(place) => Some((render.out.as_path(), place)),
+            Out::Film(place) => Some(("--out", render.out.as_path(), place)),
             Out::Checkpoint | Out::Picture => None,
         };
-        render.checkpoint.as_deref().zip(self.checkpoint.as_ref()).into_iter().chain(out)
+        let checkpoint = render.checkpoint.as_deref().zip(self.checkpoint.as_ref());
+        checkpoint.map(|(path, place)| ("--checkpoint", path, place)).into_iter().chain(out)
     }
 
     /// Records that the render resumes `film`, if the film was read from one of the places.
     pub fn go_on(&self, render: &RenderOptions, film: &Film) {
         let resumed = render.resume.as_deref().and_then(FileIdentity::of);
-        for (path, place) in self.films(render) {
+        for (_, path, place) in self.films(render) {
             if let (Some(resumed), Some(identity)) = (&resumed, FileIdentity::of(path))
                 && identity.is_same_as(resumed)
             {
@@ -99,7 +103,7 @@ pub(super) fn write(
     let mut written = Written::default();
     let mut failures = Vec::new();
     let mut is_film_kept = false;
-    for (path, place) in places.films(render) {
+    for (_, path, place) in places.films(render) {
         say(path);
         match place.lock().save(film, &description, &same_job) {
             Ok(SaveOutcome { path, note, is_elsewhere }) => {
@@ -125,10 +129,8 @@ pub(super) fn write(
     if !failures.is_empty() && !is_film_kept {
         match rescue(&beside(render), &render.recipe.name, film, &description) {
             Ok(path) => {
-                failures.push(format!(
-                    "the samples were saved in {0}; continue with --resume {0}",
-                    path.display()
-                ));
+                failures
+                    .push(format!("the samples were saved in {0}; continue with --resume {0}", path.shown()));
                 written.files.push(path);
             }
             Err(lost) => failures.push(lost),

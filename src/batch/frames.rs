@@ -2,11 +2,13 @@
 //! kept, so an interrupted run is continued by the same command.
 
 use super::ended;
+use super::progress::LINE_INTERVAL;
 use crate::backends;
 use crate::cli::{FramesOptions, JsonTarget};
+use crate::console::printable;
 use crate::describe::{SOFTWARE, counted, describe, describe_animation, seconds};
 use crate::failure::Failure;
-use crate::files::check_writable;
+use crate::files::{JsonPath, ShownPath, check_writable};
 use crate::film::{Film, key};
 use crate::interrupt::Interrupt;
 use crate::journal;
@@ -21,9 +23,6 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-
-/// Interval of progress lines when there is no terminal.
-const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Version of the JSON. It is raised when a key changes its meaning or is removed.
 const SCHEMA: u32 = 1;
@@ -55,7 +54,7 @@ fn check_before(options: &FramesOptions) -> Result<(), Failure> {
     if !directory.as_os_str().is_empty() {
         std::fs::create_dir_all(directory)
             .with_context(|| {
-                format!("cannot create the directory {}; choose another with --out", directory.display())
+                format!("cannot create the directory {}; choose another with --out", directory.shown())
             })
             .map_err(Failure::Input)?;
     }
@@ -89,6 +88,7 @@ impl<'a> Run<'a> {
         let template = "{prefix} [{bar:24}] {wide_msg}";
         let count = options.frames.len() as u64;
         let display = Display::new(options.progress, count, template, &options.recipe.name, LINE_INTERVAL);
+        options.notes.iter().for_each(|note| display.say(&format!("warning: {note}")));
         Run {
             options,
             interrupt,
@@ -99,7 +99,7 @@ impl<'a> Run<'a> {
             kept: 0,
             rendering: Duration::ZERO,
             animation: None,
-            warnings: Vec::new(),
+            warnings: options.notes.clone(),
         }
     }
 
@@ -197,7 +197,7 @@ impl<'a> Run<'a> {
         film: &Film,
         status: &Status,
     ) -> anyhow::Result<()> {
-        let _writing = self.interrupt.while_writing(path.display().to_string());
+        let _writing = self.interrupt.while_writing(path.shown());
         let mut description = describe(recipe, self.options.stage, film, status, Some(0.0));
         description.set(key::FRAME, frame);
         description.set(key::COMMAND, &self.options.command);
@@ -210,8 +210,8 @@ impl<'a> Run<'a> {
     fn assemble(&mut self) -> anyhow::Result<()> {
         let Some((path, rate)) = &self.options.animation else { return Ok(()) };
         let count = self.options.frames.len();
-        self.display.announce(count as u64, || format!("writing {}", path.display()));
-        let _writing = self.interrupt.while_writing(path.display().to_string());
+        self.display.announce(count as u64, || format!("writing {}", path.shown()));
+        let _writing = self.interrupt.while_writing(path.shown());
         let recipe = &self.options.recipe;
         let description = describe_animation(recipe, &self.options.command);
         let size = [recipe.settings.width, recipe.settings.height];
@@ -240,10 +240,10 @@ impl<'a> Run<'a> {
             kept: self.kept,
             rendering_seconds: self.rendering.as_secs_f64(),
             total_seconds: self.begin.elapsed().as_secs_f64(),
-            directory: names.directory.clone(),
-            first_file: names.path(frames.start),
-            last_file: names.path(frames.end - 1),
-            animation: self.animation.clone(),
+            directory: names.directory.clone().into(),
+            first_file: names.path(frames.start).into(),
+            last_file: names.path(frames.end - 1).into(),
+            animation: self.animation.clone().map(JsonPath),
             warnings: self.warnings.clone(),
         }
     }
@@ -293,10 +293,10 @@ struct Summary {
     kept: u32,
     rendering_seconds: f64,
     total_seconds: f64,
-    directory: PathBuf,
-    first_file: PathBuf,
-    last_file: PathBuf,
-    animation: Option<PathBuf>,
+    directory: JsonPath,
+    first_file: JsonPath,
+    last_file: JsonPath,
+    animation: Option<JsonPath>,
     warnings: Vec<String>,
 }
 
@@ -305,7 +305,8 @@ impl fmt::Display for Summary {
         let Summary { scene, width, height, samples_per_pixel, .. } = self;
         writeln!(
             f,
-            "scene    {scene}, {width}x{height}, {} per pixel",
+            "scene    {}, {width}x{height}, {} per pixel",
+            printable(scene),
             counted(*samples_per_pixel, "sample")
         )?;
         let Summary { frames, frames_done, rendered, kept, .. } = self;
@@ -320,12 +321,12 @@ impl fmt::Display for Summary {
             return writeln!(
                 f,
                 "files    in {}; run the same command again to go on",
-                self.directory.display()
+                self.directory.0.shown()
             );
         }
-        writeln!(f, "files    {} to {}", self.first_file.display(), self.last_file.display())?;
+        writeln!(f, "files    {} to {}", self.first_file.0.shown(), self.last_file.0.shown())?;
         match &self.animation {
-            Some(path) => writeln!(f, "         {}", path.display()),
+            Some(path) => writeln!(f, "         {}", path.0.shown()),
             None => Ok(()),
         }
     }
@@ -370,9 +371,9 @@ mod tests {
             kept: 1,
             rendering_seconds: 3.0,
             total_seconds: 75.0,
-            directory: PathBuf::from("d"),
-            first_file: PathBuf::from("d/2.png"),
-            last_file: PathBuf::from("d/6.png"),
+            directory: PathBuf::from("d").into(),
+            first_file: PathBuf::from("d/2.png").into(),
+            last_file: PathBuf::from("d/6.png").into(),
             animation: None,
             warnings: Vec::new(),
         };
@@ -392,7 +393,7 @@ mod tests {
              files    d/2.png to d/6.png\n"
         );
         assert_eq!(summary.to_string(), whole);
-        summary.animation = Some(PathBuf::from("a.png"));
+        summary.animation = Some(PathBuf::from("a.png").into());
         assert_eq!(summary.to_string(), format!("{whole}         a.png\n"));
     }
 }

@@ -1,9 +1,11 @@
 //! Rendering without a window: pictures go to files, progress goes to standard error, and figures come at the end.
 
+mod existing;
 mod files;
 mod frames;
 mod keeping;
 mod listing;
+mod outcome;
 mod part;
 mod planning;
 mod progress;
@@ -18,7 +20,7 @@ use crate::backends;
 use crate::cli::{BatchOptions, JsonTarget, RenderOptions, SaveSceneOptions};
 use crate::console;
 use crate::failure::Failure;
-use crate::files::{check_replaceable, check_writable, write_text};
+use crate::files::{ShownPath, check_replaceable, check_writable, write_text};
 use crate::film::Film;
 use crate::interrupt::Interrupt;
 use crate::journal;
@@ -27,9 +29,10 @@ use crate::recipe::{Recipe, file};
 use crate::render::{Renderer, panic_text};
 use crate::saved::{self, SavedFilm};
 use crate::terminal::{print, print_beside, write_json};
-use anyhow::{Context, anyhow};
+use anyhow::Context;
 use files::{Places, SharedPlace};
 use keeping::Keeper;
+use outcome::outcome;
 use progress::Progress;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -52,14 +55,21 @@ pub fn run(options: BatchOptions) -> Result<ExitCode, Failure> {
         }
         _ => None,
     };
-    render_all(options, &places, resumed)
+    let film = resumed.as_ref().map(|resumed| &resumed.film);
+    let mut warnings: Vec<String> = options.renders.iter().flat_map(|render| render.notes.clone()).collect();
+    for (render, places) in options.renders.iter().zip(&places) {
+        warnings.extend(existing::check(render, places, film)?);
+    }
+    render_all(options, &places, resumed, &warnings)
 }
 
-/// Renders what the options ask for into these places. One picture may go on with a film.
+/// Renders what the options ask for into these places. One picture may go on with a film. `warnings` are told with the
+/// first picture.
 fn render_all(
     options: BatchOptions,
     places: &[Places],
     mut resumed: Option<SavedFilm>,
+    mut warnings: &[String],
 ) -> Result<ExitCode, Failure> {
     if let ([render], [places], Some(resumed)) = (options.renders.as_slice(), places, &resumed) {
         places.go_on(render, &resumed.film);
@@ -75,7 +85,8 @@ fn render_all(
     let mut summaries = Vec::with_capacity(options.renders.len());
     let (mut failure, mut printed) = (None, Ok(()));
     for (render, places) in options.renders.iter().zip(places) {
-        let begun = Begun { options: &options, interrupt: &interrupt, places };
+        let warnings = std::mem::take(&mut warnings);
+        let begun = Begun { options: &options, interrupt: &interrupt, places, warnings };
         let (summary, outcome) = begun.render(render, &mut progressive, renderer.take(), resumed.take());
         // The pictures are rendered even if the figures cannot be printed.
         printed = printed.and(print_beside(options.json.as_ref(), &format!("{summary}\n")));
@@ -116,7 +127,7 @@ fn ended(
 /// [`Failure::Input`] if the file cannot be written, [`Failure::Run`] if standard output cannot.
 pub fn save_scene(options: &SaveSceneOptions) -> Result<ExitCode, Failure> {
     write_scene(&options.recipe, &options.path).map_err(Failure::Input)?;
-    print(&format!("wrote {}\n", options.path.display())).map_err(Failure::Run)?;
+    print(&format!("wrote {}\n", options.path.shown())).map_err(Failure::Run)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -129,7 +140,7 @@ fn check_before(options: &BatchOptions) -> Result<(), Failure> {
     if let Some(directory) = &options.directory {
         std::fs::create_dir_all(directory)
             .with_context(|| {
-                format!("cannot create the directory {}; choose another with --out", directory.display())
+                format!("cannot create the directory {}; choose another with --out", directory.shown())
             })
             .map_err(Failure::Input)?;
     }
@@ -154,6 +165,8 @@ struct Begun<'a> {
     options: &'a BatchOptions,
     interrupt: &'a Interrupt,
     places: &'a Places,
+    /// What the user must know before it begins.
+    warnings: &'a [String],
 }
 
 impl Begun<'_> {
@@ -173,6 +186,9 @@ impl Begun<'_> {
         let keeper = |place: &SharedPlace| Keeper::new(render, place.clone(), held_before, seconds_before);
         let mut keeper = self.places.checkpoint.as_ref().map(keeper);
         let mut progress = Progress::new(self.options.progress, render);
+        for warning in self.warnings {
+            progress.say(&format!("warning: {warning}"));
+        }
         let request = RenderRequest {
             job: render.job.clone(),
             backend: self.options.backend.clone(),
@@ -194,7 +210,7 @@ impl Begun<'_> {
         let mut names: Vec<String> = [render.checkpoint.as_ref(), Some(&render.out)]
             .into_iter()
             .flatten()
-            .map(|path| path.display().to_string())
+            .map(ShownPath::shown)
             .collect();
         names.dedup();
         let writing = self.interrupt.while_writing(names.join(" and "));
@@ -216,7 +232,8 @@ impl Begun<'_> {
         for note in &written.notes {
             progress.say(&format!("warning: {note}"));
         }
-        status.messages.append(&mut written.notes);
+        let told = std::mem::take(&mut status.messages).into_iter().chain(std::mem::take(&mut written.notes));
+        status.messages = self.warnings.iter().cloned().chain(told).collect();
         progress.finish();
         if matches!(status.phase, Phase::Failed(_)) {
             journal::write_report();
@@ -261,36 +278,6 @@ impl Begun<'_> {
             progress.update(status);
         })
     }
-}
-
-/// The result of a render and of writing its files. `kept` is the number of samples per pixel in the checkpoint file.
-fn outcome(
-    render: &RenderOptions,
-    status: &Status,
-    film: Option<&Film>,
-    written: &files::Written,
-    kept: Option<u64>,
-) -> Result<(), Failure> {
-    let failure = written.failure.as_ref();
-    let Phase::Failed(reason) = &status.phase else {
-        return failure.map_or(Ok(()), |failure| Err(Failure::Run(anyhow!("{failure}"))));
-    };
-    let held = film.map_or(0, Film::sample_count);
-    Err(match (failure, kept, &render.checkpoint) {
-        (Some(failure), ..) => Failure::Run(anyhow!("{reason}; {failure}")),
-        (None, ..) if held > 0 => {
-            let files: Vec<String> = written.files.iter().map(|path| path.display().to_string()).collect();
-            let files = files.join(", ");
-            Failure::BrokeOff(anyhow!(
-                "{reason}; the {held} samples per pixel rendered before are in {files}"
-            ))
-        }
-        (None, Some(kept), Some(path)) => {
-            let path = path.display();
-            Failure::BrokeOff(anyhow!("{reason}; {kept} samples per pixel are in {path}"))
-        }
-        _ => Failure::Run(anyhow!("{reason}")),
-    })
 }
 
 fn write_figures(options: &BatchOptions, mut summaries: Vec<Summary>) -> anyhow::Result<()> {
@@ -355,17 +342,6 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_render_that_leaves_nothing_has_not_broken_off() {
-        let options = options(&["--checkpoint", "a.exr"]);
-        let status = Status { phase: Phase::Failed("it broke".to_owned()), ..Status::default() };
-        let failure = |kept| outcome(&options, &status, None, &files::Written::default(), kept).unwrap_err();
-        assert!(matches!(failure(None), Failure::Run(_)));
-        assert!(
-            matches!(failure(Some(4)), Failure::BrokeOff(error) if error.to_string().contains("4 samples"))
-        );
-    }
-
-    #[test]
     fn a_render_that_breaks_off_has_an_exit_code_of_its_own_and_its_files() {
         let directory = tempfile::tempdir().unwrap();
         let [out, film] = ["a.png", "a.exr"].map(|name| directory.path().join(name));
@@ -382,7 +358,7 @@ pub(crate) mod tests {
         let mut progressive = Progressive::with_factory(Box::new(|_| Ok(Box::new(Failing)))).unwrap();
         let interrupt = Interrupt::unheard();
         let places = Places::of(render);
-        let begun = Begun { options: &options, interrupt: &interrupt, places: &places };
+        let begun = Begun { options: &options, interrupt: &interrupt, places: &places, warnings: &[] };
         let (_, outcome) = begun.render(render, &mut progressive, None, None);
         let failure = outcome.unwrap_err();
         let told = failure.to_string();

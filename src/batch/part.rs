@@ -2,19 +2,22 @@
 //! last checkpoint or from the frames that are there, and ends at once if the part is whole.
 
 use super::files::Places;
-use super::{check_before, frames, render_all};
+use super::summary::Summary;
+use super::{check_before, frames, render_all, write_figures};
 use crate::cli::{BatchOptions, CHECKPOINT_INTERVAL, FramesOptions, PartOptions, RenderOptions};
 use crate::console;
 use crate::failure::Failure;
-use crate::film::CheckpointError;
+use crate::files::ShownPath;
+use crate::film::{CheckpointError, Film};
 use crate::output::PpmForm;
 use crate::plan::{AnyPlan, Frames, Part, Plan, Samples};
-use crate::progressive::{self, Stop};
+use crate::progressive::{self, EndReason, Phase, Status, Stop};
 use crate::saved::{self, OpenError, SavedFilm};
 use crate::terminal::print_beside;
 use anyhow::{Context, anyhow};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 /// Renders what a part lacks.
 ///
@@ -32,7 +35,7 @@ fn render_frames_of(plan: &Plan<Frames>, options: PartOptions) -> Result<ExitCod
     if options.every.is_some() {
         return Err(Failure::Input(anyhow!(
             "--every is for films, but {} divides an animation, whose frames are kept one by one; leave it out",
-            plan.path.display()
+            plan.path.shown()
         )));
     }
     frames::render_frames(FramesOptions {
@@ -47,6 +50,7 @@ fn render_frames_of(plan: &Plan<Frames>, options: PartOptions) -> Result<ExitCod
         progress: options.progress,
         json: options.json,
         command: options.command,
+        notes: Vec::new(),
     })
 }
 
@@ -66,8 +70,10 @@ fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode
         checkpoint: Some(path.clone()),
         every: options.every.unwrap_or(CHECKPOINT_INTERVAL),
         resume: Some(path.clone()),
+        asked_samples: None,
         ppm: PpmForm::Binary,
         command: options.command.clone(),
+        notes: Vec::new(),
     };
     let batch = BatchOptions {
         renders: vec![render],
@@ -86,11 +92,25 @@ fn render_samples(plan: &Plan<Samples>, options: PartOptions) -> Result<ExitCode
         && part.missing(found.film.samples()) == 0
     {
         let [start, end] = part.samples;
-        let words = format!("part {} is whole: samples {start}..{end} in {}\n", options.part, path.display());
+        let words = format!("part {} is whole: samples {start}..{end} in {}\n", options.part, path.shown());
         print_beside(batch.json.as_ref(), &words).map_err(Failure::Run)?;
+        let summaries = batch.renders.iter().map(|render| summary_of_whole(render, &found.film)).collect();
+        write_figures(&batch, summaries).map_err(Failure::Run)?;
         return Ok(ExitCode::SUCCESS);
     }
-    render_all(batch, &places, found)
+    render_all(batch, &places, found, &[])
+}
+
+/// The figures of a part of which nothing was left to render.
+fn summary_of_whole(render: &RenderOptions, film: &Film) -> Summary {
+    let status = Status {
+        phase: Phase::Done(EndReason::Samples),
+        samples_per_pixel: film.sample_count(),
+        rejected_samples: film.rejected(),
+        error: film.error(),
+        ..Status::default()
+    };
+    Summary::new(render, &status, Some(film), vec![render.out.clone()], Duration::ZERO)
 }
 
 /// The film of the part, if there is one to go on with. A damaged one is put aside.
@@ -101,7 +121,7 @@ fn find(path: &Path, plan: &Plan<Samples>, part: &Part) -> Result<Option<SavedFi
     match saved::resume(path, &plan.job) {
         Ok(found) if part.is_exceeded_by(found.film.samples()) => Err(Failure::Input(anyhow!(
             "{} holds the samples {}, but this part has {}..{}; move the file away, and run this again",
-            path.display(),
+            path.shown(),
             found.film.samples(),
             part.samples[0],
             part.samples[1]
@@ -113,14 +133,18 @@ fn find(path: &Path, plan: &Plan<Samples>, part: &Part) -> Result<Option<SavedFi
         ) => {
             let aside = free_name(path);
             std::fs::rename(path, &aside)
-                .with_context(|| format!("cannot rename {} to {}", path.display(), aside.display()))
+                .with_context(|| format!("cannot rename {} to {}", path.shown(), aside.shown()))
                 .map_err(Failure::Input)?;
             console::note(&format!(
                 "warning: {damaged}; it is now {}, and the part is rendered again",
-                aside.display()
+                aside.shown()
             ));
             Ok(None)
         }
+        Err(OpenError::OtherPicture { path, difference }) => Err(Failure::Input(anyhow!(
+            "{} is the film of another picture: {difference}; move the file away, and run this again",
+            path.shown()
+        ))),
         Err(error) => Err(Failure::input(error)),
     }
 }

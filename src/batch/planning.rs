@@ -4,6 +4,7 @@ use crate::cli::{JsonTarget, PlanFormat, PlanOptions, PlannedWork};
 use crate::console;
 use crate::describe::counted;
 use crate::failure::{Failure, output_failure};
+use crate::files::ShownPath;
 use crate::film::Film;
 use crate::memory;
 use crate::plan::{
@@ -23,6 +24,7 @@ const USUAL_ARRAY: usize = 1001;
 /// # Errors
 /// [`Failure::Input`] if the plan cannot be written; [`Failure::Run`] if its commands cannot.
 pub fn plan(options: &PlanOptions) -> Result<ExitCode, Failure> {
+    options.notes.iter().for_each(|note| console::note(&format!("warning: {note}")));
     let too_few = || Failure::input(anyhow!("{} parts need as many samples or frames", options.parts));
     match &options.work {
         PlannedWork::Samples(samples) => {
@@ -45,7 +47,7 @@ fn written<W: Work>(options: &PlanOptions, work: W) -> Result<Plan<W>, Failure> 
     let directory = &options.directory;
     std::fs::create_dir_all(directory)
         .with_context(|| {
-            format!("cannot create the directory {}; choose another with --out", directory.display())
+            format!("cannot create the directory {}; choose another with --out", directory.shown())
         })
         .map_err(Failure::Input)?;
     let manifest = Manifest {
@@ -111,7 +113,7 @@ fn about_samples(plan: &Plan<Samples>, Division { block, parts }: &Division) -> 
     let film = Film::bytes(settings.width, settings.height, if settings.estimate_error { 2 } else { 1 });
     format!(
         "{}: {} of {}x{}, {} of {each}; a part's film takes {} of memory",
-        plan.path.display(),
+        plan.path.shown(),
         plan.recipe.name,
         settings.width,
         settings.height,
@@ -132,7 +134,7 @@ fn about_frames(plan: &Plan<Frames>) -> String {
     let (settings, parts) = (plan.job.settings(), plan.manifest.work.count() as u64);
     format!(
         "{}: {} of {}x{} with {} per pixel, {} of {each}",
-        plan.path.display(),
+        plan.path.shown(),
         plan.recipe.name,
         settings.width,
         settings.height,

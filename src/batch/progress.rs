@@ -2,13 +2,14 @@
 
 use crate::cli::{ProgressChoice, RenderOptions};
 use crate::describe::seconds;
+use crate::files::ShownPath;
 use crate::progressive::{Phase, Plan, Status};
 use crate::terminal::Display;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Interval of progress lines when there is no terminal.
-const LINE_INTERVAL: Duration = Duration::from_secs(5);
+pub(super) const LINE_INTERVAL: Duration = Duration::from_secs(5);
 
 /// Steps of the bar.
 const STEPS: u64 = 1000;
@@ -53,7 +54,7 @@ impl Progress {
 
     /// Shows that `path` is being written.
     pub(super) fn writing(&mut self, path: &Path) {
-        self.display.announce(STEPS, || format!("writing {}", path.display()));
+        self.display.announce(STEPS, || format!("writing {}", path.shown()));
     }
 
     /// Prints a message that must be read, even if progress is off.

@@ -1,7 +1,9 @@
 //! The final figures of a picture, as text and as JSON.
 
 use crate::cli::RenderOptions;
+use crate::console::printable;
 use crate::describe::{counted, seconds};
+use crate::files::{JsonPath, ShownPath};
 use crate::film::{ErrorEstimate, Film};
 use crate::progressive::{Contribution, HistoryPoint, Phase, Status};
 use serde::Serialize;
@@ -84,7 +86,7 @@ pub(super) struct Summary {
     backends: Vec<Contribution>,
     history: Vec<HistoryPoint>,
     warnings: Vec<String>,
-    files: Vec<PathBuf>,
+    files: Vec<JsonPath>,
 }
 
 impl Summary {
@@ -135,7 +137,7 @@ impl Summary {
             backends: status.contributions.clone(),
             history: status.history.clone(),
             warnings: status.messages.clone(),
-            files,
+            files: files.into_iter().map(JsonPath).collect(),
         }
     }
 }
@@ -151,6 +153,7 @@ fn ending(phase: &Phase) -> (&'static str, String) {
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Summary { scene, width, height, max_depth, sampler, seed, .. } = self;
+        let scene = printable(scene);
         writeln!(f, "scene    {scene}, {width}x{height}, depth {max_depth}, {sampler}, seed {seed}")?;
         if let (Some(backend), Some(device)) = (self.backend, &self.device) {
             let [lanes, threads] = [self.lanes, self.threads].map(Option::unwrap_or_default);
@@ -197,18 +200,19 @@ impl fmt::Display for Summary {
         }
         let rejected = counted(self.rejected_samples, "rejected sample");
         match &self.error {
-            Some(error) => writeln!(
-                f,
-                "error    {:.3e} {} RMSE (estimated from the two halves), {rejected}",
-                error.rmse,
-                error.uncertainty()
-            )?,
+            Some(error) => {
+                let source = match error.is_without_noise() {
+                    true => "the two halves are equal",
+                    false => "estimated from the two halves",
+                };
+                writeln!(f, "error    {} ({source}), {rejected}", error.words())?;
+            }
             None => writeln!(f, "error    not estimated, {rejected}")?,
         }
         if self.files.is_empty() {
             return writeln!(f, "files    none");
         }
-        let files: Vec<String> = self.files.iter().map(|path| path.display().to_string()).collect();
+        let files: Vec<String> = self.files.iter().map(|path| path.0.shown()).collect();
         writeln!(f, "files    {}", files.join(", "))
     }
 }
@@ -217,6 +221,7 @@ impl fmt::Display for Summary {
 mod tests {
     use super::*;
     use crate::batch::tests::options;
+    use crate::film::ROUNDING_LIMIT;
     use crate::progressive::EndReason;
     use crate::render::{BackendInfo, Stats};
 
@@ -264,6 +269,10 @@ mod tests {
              error    2.000e-2 ± 5.0 % RMSE (estimated from the two halves), 1 rejected sample\n\
              files    a.png\n"
         );
+        let error = Some(ErrorEstimate { rmse: ROUNDING_LIMIT, rmse_deviation: 0.0, rel_mse: 0.0 });
+        let told = Summary { error, ..summary.clone() }.to_string();
+        let line = "\nerror    3e-8 RMSE, by rounding alone (the two halves are equal), 1 rejected sample\n";
+        assert!(told.contains(line), "{told}");
         let json = serde_json::to_value(&summary).unwrap();
         for (key, value) in [("prepare_seconds", 2.0), ("total_seconds", 6.5), ("rel_mse_estimate", 0.3)] {
             assert_eq!(json[key], value, "{key}");

@@ -5,6 +5,7 @@ mod leftovers;
 mod places;
 mod read;
 mod replace;
+mod shown;
 
 pub use identity::FileIdentity;
 pub(crate) use identity::Stamp;
@@ -12,3 +13,4 @@ pub use places::{cache_directory, home_directory, state_directory};
 pub use read::{InputError, open, read};
 pub(crate) use replace::NewFile;
 pub use replace::{WriteError, check_replaceable, check_writable, replace_file, write_text};
+pub use shown::{JsonPath, ShownPath};

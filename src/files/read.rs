@@ -1,5 +1,6 @@
 //! Input files: their kind and length are checked before anything is read.
 
+use super::shown::ShownPath;
 use crate::memory::words;
 use std::fs::{self, File, FileType};
 use std::io::{self, Read};
@@ -9,7 +10,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, thiserror::Error, PartialEq, Eq)]
 pub enum InputError {
     /// The system could not open or read the file.
-    #[error("cannot read {}: {reason}; check its name and whether you may read it", path.display())]
+    #[error("cannot read {}: {reason}; check its name and whether you may read it", path.shown())]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -17,7 +18,7 @@ pub enum InputError {
         reason: String,
     },
     /// The path is a directory, a device or a pipe.
-    #[error("{} is {kind}, but a file is needed; {remedy}", path.display())]
+    #[error("{} is {kind}, but a file is needed; {remedy}", path.shown())]
     NotFile {
         /// The path as given.
         path: PathBuf,
@@ -29,7 +30,7 @@ pub enum InputError {
     /// The file is longer than the limit for its kind.
     #[error(
         "{} has {}, but {what} of more than {} is not read; check that it is the right file",
-        path.display(), words(*bytes), words(*limit)
+        path.shown(), words(*bytes), words(*limit)
     )]
     TooLong {
         /// The file.

@@ -2,6 +2,7 @@
 
 use super::identity::follow_links;
 use super::leftovers;
+use super::shown::ShownPath;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -9,7 +10,7 @@ use tempfile::NamedTempFile;
 
 /// A file that could not be written. The previous file is unchanged.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write {}: {reason}; {}", path.display(), remedy(reason))]
+#[error("cannot write {}: {reason}; {}", path.shown(), remedy(reason))]
 pub struct WriteError {
     /// The file.
     pub path: PathBuf,
@@ -167,7 +168,7 @@ impl Target {
             Ok(found) if found.is_dir() => Ok(Target::File { path, directory, old }),
             Ok(_) => Err(ErrorKind::NotADirectory.into()),
             Err(error) if error.kind() == ErrorKind::NotFound && path != named => {
-                let reason = format!("it is a link to {}, whose directory is not there", path.display());
+                let reason = format!("it is a link to {}, whose directory is not there", path.shown());
                 Err(io::Error::new(ErrorKind::NotFound, reason))
             }
             Err(error) => Err(error),

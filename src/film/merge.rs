@@ -2,7 +2,7 @@
 
 use super::checkpoint::{ApplyError, FilmHead, Sign, apply};
 use super::{CheckpointError, Description, Film, FilmError, FilmFile, SampleRanges, checkpoint, key};
-use crate::files::{self, InputError};
+use crate::files::{self, InputError, ShownPath};
 use std::fs::File;
 use std::io::{BufReader, Seek};
 use std::ops::Range;
@@ -20,7 +20,7 @@ pub enum MergeError {
     /// Two films are of different jobs.
     #[error(
         "{} and {} are films of different jobs: {difference}; only films of one job with different samples can be merged",
-        first.display(), other.display()
+        first.shown(), other.shown()
     )]
     OtherJob {
         /// The first file.
@@ -33,7 +33,7 @@ pub enum MergeError {
     /// Two films have samples in common.
     #[error(
         "{} and {} both hold the samples {}..{}; each sample may be added only once, so leave one of the files out",
-        first.display(), other.display(), range.start, range.end
+        first.shown(), other.shown(), range.start, range.end
     )]
     Overlap {
         /// The first file.
@@ -50,7 +50,7 @@ pub enum MergeError {
         reason: CheckpointError,
     },
     /// The films differ in shape.
-    #[error("{} and {} cannot be merged: {reason}", first.display(), other.display())]
+    #[error("{} and {} cannot be merged: {reason}", first.shown(), other.shown())]
     Film {
         /// The first file.
         first: PathBuf,

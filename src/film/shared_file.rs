@@ -8,7 +8,7 @@
 use super::checkpoint::{self, FilmFile};
 use super::difference::{difference, minus, ranges_of};
 use super::{Description, Film, SampleRanges, key};
-use crate::files::{NewFile, Stamp, WriteError};
+use crate::files::{NewFile, ShownPath, Stamp, WriteError};
 use std::fs::{File, TryLockError};
 use std::io::{BufReader, Seek};
 use std::ops::Range;
@@ -188,7 +188,7 @@ impl SharedFile {
             return Ok(Decision::Leave(is_new.then(|| {
                 format!(
                     "{} already holds all samples of this run, and also {}, so it is left unchanged",
-                    self.path.display(),
+                    self.path.shown(),
                     told(&only_theirs)
                 )
             })));
@@ -210,7 +210,7 @@ impl SharedFile {
         (self.seen, self.may_replace) = (seen, true);
         Ok(Decision::Added(format!(
             "another run has written {} in the meantime; its samples {} are kept too",
-            self.path.display(),
+            self.path.shown(),
             told(&only_theirs)
         )))
     }
@@ -246,8 +246,8 @@ impl SharedFile {
                 let note = format!(
                     "another program has written {} in the meantime: {reason}; it is left unchanged, and the samples \
                      of this run are in {}",
-                    taken.display(),
-                    path.display()
+                    taken.shown(),
+                    path.shown()
                 );
                 *self = SharedFile::new(&path);
                 return Ok(SaveOutcome { path, note: Some(note), is_elsewhere: true });

@@ -3,12 +3,14 @@
 use super::parts::{self, State};
 use crate::console;
 use crate::failure::{FAILED, Failure, output_failure};
+use crate::files::ShownPath;
 use crate::film::{FilmHead, SampleRanges, checkpoint};
 use crate::plan::{Plan, Samples};
 use crate::recipe::file;
 use crate::saved::same_job;
 use crate::shell;
 use anyhow::anyhow;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -55,7 +57,12 @@ fn strays(plan: &Plan<Samples>) -> Vec<String> {
 /// [`Failure::Run`] if standard output cannot be written.
 pub(super) fn films(films: &[PathBuf], program: &str) -> Result<ExitCode, Failure> {
     let (mut lines, mut good): (Vec<String>, Vec<(&Path, FilmHead)>) = (Vec::new(), Vec::new());
-    for path in films {
+    let twice: HashMap<usize, String> = super::repeated(films).collect();
+    for (index, path) in films.iter().enumerate() {
+        if let Some(words) = twice.get(&index) {
+            lines.push(words.clone());
+            continue;
+        }
         let head = match checkpoint::check(path) {
             Ok(head) => head,
             Err(error) => {
@@ -67,14 +74,14 @@ pub(super) fn films(films: &[PathBuf], program: &str) -> Result<ExitCode, Failur
             let difference = same_job(known.description.recipe(), head.description.recipe()).err()?;
             Some(format!(
                 "{} is the film of another picture than {}: {difference}",
-                path.display(),
-                first.display()
+                path.shown(),
+                first.shown()
             ))
         });
         lines.extend(stranger.clone());
         for (other, known) in &good {
             if let Some(range) = known.samples.first_common(&head.samples) {
-                let (other, path) = (other.display(), path.display());
+                let (other, path) = (other.shown(), path.shown());
                 lines
                     .push(format!("{other} and {path} both hold the samples {}..{}", range.start, range.end));
             }

@@ -5,7 +5,7 @@ use crate::cli::MergeOptions;
 use crate::console;
 use crate::describe::{SOFTWARE, describe_animation};
 use crate::failure::{FAILED, Failure};
-use crate::files::Stamp;
+use crate::files::{ShownPath, Stamp};
 use crate::interrupt::Interrupt;
 use crate::output::{OutputFormat, write_animation};
 use crate::plan::{Frames, Plan};
@@ -120,7 +120,7 @@ impl Frame {
             FrameState::Wrong(words) => format!("part {part}: {words}"),
             FrameState::Missing | FrameState::Whole => {
                 let path = plan.names().path(*number);
-                let name = path.file_name().unwrap_or_default().display();
+                let name = path.file_name().unwrap_or_default().shown();
                 format!("part {part}: {name} is missing")
             }
         }
@@ -158,7 +158,7 @@ fn check_names(options: &MergeOptions) -> Result<(), Failure> {
     match options.out.iter().find(|out| !is_png(out)) {
         Some(out) => Err(Failure::Input(anyhow!(
             "--out is {}, but the frames of an animation make an animated PNG; let the name end in .png",
-            out.display()
+            out.shown()
         ))),
         None => Ok(()),
     }

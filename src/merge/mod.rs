@@ -10,14 +10,15 @@ use crate::cli::{MergeOptions, MergeSource};
 use crate::console;
 use crate::describe::counted;
 use crate::failure::{FAILED, Failure};
-use crate::files::check_writable;
-use crate::film::{Description, Film, merge_files};
+use crate::files::{FileIdentity, ShownPath, check_writable};
+use crate::film::{Description, Film, SampleRanges, merge_files};
 use crate::output::write_image;
 use crate::plan::{AnyPlan, Plan, Samples};
 use crate::recipe::file;
-use crate::saved::same_job;
+use crate::saved::{Replaced, same_job};
 use crate::stages::Transfer;
 use crate::terminal::print;
+use anyhow::anyhow;
 use parts::{PlanSum, State};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -32,7 +33,10 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
     }
     match (&options.source, options.watch) {
         (MergeSource::Films(films), _) if options.check => check::films(films, &options.program),
-        (MergeSource::Films(films), _) => merge_all(films, &options.out),
+        (MergeSource::Films(films), _) => match repeated(films).next() {
+            Some((_, words)) => Err(Failure::Input(anyhow!("{words}; name it once"))),
+            None => merge_all(films, &options.out),
+        },
         (MergeSource::Plan(path), watch) => match (AnyPlan::load(path).map_err(Failure::input)?, watch) {
             (AnyPlan::Samples(plan), _) if options.check => check::plan(&plan, &options.program),
             (AnyPlan::Samples(plan), None) => merge_plan(&plan, options),
@@ -47,6 +51,7 @@ pub fn run(options: &MergeOptions) -> Result<ExitCode, Failure> {
 fn merge_all(films: &[PathBuf], out: &[PathBuf]) -> Result<ExitCode, Failure> {
     let sum = merge_files(films, same_job).map_err(Failure::input)?;
     let recipe = file::parse(sum.description.recipe(), "the films' recipe").map_err(Failure::input)?;
+    warn_of_loss(out, &sum.film, &sum.description);
     write(out, &sum.film, recipe.rules.transfer, &sum.description)?;
     let samples = sum.film.samples();
     let count = counted(samples.count(), "sample");
@@ -63,6 +68,7 @@ fn merge_plan(plan: &Plan<Samples>, options: &MergeOptions) -> Result<ExitCode, 
     }
     let lacking = sum.lacking();
     if sum.film().sample_count() > 0 {
+        warn_of_loss(&options.out, sum.film(), &sum.description());
         write(&options.out, sum.film(), plan.recipe.rules.transfer, &sum.description())?;
         print(&format!("{}\n{}", sum.words(), wrote(&options.out))).map_err(Failure::Run)?;
     }
@@ -76,13 +82,35 @@ fn merge_plan(plan: &Plan<Samples>, options: &MergeOptions) -> Result<ExitCode, 
     Ok(ExitCode::from(FAILED))
 }
 
+/// The films that are named more than once, by their places in the list, each with words on it.
+fn repeated(films: &[PathBuf]) -> impl Iterator<Item = (usize, String)> {
+    let files: Vec<Option<FileIdentity>> = films.iter().map(|film| FileIdentity::of(film)).collect();
+    (1..films.len()).filter_map(move |index| {
+        let again = files[index].as_ref()?;
+        let earlier = files[..index].iter().flatten().any(|file| file.is_same_as(again));
+        earlier.then(|| (index, format!("{} is named twice", films[index].shown())))
+    })
+}
+
+/// Warns of samples that are lost because `film` replaces a film that has others.
+fn warn_of_loss(out: &[PathBuf], film: &Film, description: &Description) {
+    for out in out {
+        let is_kept = |samples: &SampleRanges| {
+            samples.iter().all(|range| film.samples().first_gap(range, u64::MAX).is_none())
+        };
+        if let Some(words) = Replaced::at(out, description.recipe()).warning(out, is_kept) {
+            console::note(&format!("warning: {words}"));
+        }
+    }
+}
+
 /// Writes the film to each file.
 fn write(out: &[PathBuf], film: &Film, transfer: Transfer, description: &Description) -> Result<(), Failure> {
     out.iter().try_for_each(|out| write_image(out, film, transfer, description)).map_err(Failure::run)
 }
 
 fn wrote(out: &[PathBuf]) -> String {
-    out.iter().map(|out| format!("wrote {}\n", out.display())).collect()
+    out.iter().map(|out| format!("wrote {}\n", out.shown())).collect()
 }
 
 /// The parts of a plan that are not whole.

@@ -2,6 +2,7 @@
 
 use super::Lacking;
 use crate::describe::describe;
+use crate::files::ShownPath;
 use crate::film::{CheckpointError, Description, Film, FilmSum, MergeError, SampleRanges, checkpoint, key};
 use crate::plan::{Commands, Plan, Samples, Work};
 use crate::progressive::Status;
@@ -132,7 +133,7 @@ pub(super) fn state_of(plan: &Plan<Samples>, index: usize, samples: &SampleRange
         let [start, end] = part.samples;
         return State::Wrong(format!(
             "{} holds the samples {samples}, but this part has {start}..{end}; move the file away",
-            plan.part_path(part).display()
+            plan.part_path(part).shown()
         ));
     }
     match part.missing(samples) {
@@ -157,7 +158,7 @@ pub(super) fn checked_state(plan: &Plan<Samples>, index: usize, recipe: &str) ->
 }
 
 fn other_picture(path: &Path, difference: &str) -> String {
-    format!("{} is the film of another picture: {difference}; move it away", path.display())
+    format!("{} is the film of another picture: {difference}; move it away", path.shown())
 }
 
 fn words(error: &MergeError) -> String {

@@ -5,7 +5,7 @@ use super::{write, wrote};
 use crate::cli::MergeOptions;
 use crate::console;
 use crate::failure::Failure;
-use crate::files::Stamp;
+use crate::files::{ShownPath, Stamp};
 use crate::interrupt::Interrupt;
 use crate::plan::{Plan, Samples};
 use crate::terminal::print;
@@ -48,7 +48,7 @@ pub(super) fn run(
                 sum.add(part.index, true).map_err(Failure::run)?;
             }
             if sum.film().sample_count() > 0 {
-                let names: Vec<String> = options.out.iter().map(|out| out.display().to_string()).collect();
+                let names: Vec<String> = options.out.iter().map(ShownPath::shown).collect();
                 let _writing = interrupt.while_writing(names.join(" and "));
                 write(&options.out, sum.film(), plan.recipe.rules.transfer, &sum.description())?;
                 console::note(&sum.words());

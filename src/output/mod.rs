@@ -13,7 +13,7 @@ pub use read::{Encoding, ReadPicture, decode_picture, read_picture, read_rgb8};
 
 pub use crate::film::{Description, RECIPE_KEY, key};
 
-use crate::files::{self, InputError, WriteError, replace_file};
+use crate::files::{self, InputError, ShownPath, WriteError, replace_file};
 use crate::film::{CheckpointError, Film, checkpoint};
 use crate::stages::Transfer;
 use std::io::{self, BufRead, BufReader, Read, Seek, Write};
@@ -62,7 +62,7 @@ pub enum OutputError {
     /// The file name has no known extension.
     #[error(
         "cannot tell the picture format of {}; let the name end in one of {}",
-        path.display(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
+        path.shown(), OutputFormat::ALL.map(OutputFormat::ending).join(", ")
     )]
     UnknownEnding {
         /// The file.
@@ -78,7 +78,7 @@ pub enum OutputError {
     #[error(transparent)]
     Film(#[from] CheckpointError),
     /// The content of the file cannot be read.
-    #[error("cannot read {}: {reason}; check the name and whether the picture is complete", path.display())]
+    #[error("cannot read {}: {reason}; check the name and whether the picture is complete", path.shown())]
     Read {
         /// The file.
         path: PathBuf,
@@ -88,7 +88,7 @@ pub enum OutputError {
     /// The picture does not contain a description.
     #[error(
         "{} does not say how it was made; only PNG, PPM and EXR files written by Weekender do, unless another program has saved them again",
-        path.display()
+        path.shown()
     )]
     NoDescription {
         /// The file.

@@ -27,7 +27,11 @@ impl AnyPlan {
     /// # Errors
     /// [`PlanError`].
     pub fn load(path: &Path) -> Result<AnyPlan, PlanError> {
-        let path = if path.is_dir() { path.join(MANIFEST) } else { path.to_owned() };
+        let manifest = path.join(MANIFEST);
+        if path.is_dir() && !manifest.exists() {
+            return Err(PlanError::NoManifest { path: path.to_owned() });
+        }
+        let path = if path.is_dir() { manifest } else { path.to_owned() };
         let (version, value) = read_value(&path)?;
         match version {
             Samples::VERSION => Plan::of(path, value).map(|plan| AnyPlan::Samples(Box::new(plan))),

@@ -1,6 +1,7 @@
 //! Why a plan cannot be used.
 
-use crate::files::{InputError, WriteError};
+use super::MANIFEST;
+use crate::files::{InputError, ShownPath, WriteError};
 use crate::film::checkpoint::SAMPLE_VERSION;
 use crate::recipe::file;
 use crate::render::JobError;
@@ -22,17 +23,34 @@ pub enum PlanError {
     #[error(transparent)]
     Job(#[from] JobError),
     /// The manifest is not one.
-    #[error("{} is not a plan, or is damaged: {what}; make it again with `weekender plan`", path.display())]
+    #[error("{} is not a plan, or is damaged: {what}; check that it is the right file; if so, move it away and make the plan again with `weekender plan`", path.shown())]
     Damaged {
         /// The manifest.
         path: PathBuf,
         /// What is wrong.
         what: String,
     },
+    /// The directory has no manifest.
+    #[error("{} is a directory without a {MANIFEST}; a plan's directory or a file is needed", path.shown())]
+    NoManifest {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// The scene file is not the one that was planned.
+    #[error(
+        "{} was changed since {} was made; undo the change or make the same plan again, or plan the changed scene into another directory",
+        scene.shown(), path.shown()
+    )]
+    SceneChanged {
+        /// The scene file.
+        scene: PathBuf,
+        /// The manifest.
+        path: PathBuf,
+    },
     /// The plan is for another version of the program.
     #[error(
         "{} is a plan for samples of version {version}, made by {program}, but this program ({}) traces version {SAMPLE_VERSION}; use {program} on every machine, or plan into another directory with this one",
-        path.display(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
+        path.shown(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
     )]
     SampleVersion {
         /// The manifest.
@@ -45,14 +63,14 @@ pub enum PlanError {
     /// The directory holds another plan.
     #[error(
         "{} holds the plan of another picture, or of other parts; plan into another directory, or delete it",
-        path.display()
+        path.shown()
     )]
     Taken {
         /// The manifest that is there.
         path: PathBuf,
     },
     /// There is no such part.
-    #[error("there is no part {index} in {}: it has the parts 0 to {}", path.display(), count - 1)]
+    #[error("there is no part {index} in {}: it has the parts 0 to {}", path.shown(), count - 1)]
     NoPart {
         /// The manifest.
         path: PathBuf,

@@ -122,8 +122,7 @@ impl<W: Work> Plan<W> {
         let scene_path = path.with_file_name(&manifest.scene_file);
         let text = files::read(&scene_path, "a scene file", LENGTH_LIMIT * 8)?;
         if checksum(&text) != manifest.scene_checksum {
-            let what = format!("{} was changed since the plan was made", scene_path.display());
-            return Err(PlanError::Damaged { path, what });
+            return Err(PlanError::SceneChanged { scene: scene_path, path });
         }
         let recipe = Recipe { name: manifest.scene.clone(), ..file::load(&scene_path)? };
         let job = recipe.job()?;
@@ -133,7 +132,7 @@ impl<W: Work> Plan<W> {
     /// Writes a plan of `recipe` into `directory`, which must exist. An equal plan that is there stays.
     ///
     /// # Errors
-    /// [`PlanError::Taken`] if the directory holds another plan; [`PlanError::Write`].
+    /// [`PlanError::Taken`] if the directory holds another plan; those of reading it; [`PlanError::Write`].
     pub fn write(
         directory: &Path,
         recipe: &Recipe,
@@ -145,16 +144,7 @@ impl<W: Work> Plan<W> {
         let manifest =
             Manifest { scene_file: SCENE.to_owned(), scene_checksum: checksum(text.as_bytes()), ..manifest };
         if path.symlink_metadata().is_ok() {
-            let theirs = read_value(&path).and_then(|(_, value)| Plan::<W>::of(path.clone(), value));
-            let is_same = |theirs: &Plan<W>| {
-                theirs.job == *job
-                    && theirs.recipe.samples_per_pixel == recipe.samples_per_pixel
-                    && theirs.recipe.keyframes == recipe.keyframes
-                    && theirs.manifest.work == manifest.work
-            };
-            if !theirs.is_ok_and(|theirs| is_same(&theirs)) {
-                return Err(PlanError::Taken { path });
-            }
+            check_same(&path, recipe, job, &manifest)?;
         }
         write_text(&path.with_file_name(&manifest.scene_file), &text)?;
         // The manifest comes last: whoever finds it finds its scene.
@@ -189,6 +179,34 @@ impl<W: Work> Plan<W> {
             count,
         })
     }
+}
+
+/// Checks that the plan whose manifest is at `path` is of this recipe and has the same work as `manifest`. Its scene file
+/// may have been changed or removed, because it is written again.
+fn check_same<W: Work>(
+    path: &Path,
+    recipe: &Recipe,
+    job: &RenderJob,
+    manifest: &Manifest<W>,
+) -> Result<(), PlanError> {
+    let (version, value) = read_value(path)?;
+    if version == W::VERSION {
+        let is_of_same = |theirs: &Manifest<W>| {
+            theirs.scene_checksum == manifest.scene_checksum && theirs.work == manifest.work
+        };
+        if parse(value.clone()).is_ok_and(|theirs| is_of_same(&theirs)) {
+            return Ok(());
+        }
+        let theirs = Plan::<W>::of(path.to_owned(), value)?;
+        if theirs.job == *job
+            && theirs.recipe.samples_per_pixel == recipe.samples_per_pixel
+            && theirs.recipe.keyframes == recipe.keyframes
+            && theirs.manifest.work == manifest.work
+        {
+            return Ok(());
+        }
+    }
+    Err(PlanError::Taken { path: path.to_owned() })
 }
 
 /// Reads the JSON of a manifest and its version. Other versions may have other keys.

@@ -1,6 +1,7 @@
 //! Tells whether the file of a frame is there and right.
 
 use super::difference::same_job;
+use crate::files::ShownPath;
 use crate::film::{Description, key};
 use crate::output::{check_frame, read_description};
 use crate::recipe::{Recipe, file};
@@ -30,7 +31,7 @@ impl FrameState {
         };
         let wanted = Description::new(&file::to_picture_toml(recipe));
         let samples = recipe.samples_per_pixel.to_string();
-        let is_of = |value: &str| format!("{} is {value}", path.display());
+        let is_of = |value: &str| format!("{} is {value}", path.shown());
         if found.recipe() != wanted.recipe() {
             let difference = same_job(wanted.recipe(), found.recipe()).err();
             let difference = difference.map_or_else(String::new, |words| format!(": {words}"));

@@ -3,12 +3,15 @@
 
 mod difference;
 mod frames;
+mod replaced;
 mod rescue;
 
 pub use difference::{difference, same_job};
 pub use frames::FrameState;
+pub use replaced::Replaced;
 pub use rescue::rescue;
 
+use crate::files::ShownPath;
 use crate::film::{CheckpointError, Description, Film, checkpoint, key};
 use crate::output::{OutputError, OutputFormat, read_description};
 use crate::recipe::{Recipe, file};
@@ -32,7 +35,7 @@ pub enum OpenError {
     #[error(transparent)]
     Picture(OutputError),
     /// The recipe in the file cannot be parsed.
-    #[error("the recipe in {} cannot be read: {reason}", path.display())]
+    #[error("the recipe in {} cannot be read: {reason}", path.shown())]
     Recipe {
         /// The file.
         path: PathBuf,
@@ -40,7 +43,7 @@ pub enum OpenError {
         reason: Box<file::FileError>,
     },
     /// The recipe in the file cannot be rendered.
-    #[error("the recipe in {} cannot be rendered: {reason}", path.display())]
+    #[error("the recipe in {} cannot be rendered: {reason}", path.shown())]
     Job {
         /// The file.
         path: PathBuf,
@@ -48,15 +51,15 @@ pub enum OpenError {
         reason: Box<JobError>,
     },
     /// The film does not match its recipe.
-    #[error("the film in {} does not have the size that its recipe says; render it again", path.display())]
+    #[error("the film in {} does not have the size that its recipe says; render it again", path.shown())]
     Shape {
         /// The file.
         path: PathBuf,
     },
     /// The film is of a different job than the one to be resumed.
     #[error(
-        "{} is the film of another picture: {difference}; change the flags that differ or render without --resume",
-        path.display()
+        "{} is the film of another picture: {difference}; change the flags that differ, or name another film",
+        path.shown()
     )]
     OtherPicture {
         /// The file.
@@ -115,7 +118,7 @@ impl Saved {
     /// # Errors
     /// [`OpenError::Recipe`].
     pub fn recipe(&self) -> Result<Recipe, OpenError> {
-        let label = self.path.display().to_string();
+        let label = self.path.shown();
         let recipe = file::parse(self.description.recipe(), &label)
             .map_err(|reason| OpenError::Recipe { path: self.path.clone(), reason: Box::new(reason) })?;
         let stem = self.path.file_stem().map(|stem| stem.to_string_lossy().into_owned());

@@ -1,6 +1,6 @@
 //! Rescues samples whose file cannot be written, by saving them wherever there is room.
 
-use crate::files::{home_directory, state_directory};
+use crate::files::{ShownPath, home_directory, state_directory};
 use crate::film::{Description, Film, checkpoint, key};
 use crate::recipe::plain_name;
 use std::env;
@@ -39,12 +39,12 @@ fn keep_in(
     let mut reasons = Vec::new();
     for place in places {
         let Some(path) = free_name(place, name) else {
-            reasons.push(format!("{} (no free name)", place.display()));
+            reasons.push(format!("{} (no free name)", place.shown()));
             continue;
         };
         match checkpoint::save(&path, film, description) {
             Ok(()) => return Ok(path),
-            Err(error) => reasons.push(format!("{} ({})", place.display(), error.reason)),
+            Err(error) => reasons.push(format!("{} ({})", place.shown(), error.reason)),
         }
     }
     let seconds = description.get(key::SECONDS).and_then(|seconds| seconds.parse::<f64>().ok());

@@ -11,8 +11,8 @@ fn a_saved_scene_renders_the_same_film() {
         let saved =
             run(directory.path(), &[&from[..], &["--save-scene", "s.toml", "--size", "32x18"]].concat());
         assert!(saved.status.success(), "{}", text(&saved.stderr));
-        render(directory.path(), &[&from[..], &["--samples", "4", "--checkpoint", "a.exr"]].concat());
-        render(directory.path(), &["--scene", "s.toml", "--samples", "4", "--checkpoint", "b.exr"]);
+        render(directory.path(), &[&from[..], &["--samples", "4", "--out", "a.exr"]].concat());
+        render(directory.path(), &["--scene", "s.toml", "--samples", "4", "--out", "b.exr"]);
         assert_eq!(film(at("a.exr")), film(at("b.exr")), "{from:?}");
     }
 }
@@ -102,6 +102,86 @@ fn films_of_other_pictures_are_not_resumed() {
         refused_in(&directory, &with("broken.exr", &[]), &["broken.exr"]);
         refused_in(&directory, &with("missing.exr", &[]), &["missing.exr"]);
         refused_in(&directory, &with("film.png", &[]), &["--resume", ".exr"]);
+    }
+}
+
+#[test]
+fn a_checkpoint_is_never_replaced_unless_the_render_goes_on_with_it() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    render(directory.path(), &["--samples", "32", "--checkpoint", "k.exr"]);
+    let before = std::fs::read(at("k.exr")).unwrap();
+    let endless = ["--batch", "--samples", "4294967296", "--size", "32x18", "--checkpoint"];
+    let refused =
+        |more: &[&str], parts: &[&str]| refused_in(&directory, &[&endless[..], more].concat(), parts);
+    refused(
+        &["k.exr"],
+        &["k.exr", "32 samples per pixel of this picture", "--continue", "move this one away"],
+    );
+    refused(&["./k.exr", "--time-limit", "1"], &["32 samples per pixel"]);
+    refused(&["k.exr", "--seed", "5"], &["k.exr", "32 samples", "another picture: seed is 5 here, 0 there"]);
+    refused(&["k.exr", "--seed", "5", "--continue"], &["seed is 5 here, 0 there", "name another film"]);
+    render(directory.path(), &["--samples", "4", "--out", "other.exr"]);
+    refused(&["k.exr", "--resume", "other.exr"], &["k.exr", "32 samples per pixel"]);
+    assert_eq!(std::fs::read(at("k.exr")).unwrap(), before);
+    std::fs::write(at("k.exr"), &before[..100]).unwrap();
+    refused(&["k.exr"], &["k.exr is damaged", "move this one away"]);
+    std::fs::write(at("k.exr"), "a picture").unwrap();
+    refused(&["k.exr"], &["k.exr", "not a film of Weekender", "move this one away"]);
+    // There is nothing to lose.
+    std::fs::write(at("k.exr"), "").unwrap();
+    render(directory.path(), &["--samples", "4", "--checkpoint", "k.exr"]);
+    assert_eq!(film(at("k.exr")).sample_count(), 4);
+}
+
+#[test]
+fn an_output_replaces_a_longer_film_with_a_warning() {
+    let directory = temp();
+    let at = |name: &str| directory.path().join(name);
+    let warned = |flags: &[&str]| {
+        let output = render(directory.path(), &[&["--out", "k.exr", "--json", "j.json"], flags].concat());
+        let json: Value = serde_json::from_slice(&std::fs::read(at("j.json")).unwrap()).unwrap();
+        let told = text(&output.stderr);
+        assert_eq!(json["warnings"].as_array().unwrap().is_empty(), told.is_empty(), "{told} {json}");
+        told
+    };
+    assert_eq!(warned(&["--samples", "32"]), "");
+    // The new film has all samples of the old one.
+    assert_eq!(warned(&["--samples", "40"]), "");
+    let told = warned(&["--samples", "8"]);
+    assert!(
+        told.contains("warning: --out replaces k.exr, which holds 40 samples per pixel of this"),
+        "{told}"
+    );
+    assert_eq!(film(at("k.exr")).sample_count(), 8);
+    let told = warned(&["--samples", "2", "--seed", "3"]);
+    assert!(told.contains("8 samples per pixel of another picture (seed is 3 here, 0 there)"), "{told}");
+    // A merge is an output, too.
+    render(directory.path(), &["--sample-range", "4..8", "--seed", "3", "--out", "more.exr"]);
+    let merge = run(directory.path(), &["merge", "more.exr", "--out", "k.exr"]);
+    let told = text(&merge.stderr);
+    assert!(
+        merge.status.success() && told.contains("k.exr, which holds 2 samples per pixel of this"),
+        "{told}"
+    );
+}
+
+#[test]
+fn who_asks_for_fewer_samples_than_there_are_is_warned() {
+    let directory = temp();
+    render(directory.path(), &["--samples", "32", "--checkpoint", "film.exr"]);
+    for flags in [&["--resume", "film.exr"][..], &["--checkpoint", "film.exr", "--continue"]] {
+        let with = |samples: &str| {
+            let output =
+                render(directory.path(), &[flags, &["--samples", samples, "--out", "f.png"]].concat());
+            text(&output.stderr)
+        };
+        let told = with("8");
+        assert!(
+            told.contains("warning: film.exr already holds the samples 0..32") && told.contains("8"),
+            "{told}"
+        );
+        assert_eq!(with("32"), "");
     }
 }
 

@@ -69,7 +69,11 @@ fn files_that_get_in_each_other_s_way_are_refused_before_rendering() {
     refused(&["--scene", "s.toml", "--json", "s.toml"], &["--json", "--scene"]);
     refused(&["--scene", "s.toml", "--save-scene", "./s.toml"], &["--save-scene", "--scene"]);
     refused_in(&directory, &["--scene", "s.toml", "--save-scene", "s.toml"], &["--save-scene"]);
-    refused_in(&directory, &["merge", "g.exr", "--out", "./g.exr"], &["--out", "the film"]);
+    refused_in(
+        &directory,
+        &["merge", "g.exr", "--out", "./g.exr"],
+        &["--out ./g.exr would replace one of the films to merge;"],
+    );
     refused_in(&directory, &["compare", "g.exr", "cpu", "--json", "./g.exr"], &["--json", "comparison"]);
     std::fs::copy(path("three-spheres.png"), path("p.png")).unwrap();
     refused_in(&directory, &["compare", "p.png", "cpu", "--heat-map", "./p.png"], &["--heat-map"]);
@@ -170,6 +174,40 @@ fn json_has_its_keys() {
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(json["rmse_estimate"].is_null());
     assert!(text(&output.stderr).contains("three-spheres"), "the summary makes way for the JSON");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn any_name_is_told_on_one_line_and_in_json() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let directory = temp();
+    let with = |out: &[u8], more: &[&str]| {
+        let common = ["--batch", "--size", "8x4", "--samples", "1", "--json", "j.json"];
+        let mut command = super::common::weekender(directory.path(), &[&common[..], more].concat());
+        let output = command.arg("--out").arg(OsStr::from_bytes(out)).output().unwrap();
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        let json = std::fs::read(directory.path().join("j.json")).unwrap();
+        (text(&output.stdout), serde_json::from_slice::<Value>(&json).unwrap())
+    };
+    let (told, json) = with(b"q\xff.png", &[]);
+    assert!(told.contains("files    q\u{fffd}.png\n"), "{told}");
+    assert_eq!(json["files"][0], "q\u{fffd}.png");
+    let (told, json) = with(b"a\nb\x1b[31m.png", &[]);
+    assert!(told.contains("files    a\\nb\\u{1b}[31m.png\n"), "{told}");
+    assert_eq!(json["files"][0], "a\nb\u{1b}[31m.png");
+    let (told, json) = with(b"d\xff\n", &["--turntable=2"]);
+    assert!(told.contains("d\u{fffd}\\n/"), "{told}");
+    assert_eq!(json["directory"], "d\u{fffd}\n");
+    // Errors, and the names of scenes.
+    refused(&["--batch", "--out", "no\nwhere/x.png"], &["no\\nwhere/x.png"]);
+    render(directory.path(), &["--samples", "1", "--save-scene", "s\nt.toml"]);
+    let output = render(directory.path(), &["--samples", "1", "--scene", "s\nt.toml"]);
+    assert!(text(&output.stdout).starts_with("scene    s\\nt, "), "{}", text(&output.stdout));
+    let mut command = super::common::weekender(directory.path(), &["--batch", "--scene"]);
+    let output = command.arg(OsStr::from_bytes(b"s\xff.toml")).output().unwrap();
+    let told = text(&output.stderr);
+    assert!(output.status.code() == Some(2) && told.contains("\"s\\xFF.toml\""), "{told}");
 }
 
 #[test]

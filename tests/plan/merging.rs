@@ -121,6 +121,11 @@ fn films_without_a_plan_are_checked_for_gaps_and_overlaps() {
     ] {
         assert!(told.contains(words), "{words}: {told}");
     }
+    let twice = ["a.exr", "./a.exr"];
+    let (told, _) = ends(at, 1, &[&["merge", "--check"], &twice[..]].concat());
+    assert!(told.contains("./a.exr is named twice\n") && told.contains("in 1 of 2 films"), "{told}");
+    let (_, told) = ends(at, 2, &[&["merge", "--out", "m.exr"], &twice[..]].concat());
+    assert!(told.contains("./a.exr is named twice; name it once"), "{told}");
     // The command fills the gap.
     let (told, _) = ends(at, 1, &["merge", "--check", "a.exr", "b c.exr"]);
     let words = shlex::split(told.lines().last().unwrap()).unwrap();

@@ -81,6 +81,18 @@ fn a_part_goes_on_from_its_checkpoint_and_a_whole_one_is_left_alone() {
     let before = modified();
     assert!(render_part(at, "p", 1).contains("part 1 is whole: samples 32..64 in"));
     assert_eq!(modified(), before);
+    // A scheduler that repeats a command reads the same JSON again.
+    for target in ["-", "p1.json"] {
+        let part = ["render-part", "p", "--part", "1", "--device", "cpu", "--json", target];
+        let (out, told) = ends(at, 0, &part);
+        let json = if target == "-" { out } else { std::fs::read_to_string(at.join(target)).unwrap() };
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        assert_eq!((&json["added_samples_per_pixel"], &json["samples_per_pixel"]), (&0.into(), &32.into()));
+        assert_eq!((&json["ended_by"], &json["files"][0]), (&"samples".into(), &"p/part-1.exr".into()));
+        assert!(json["rmse_estimate"].is_number() && json["paths"] == 0, "{json}");
+        assert_eq!(told.contains("part 1 is whole"), target == "-");
+    }
+    assert_eq!(modified(), before);
     // Only the unfinished one is asked for.
     let (told, _) = ends(at, 1, &["merge", "p", "--check"]);
     assert!(told.contains("part 0: part-0.exr is missing") && told.contains("--array=0 "), "{told}");

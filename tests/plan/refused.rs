@@ -65,9 +65,29 @@ fn a_plan_that_was_changed_or_is_of_another_version_is_refused() {
     fs::write(&scene, good_scene.replace("vfov_degrees = 90", "vfov_degrees = 91") + "\n").unwrap();
     let (_, told) = ends(at, 2, &["render-part", "p", "--part", "0"]);
     assert!(told.contains("scene.toml was changed since"), "{told}");
+    assert!(told.contains("undo the change or make the same plan again"), "{told}");
+    // Another plan is told the same, and the same plan writes the scene again.
+    let again = |samples: &'static str| {
+        [&["plan"], &PICTURE[..], &["--out", "p", "--samples", samples, "--parts", "2"]].concat()
+    };
+    let (_, told) = ends(at, 2, &again("16"));
+    assert!(told.contains("scene.toml was changed since"), "{told}");
+    succeeds(at, &again("8"));
+    assert_eq!(fs::read_to_string(&scene).unwrap(), good_scene);
     fs::remove_file(&scene).unwrap();
     let (_, told) = ends(at, 2, &["render-part", "p", "--part", "0"]);
     assert!(told.contains("scene.toml"), "{told}");
+    succeeds(at, &again("8"));
+    render_part(at, "p", 0);
+    fs::write(&manifest, "{").unwrap();
+    let (_, told) = ends(at, 2, &again("8"));
+    assert!(
+        told.contains("plan.json is not a plan, or is damaged") && told.contains("move it away"),
+        "{told}"
+    );
+    fs::remove_file(&manifest).unwrap();
+    succeeds(at, &again("8"));
+    assert!(render_part(at, "p", 0).contains("whole"));
 }
 
 #[test]
@@ -97,6 +117,16 @@ fn what_cannot_be_planned_is_refused_with_the_limit() {
     assert!(told.contains("no part 2") && told.contains("0 to 1"), "{told}");
     let (_, told) = ends(at, 2, &["render-part", "p"]);
     assert!(told.contains("--part NUMBER") && told.contains("JOB_COMPLETION_INDEX"), "{told}");
+    fs::create_dir(at.join("empty")).unwrap();
+    for arguments in [
+        &["merge", "empty", "--out", "q.png"][..],
+        &["merge", "empty", "--check"],
+        &["render-part", "empty", "--part", "0"],
+        &["info", "empty"],
+    ] {
+        let (_, told) = ends(at, 2, arguments);
+        assert!(told.contains("empty is a directory without a plan.json"), "{told}");
+    }
     let (_, told) = ends(at, 2, &["merge", "a.exr", "--watch", "--out", "x.exr"]);
     assert!(told.contains("--watch") && told.contains("weekender plan"), "{told}");
     let (_, told) = ends(at, 2, &["merge", "p", "a.exr", "--out", "x.exr"]);
