@@ -140,6 +140,26 @@ fn a_backend_repeats_the_samples_of_a_film() {
     assert!(code == 0 && !text.contains("equal to the bit"), "{text}{errors}");
 }
 
+#[test]
+fn a_clipped_picture_differs_from_a_dark_one_and_is_not_judged_next_to_itself() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    for (name, dark) in [("white.png", 0), ("half.png", 32)] {
+        let picture =
+            image::RgbImage::from_fn(64, 16, |x, _| image::Rgb([if x < dark { 0 } else { 255 }; 3]));
+        picture.save(at.join(name)).unwrap();
+    }
+    for sides in [["white.png", "half.png"], ["half.png", "white.png"]] {
+        let (code, text, _) = compare(&sides, at);
+        assert!(code == 1 && text.contains("darker in the other") && text.contains("different"), "{text}");
+    }
+    let (code, text, _) = compare(&["white.png", "white.png"], at);
+    assert!(code == 2 && text.contains("verdict     cannot tell"), "{text}");
+    let (code, found) = json(&["white.png", "white.png"], at);
+    assert_eq!((code, &found["is_equal"]), (2, &serde_json::json!(false)));
+    assert!(found["unclear"].as_str().unwrap().starts_with("only 0 of 48"), "{found}");
+}
+
 /// A PFM of 64x16 pixels whose first 60 columns are `value`.
 fn pfm(at: &Path, name: &str, value: f32) {
     let pixel = |i: usize| if i % 64 < 60 { value } else { 0.25 + i as f32 / 4096.0 };

@@ -53,6 +53,14 @@ pub enum ReadError {
         /// What is wrong, and what to do.
         reason: String,
     },
+    /// The picture shows nothing.
+    #[error("{} cannot be checked: {reason}", path.display())]
+    Nothing {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what to do.
+        reason: String,
+    },
 }
 
 impl Mine {
@@ -62,8 +70,9 @@ impl Mine {
     /// [`ReadError`], which says what to do.
     pub fn read(path: &Path) -> Result<Mine, ReadError> {
         let bytes = files::read(path, "a picture", LENGTH_LIMIT)?;
-        let mine = Mine::decode(&bytes).and_then(Mine::large_enough);
-        mine.map_err(|reason| ReadError::Content { path: path.to_owned(), reason })
+        let content = |reason| ReadError::Content { path: path.to_owned(), reason };
+        let mine = Mine::decode(&bytes).and_then(Mine::large_enough).map_err(content)?;
+        mine.worth_checking().map_err(|reason| ReadError::Nothing { path: path.to_owned(), reason })
     }
 
     fn large_enough(self) -> Result<Mine, String> {
@@ -75,6 +84,20 @@ impl Mine {
             "it has {width} x {height} pixels, fewer than {least_width} x {least_height}, too few to tell whether it is \
              right; render it at 400 x 225"
         ))
+    }
+
+    /// Refuses a picture that has the same value everywhere.
+    fn worth_checking(self) -> Result<Mine, String> {
+        let Some(first) = self.bytes.first().copied() else { return Ok(self) };
+        if self.bytes.iter().any(|pixel| *pixel != first) {
+            return Ok(self);
+        }
+        let remedy = match self.damages.first() {
+            Some(damage) => format!("{}; {}", damage.title, damage.remedy),
+            None => look_at(first).to_owned(),
+        };
+        let [r, g, b] = first;
+        Err(format!("all its pixels are {r} {g} {b}, so there is nothing to compare; {remedy}"))
     }
 
     /// The same from the bytes of a file.
@@ -109,6 +132,19 @@ impl Mine {
         }?;
         mine.damages.splice(0..0, damages);
         Ok(mine)
+    }
+}
+
+/// Where to look for the cause of a picture that has this value everywhere.
+fn look_at(value: [u8; 3]) -> &'static str {
+    match value {
+        [0, 0, 0] => {
+            "look at what ray_color returns, and scale before you convert: int(x) * 256 is 0 for all x below 1"
+        }
+        [255, 255, 255] => {
+            "look at what ray_color returns, and divide the sum of a pixel by its number of samples before clamping"
+        }
+        _ => "look at what ray_color returns, and write each pixel's own colour",
     }
 }
 
@@ -155,9 +191,17 @@ fn png(bytes: &[u8]) -> Result<Mine, String> {
     let decoder = reader.into_decoder().map_err(unreadable)?;
     let (width, height) = decoder.dimensions();
     let (width, height) = checked(width.into(), height.into())?;
-    let image = image::DynamicImage::from_decoder(decoder).map_err(unreadable)?.to_rgb8();
-    let bytes = image.pixels().map(|pixel| pixel.0).collect();
-    Ok(Mine { width, height, bytes, format: "PNG", damages: Vec::new() })
+    let image = image::DynamicImage::from_decoder(decoder).map_err(unreadable)?.to_rgba8();
+    let transparent = image.pixels().filter(|pixel| pixel.0[3] < 255).count();
+    let mut damages = Vec::new();
+    if transparent > 0 {
+        damages.push(Damage {
+            title: format!("{transparent} pixels are transparent, so viewers mix them with their background"),
+            remedy: "write RGB without alpha, or an alpha of 255",
+        });
+    }
+    let bytes = image.pixels().map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]).collect();
+    Ok(Mine { width, height, bytes, format: "PNG", damages })
 }
 
 /// Reads `count` numbers of a header and returns them with the rest of the file.
@@ -300,95 +344,4 @@ fn plain(bytes: &[u8], damages: &mut Vec<Damage>) -> Result<Mine, String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn bytes(file: &str) -> Vec<[u8; 3]> {
-        Mine::decode(file.as_bytes()).unwrap().bytes
-    }
-
-    fn reason(file: &[u8]) -> String {
-        Mine::decode(file).unwrap_err()
-    }
-
-    #[test]
-    fn values_are_scaled_by_the_largest_one() {
-        assert_eq!(bytes("P3 1 1 255 0 128 255"), [[0, 128, 255]]);
-        assert_eq!(bytes("P3 1 1 1 0 1 1"), [[0, 255, 255]]);
-        assert_eq!(bytes("P3 1 1 65535 0 32768 65535"), [[0, 127, 255]]);
-        assert_eq!(bytes("P3 1 1 100 50 99 -7"), [[127, 252, 0]]);
-        for most in ["0", "65536", "-1"] {
-            let told = reason(format!("P3 1 1 {most} 0 0 0").as_bytes());
-            assert!(told.contains(&format!("its largest value is {most};")), "{told}");
-        }
-        assert!(reason(b"P6 1 1 254 abc").contains("its largest value is 254"));
-    }
-
-    #[test]
-    fn a_size_is_refused_from_one_pixel_above_the_limit_on() {
-        for (size, part) in [
-            ("2000 2000", "need 12000000"),
-            ("4000001 1", "more than 4000000"),
-            ("1 4000001", "more than 4000000"),
-            ("5 0", "header says 5 x 0"),
-        ] {
-            for kind in ["P3", "P6"] {
-                let told = reason(format!("{kind} {size} 255\n1").as_bytes());
-                assert!(told.contains(part), "{kind}: {told}");
-            }
-        }
-        let told = reason(b"P3 2 3 255 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17");
-        assert!(told.contains("need 18 numbers, but there are 17: 2 of 3 rows"), "{told}");
-    }
-
-    #[test]
-    fn comments_and_line_ends_do_not_matter() {
-        let expected = [[1, 2, 3], [4, 5, 6]];
-        for file in [
-            "P3\n# a\n2 # b\n1\n# c 9 9\n255\n1 2 3 4 5 6",
-            "P3\r2 1\r255\r1 2 3\r4 5 6",
-            "P3\r\n2\t1 255\r\n1 2 3\r\n4 5 6\r\n",
-        ] {
-            let mine = Mine::decode(file.as_bytes()).unwrap();
-            assert_eq!(
-                (&mine.bytes[..], mine.damages.len(), mine.format),
-                (&expected[..], 0, "P3"),
-                "{file:?}"
-            );
-        }
-        let mine = Mine::decode(b"P6 # a\n2\n#b\n# c\n1 255\n\x01\x02\x03\x04\x05\x06and more").unwrap();
-        assert_eq!((&mine.bytes[..], mine.damages.len(), mine.format), (&expected[..], 0, "P6"));
-        // White space after the header is one byte; more of it belongs to the pixels.
-        let mine = Mine::decode(b"P6 1 1 255\n\n\r\n").unwrap();
-        assert_eq!(mine.bytes, [[b'\n', b'\r', b'\n']]);
-        assert!(reason(b"P6 2 # no end").contains("header is not complete"));
-        assert!(reason(b"P6 2 -1 255").contains("header is not complete"));
-    }
-
-    #[test]
-    fn a_binary_file_that_was_written_as_text_is_repaired() {
-        let mine = Mine::decode(b"P6\r\n1 1\r\n255\r\n\r\n\r\x07").unwrap();
-        assert_eq!((mine.bytes, mine.damages.len()), (vec![[b'\n', b'\r', 7]], 1));
-        // Without a byte too many there is nothing to repair.
-        let mine = Mine::decode(b"P6\r\n1 1\r\n255\r\n\r\n\x07").unwrap();
-        assert_eq!((mine.bytes, mine.damages.len()), (vec![[b'\r', b'\n', 7]], 0));
-    }
-
-    #[test]
-    fn damages_are_counted() {
-        let file = "hello\nP3\n2 1\n255\nScanlines: 2\n1 2.5 3\nDone.\n\n300 -1 1e3 8 9";
-        let mine = Mine::decode(file.as_bytes()).unwrap();
-        let titles: Vec<&str> = mine.damages.iter().map(|damage| damage.title.as_str()).collect();
-        assert_eq!(
-            titles,
-            [
-                "there is other text before the header",
-                "2 lines of the file are messages, not numbers",
-                "2 values are not whole numbers",
-                "there are 8 numbers, but 2 x 1 pixels need 6",
-                "3 numbers are below 0 or above 255",
-            ]
-        );
-        assert_eq!(mine.bytes, [[1, 2, 3], [255, 0, 255]]);
-    }
-}
+mod tests;

@@ -1,5 +1,6 @@
 //! A heat map of the difference between two pictures.
 
+use super::bounds::capped_difference;
 use super::non_finite::differs_in_kind;
 use super::side::Side;
 use crate::heat::HeatScale;
@@ -14,8 +15,8 @@ const FRAMED: usize = 5;
 const FRAME: [u8; 3] = [0, 220, 255];
 
 /// Writes a PNG of each pixel's difference, the root mean square of its channels, from dark (1e-4) to bright (1). Frames
-/// mark the blocks that are farthest off. Pixels that [differ in kind](differs_in_kind) have the brightest colour;
-/// other pixels that could not be compared are black.
+/// mark the blocks that are farthest off. A clipped channel counts as the least value that it can have. Pixels that
+/// [differ in kind](differs_in_kind) have the brightest colour; other channels that could not be compared count as equal.
 pub(super) fn write(
     a: &Side,
     b: &Side,
@@ -24,10 +25,14 @@ pub(super) fn write(
 ) -> io::Result<()> {
     let mut image = RgbImage::from_fn(a.width, a.height, |x, y| {
         let pixel = (y * a.width + x) as usize;
-        let squares: f64 = (0..3).map(|i| (b.pixels[pixel][i] - a.pixels[pixel][i]).powi(2)).sum();
+        let of_channel = |channel: usize| {
+            let exact = b.pixels[pixel][channel] - a.pixels[pixel][channel];
+            let known = if exact.is_nan() { capped_difference(a, b, pixel, channel) } else { exact };
+            if known.is_nan() { 0.0 } else { known }
+        };
+        let squares: f64 = (0..3).map(|channel| of_channel(channel).powi(2)).sum();
         let difference = match differs_in_kind(a, b, pixel) {
             true => f64::INFINITY,
-            false if squares.is_nan() => 0.0,
             false => (squares / 3.0).sqrt(),
         };
         image::Rgb(HeatScale::ERROR.colour(difference))

@@ -1,9 +1,11 @@
 //! `weekender compare`: whether two pictures are the same except for noise.
 
+mod bounds;
 mod heat_map;
 mod non_finite;
 mod paired;
 mod side;
+mod sparse;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -17,7 +19,7 @@ pub use text::told;
 pub use verdict::{Comparison, Evidence, ROUNDING_BIAS, compare};
 
 use crate::cli::{CompareOptions, JsonTarget};
-use crate::failure::Failure;
+use crate::failure::{BAD_INPUT, Failure};
 use crate::files::{check_writable, replace_file};
 use crate::recipe::Recipe;
 use crate::render::RenderSettings;
@@ -59,6 +61,7 @@ struct ComparisonJson {
     worst_blocks: Vec<BlockJson>,
     paired_samples: Option<PairedSamples>,
     reasons: Vec<String>,
+    unclear: Option<String>,
     notes: Vec<String>,
 }
 
@@ -76,7 +79,8 @@ struct BlockJson {
     mean_difference: [f64; 3],
 }
 
-/// Compares two pictures and prints how they differ. The exit code is 0 if they differ only by noise, else 1.
+/// Compares two pictures and prints how they differ. The exit code is 0 if they differ only by noise, 1 if by more, and 2
+/// if that cannot be told.
 ///
 /// # Errors
 /// [`Failure::Input`] if they cannot be compared, because exit code 1 means that they differ.
@@ -103,7 +107,11 @@ fn compared(options: &CompareOptions) -> Result<ExitCode> {
     if let Some(target) = &options.json {
         write_json(&comparison_json(&sides, &comparison), target)?;
     }
-    Ok(if comparison.is_equal() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(match (comparison.is_equal(), &comparison.unclear) {
+        (true, _) => ExitCode::SUCCESS,
+        (false, None) => ExitCode::FAILURE,
+        (false, Some(_)) => ExitCode::from(BAD_INPUT),
+    })
 }
 
 /// Compares two pictures, with a note on their jobs if that explains the result.
@@ -251,6 +259,7 @@ fn comparison_json(sides: &[Side; 2], comparison: &Comparison) -> ComparisonJson
             .collect(),
         paired_samples: comparison.paired,
         reasons: comparison.reasons.clone(),
+        unclear: comparison.unclear.clone(),
         notes: comparison.notes.clone(),
     }
 }

@@ -108,9 +108,9 @@ impl Side {
     }
 }
 
-/// Bytes per pixel during a comparison, without films: both pictures, their difference with its noise and steps, and
-/// the heat map.
-const BYTES_PER_PIXEL: u64 = 5 * 24 + 8;
+/// Bytes per pixel during a comparison, without films: both pictures, their difference with its noise and steps, the
+/// bounds of the difference, and the heat map.
+const BYTES_PER_PIXEL: u64 = 6 * 24 + 8;
 
 /// Refuses pictures that do not fit into memory together with `films` films of two halves.
 ///

@@ -47,7 +47,7 @@ pub fn told(sides: &[Side; 2], comparison: &Comparison) -> String {
     for note in &comparison.notes {
         line("note", note);
     }
-    for reason in &comparison.reasons {
+    for reason in comparison.reasons.iter().chain(&comparison.unclear) {
         line("because", reason);
     }
     line("verdict", verdict(comparison));
@@ -71,6 +71,7 @@ fn difference(comparison: &Comparison) -> String {
 
 fn verdict(comparison: &Comparison) -> &'static str {
     match (comparison.is_equal(), comparison.is_same) {
+        _ if comparison.unclear.is_some() => "cannot tell",
         (true, true) => "equal to the bit",
         (true, false) => "equal: they differ only by noise and rounding",
         (false, _) => "different",

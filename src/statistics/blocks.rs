@@ -12,7 +12,7 @@ use std::ops::Range;
 pub const SIDE: u32 = 8;
 
 /// Probability that equal pictures exceed the limit of `z`.
-const CHANCE: f64 = 0.01;
+pub const CHANCE: f64 = 0.01;
 
 /// By how many deviations the sum of `z^2` may differ.
 pub const SUM_DEVIATIONS: f64 = 4.0;
@@ -66,6 +66,11 @@ impl Block {
     /// The largest `|z|` of the channels.
     pub fn largest(&self) -> f64 {
         self.z.iter().fold(0.0, |most, z| most.max(z.abs()))
+    }
+
+    /// Whether a channel is known in all pixels of the block.
+    pub fn is_known(&self, channel: usize) -> bool {
+        self.noise_share[channel].is_some()
     }
 }
 
