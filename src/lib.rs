@@ -36,6 +36,7 @@ pub mod kernel;
 pub mod layers;
 pub mod memory;
 pub mod merge;
+mod number;
 pub mod output;
 pub mod plan;
 pub mod prepared;

@@ -42,7 +42,7 @@ fn estimates(ball: f64, seeds: u32) -> Vec<(ErrorEstimate, bool)> {
         let mut film = job.new_film();
         renderer.accumulate(&job, 0..16, &mut film, &AtomicBool::new(false)).unwrap();
         let estimate = film.error().unwrap();
-        (estimate, film.doubt(&estimate).is_some())
+        (estimate, film.doubt(Some(&estimate), 1.0).is_some())
     };
     (0..seeds).map(&mut estimate).collect()
 }

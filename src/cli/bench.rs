@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::paths::Paths;
 use super::raw::ProgressChoice;
 use super::sources;
-use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size};
+use super::values::{JsonTarget, Levels, parse_counts, parse_levels, parse_seconds, parse_size, whole};
 use crate::backends::BackendError;
 use crate::chart::ChartFormat;
 use crate::recipe::Recipe;
@@ -32,7 +32,7 @@ pub(super) struct RawBench {
     pub size: Option<(u32, u32)>,
     /// Most samples per pixel of a run [default: the scene's, but no more than 75 million paths; with --features, as
     /// many as --run-limit allows]
-    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100),
           allow_hyphen_values = true, help_heading = "Scenes")]
     pub samples: Option<u64>,
     /// Source of random numbers [default: sobol, or the scene's]
@@ -44,7 +44,7 @@ pub(super) struct RawBench {
           help_heading = "Candidates")]
     pub isa: Levels,
     /// Threads of the rows with several threads, 1 to 1024 [default: one per core]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1024),
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_u64, 8),
           allow_hyphen_values = true, help_heading = "Candidates")]
     pub threads: Option<u64>,
     /// Use the GPU whose name, kind, backend or driver contains this; required for a software adapter
@@ -52,7 +52,7 @@ pub(super) struct RawBench {
     pub adapter: Option<String>,
 
     /// Runs of each row, after a warm-up that does not count, 1 to 1000 [default: 5, or 3 with --quick]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1000),
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1000_u64, 5),
           allow_hyphen_values = true, help_heading = "Measurement")]
     pub runs: Option<u64>,
     /// Approximate time limit of a run in seconds; slow rows take fewer samples [default: 10, or 1 with --quick; with

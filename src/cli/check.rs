@@ -44,7 +44,7 @@ pub(super) fn check(raw: RawCheck) -> Result<CheckOptions, CliError> {
     let pictures = raw.out.iter().flat_map(|out| pictures.map(|name| out.join(name)));
     pictures
         .fold(Paths::default(), |paths, picture| paths.write("a file of --out,", Some(&picture)))
-        .read("the check", Some(&raw.picture))
+        .read("the picture to check", Some(&raw.picture))
         .write_json(json.as_ref())
         .check(&[])?;
     Ok(CheckOptions { picture: raw.picture, stage, out: raw.out, json })

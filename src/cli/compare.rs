@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{self, RawPicture};
 use super::sources::{self, ChosenRecipe};
-use super::values::JsonTarget;
+use super::values::{JsonTarget, whole};
 use crate::backends::BackendChoice;
 use crate::output::Encoding;
 use crate::recipe::Recipe;
@@ -24,7 +24,7 @@ pub(super) struct RawCompare {
     pub second: String,
 
     /// Samples per pixel to render, 1 to 4294967296 [default: the film's, or 64]
-    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+    #[arg(long, alias = "spp", value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100),
           allow_hyphen_values = true, help_heading = "Comparison")]
     pub samples: Option<u64>,
     /// Meaning of integer values in pictures of other programs: square root as in the book, linear, or sRGB
@@ -120,7 +120,7 @@ pub(super) fn compare(raw: RawCompare) -> Result<CompareOptions, CliError> {
     let sides = [side(raw.first), side(raw.second)];
     let json = raw.json.map(JsonTarget::from);
     let read = |paths: Paths, side: &CompareSide| match side {
-        CompareSide::File(path) => paths.read("the comparison", Some(path)),
+        CompareSide::File(path) => paths.read("a picture of the comparison", Some(path)),
         CompareSide::Backend { .. } => paths,
     };
     sides

@@ -4,7 +4,9 @@ use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{self, RawPicture, RawSwitch};
 use super::sources::{self, ChosenRecipe};
-use super::values::{JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance};
+use super::values::{
+    JsonTarget, Level, RawSide, parse_isa, parse_pixel, parse_sides, parse_tolerance, whole,
+};
 use crate::render::{RenderJob, SAMPLE_LIMIT};
 use crate::render_cpu::{CpuOptions, Isa};
 use crate::render_gpu::GpuOptions;
@@ -18,12 +20,12 @@ pub(super) struct RawDiff {
           conflicts_with = "find", help_heading = "Path")]
     pub pixel: Option<[u32; 2]>,
     /// Index of the sample, from 0
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(0..SAMPLE_LIMIT),
+    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=SAMPLE_LIMIT - 1, 7),
           allow_hyphen_values = true, default_value = "0", conflicts_with = "find", help_heading = "Path")]
     pub sample: u64,
     /// Search this many samples of every pixel for the one that differs most; without --size, the picture is at most
     /// 200 pixels wide
-    #[arg(long, value_name = "SAMPLES", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+    #[arg(long, value_name = "SAMPLES", value_parser = whole(1..=SAMPLE_LIMIT, 100),
           num_args = 0..=1, default_missing_value = "4", help_heading = "Path")]
     pub find: Option<u64>,
 

@@ -1,5 +1,6 @@
 //! Errors on the command line.
 
+use crate::files::ShownPath;
 use crate::memory::MemoryError;
 use crate::output::OutputError;
 use crate::recipe::{SceneNameError, file};
@@ -91,17 +92,17 @@ pub enum CliError {
         other: PathBuf,
     },
     /// An output would replace an input.
-    #[error("{output} {} would replace the file that {input} reads; give it another name", path.display())]
+    #[error("{output} {} would replace {}; give it another name", path.shown(), input_words(input))]
     Overwrites {
         /// The flag of the output.
         output: &'static str,
         /// The file.
         path: PathBuf,
-        /// The flag of the input.
+        /// The flag of the input, or what it is, in words.
         input: &'static str,
     },
     /// The name of a file does not fit its kind.
-    #[error("{flag} is {}, but the name of {what} must end in {ending}", path.display())]
+    #[error("{flag} is {}, but the name of {what} must end in {ending}", path.shown())]
     Ending {
         /// The flag.
         flag: &'static str,
@@ -121,7 +122,7 @@ pub enum CliError {
         reason: Box<JobError>,
     },
     /// An animation cannot be written there.
-    #[error("--out is {}, {reason}", path.display())]
+    #[error("--out is {}, {reason}", path.shown())]
     FramesOut {
         /// The path.
         path: PathBuf,
@@ -139,10 +140,18 @@ pub enum CliError {
         what: &'static str,
     },
     /// The directory's name cannot be part of a command.
-    #[error("--out is {}, which cannot stand in a command: its name must be UTF-8 without control characters", path.display())]
+    #[error("--out is {}, which cannot stand in a command: its name must be UTF-8 without control characters", path.shown())]
     PlanDirectory {
         /// The directory.
         path: PathBuf,
+    },
+    /// Words of the command line are not UTF-8, and at least one of them must be.
+    #[error(
+        "the command line has words that are not UTF-8, as the name of a scene, a choice or a number must be: {words}; rename the file, or make a link to it with another name"
+    )]
+    NotUtf8 {
+        /// The words, with escaped bytes.
+        words: String,
     },
     /// The variable that names the part has another value.
     #[error("{name} is {value:?}, but must be the number of a part; set it, or give --part NUMBER")]
@@ -160,10 +169,10 @@ pub enum CliError {
     },
 }
 
+fn input_words(input: &str) -> String {
+    if input.starts_with("--") { format!("the file that {input} reads") } else { input.to_owned() }
+}
+
 fn both(path: &Path, other: &Path) -> String {
-    if path == other {
-        path.display().to_string()
-    } else {
-        format!("{} and {}", path.display(), other.display())
-    }
+    if path == other { path.shown() } else { format!("{} and {}", path.shown(), other.shown()) }
 }

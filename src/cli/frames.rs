@@ -6,6 +6,7 @@ use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{self, ProgressChoice, RawAnimation, RawPicture, RawRender};
 use super::sources;
+use super::unused;
 use super::values::JsonTarget;
 use crate::animation::{CameraPath, FrameNames, Turn};
 use crate::backends::BackendChoice;
@@ -44,6 +45,8 @@ pub struct FramesOptions {
     pub json: Option<JsonTarget>,
     /// The command that renders them.
     pub command: String,
+    /// Warnings about flags that have no effect.
+    pub notes: Vec<String>,
 }
 
 /// Validates the flags of an animation; `None` if they ask for none.
@@ -88,6 +91,7 @@ pub(super) fn request(raw: &RawRender, command: &str) -> Result<Option<Request>,
         .write_json(json.as_ref())
         .check(&[])?;
     Ok(Some(Request::Frames(Box::new(FramesOptions {
+        notes: unused::notes(&job, chosen.stage, &raw.picture, &raw.animation, raw.samples),
         recipe: chosen.recipe,
         job,
         stage: chosen.stage,
@@ -162,15 +166,7 @@ pub(super) fn path_of(
             reason: "the scene has no [[keyframes]], so the camera would not move",
         });
     }
-    let camera = [
-        ("--look-from", picture.look_from.is_some()),
-        ("--look-at", picture.look_at.is_some()),
-        ("--vup", picture.vup.is_some()),
-        ("--vfov", picture.vfov.is_some()),
-        ("--defocus-angle", picture.defocus_angle.is_some()),
-        ("--focus-distance", picture.focus_distance.is_some()),
-    ];
-    match camera.into_iter().find(|(_, is_given)| *is_given) {
+    match picture.camera_flags().into_iter().find(|(_, is_given)| *is_given) {
         Some((flag, _)) => Err(CliError::Together {
             flag,
             other: "the keyframes of the scene file",

@@ -3,6 +3,7 @@
 use super::backend::choose;
 use super::error::CliError;
 use super::raw::{ProgressChoice, RawDevice};
+use super::values::whole;
 use crate::backends::BackendChoice;
 use crate::render_cpu::CpuOptions;
 use crate::render_gpu::GpuOptions;
@@ -28,7 +29,7 @@ pub(super) struct RawGallery {
     #[arg(long, value_name = "SUBSTRING", help_heading = "Device")]
     pub adapter: Option<String>,
     /// CPU threads, 1 to 1024 [default: one per core]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1024),
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_u64, 8),
           allow_hyphen_values = true, help_heading = "Device")]
     pub threads: Option<u64>,
 

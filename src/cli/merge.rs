@@ -80,7 +80,7 @@ pub struct InfoOptions {
 
 pub(super) fn merge(raw: RawMerge, program: &str) -> Result<MergeOptions, CliError> {
     let source = match raw.films.as_slice() {
-        [plan] if AnyPlan::is_at(plan) => MergeSource::Plan(plan.clone()),
+        [plan] if AnyPlan::is_at(plan) || plan.is_dir() => MergeSource::Plan(plan.clone()),
         films => MergeSource::Films(films.to_vec()),
     };
     if let MergeSource::Films(films) = &source {
@@ -98,7 +98,9 @@ pub(super) fn merge(raw: RawMerge, program: &str) -> Result<MergeOptions, CliErr
         OutputFormat::from_path(out)?;
     }
     let films = if let MergeSource::Films(films) = &source { films.as_slice() } else { &[] };
-    let paths = films.iter().fold(Paths::default(), |paths, film| paths.read("the film", Some(film)));
+    let paths = films
+        .iter()
+        .fold(Paths::default(), |paths, film| paths.read("one of the films to merge", Some(film)));
     raw.out.iter().fold(paths, |paths, out| paths.write("--out", Some(out))).check(&[])?;
     let watch = raw.watch.then(|| raw.every.unwrap_or(WATCH_INTERVAL));
     Ok(MergeOptions { source, out: raw.out, watch, check: raw.check, program: program.to_owned() })

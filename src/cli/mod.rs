@@ -19,6 +19,7 @@ mod sources;
 mod stress;
 mod subcommands;
 mod typed;
+mod unused;
 mod values;
 
 pub use bench::{BenchOptions, BenchScene};
@@ -40,6 +41,7 @@ pub use stress::StressOptions;
 pub use values::JsonTarget;
 
 use crate::failure::Failure;
+use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -114,7 +116,7 @@ pub fn log_file(arguments: impl IntoIterator<Item = OsString>) -> Result<Option<
 pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, Failure> {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let program = called(arguments.first());
-    let matches = command().try_get_matches_from(&arguments).map_err(Failure::CommandLine)?;
+    let matches = command().try_get_matches_from(&arguments).map_err(|error| refused(error, &arguments))?;
     let typed = typed::without_directories(&arguments, &matches);
     let raw = Raw::from_arg_matches(&matches).map_err(Failure::CommandLine)?;
     if raw.version {
@@ -158,6 +160,16 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<Request, F
         None if raw.render.list => Ok(Request::List),
         None => render::request(raw.render, typed).map_err(Failure::input),
     }
+}
+
+/// Why clap does not accept the command line. If it is because of a word that is not UTF-8, clap does not say which.
+fn refused(error: clap::Error, arguments: &[OsString]) -> Failure {
+    let strange = arguments.iter().skip(1).filter(|word| word.to_str().is_none());
+    let words: Vec<String> = strange.map(|word| format!("{word:?}")).collect();
+    if error.kind() == ErrorKind::InvalidUtf8 && !words.is_empty() {
+        return Failure::input(CliError::NotUtf8 { words: words.join(", ") });
+    }
+    Failure::CommandLine(error)
 }
 
 /// How commands call this program: by its name if the shell has found it, otherwise with its directory.

@@ -5,7 +5,8 @@ use super::error::CliError;
 use super::frames::{DEFAULT_RATE, frames_of, path_of};
 use super::raw::{self, ProgressChoice, RawAnimation, RawBackend, RawPicture, RawSwitch};
 use super::sources::{self, ChosenRecipe};
-use super::values::{JsonTarget, parse_duration, parse_sample_range};
+use super::unused;
+use super::values::{JsonTarget, parse_duration, parse_sample_range, whole};
 use crate::animation::Turn;
 use crate::backends::BackendChoice;
 use crate::output::FrameRate;
@@ -29,7 +30,7 @@ pub(super) struct RawPlan {
     pub picture: RawPicture,
 
     /// Samples per pixel of the whole picture, 1 to 4294967296 [default: the scene's]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100),
           allow_hyphen_values = true, help_heading = "Parts")]
     pub samples: Option<u64>,
     /// Divide only samples A to B - 1, to add them to a picture that has the others
@@ -41,7 +42,7 @@ pub(super) struct RawPlan {
     #[arg(long, value_enum, help_heading = "Parts")]
     pub estimate_error: Option<RawSwitch>,
     /// Parts, 1 to 100000: each holds some samples of the whole picture, or some whole frames of an animation
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=PARTS_LIMIT),
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=PARTS_LIMIT, 10),
           allow_hyphen_values = true, help_heading = "Parts")]
     pub parts: u64,
 
@@ -144,6 +145,8 @@ pub struct PlanOptions {
     pub program: String,
     /// The command that makes the plan.
     pub command: String,
+    /// Warnings about flags that have no effect.
+    pub notes: Vec<String>,
 }
 
 /// Options of `weekender render-part`.
@@ -189,6 +192,7 @@ pub(super) fn plan(raw: RawPlan, program: &str, command: String) -> Result<PlanO
     let mut flags = backend::words(&raw.backend);
     flags.extend(raw.every.map(|every| format!("--every={}s", every.as_secs_f64())));
     Ok(PlanOptions {
+        notes: unused::notes(&job, chosen.stage, &raw.picture, &raw.animation, raw.samples),
         recipe: chosen.recipe,
         job,
         stage: chosen.stage,

@@ -2,8 +2,9 @@
 //! its own file.
 
 use super::values::{
-    Level, Simd, parse_duration, parse_frames, parse_isa, parse_number, parse_rate, parse_rmse,
-    parse_sample_range, parse_seconds, parse_simd, parse_size, parse_turn, parse_vector,
+    Level, Simd, parse_defocus_angle, parse_duration, parse_focus_distance, parse_frames, parse_isa,
+    parse_noise_target, parse_rate, parse_sample_range, parse_seconds, parse_simd, parse_size, parse_turn,
+    parse_vector, parse_vfov, whole,
 };
 use crate::animation::Turn;
 use crate::output::{FrameRate, PpmForm};
@@ -30,7 +31,7 @@ pub(super) struct RawRender {
     pub picture: RawPicture,
 
     /// Samples per pixel, 1 to 4294967296 [default: the scene's; unlimited with --time-limit or --noise-target]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=SAMPLE_LIMIT),
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=SAMPLE_LIMIT, 100),
           allow_hyphen_values = true, help_heading = "When to stop (the first one met)")]
     pub samples: Option<u64>,
     /// Seconds of rendering
@@ -38,7 +39,7 @@ pub(super) struct RawRender {
           help_heading = "When to stop (the first one met)")]
     pub time_limit: Option<f64>,
     /// Estimated error: root mean square over pixels and channels, linear radiance
-    #[arg(long, value_name = "RMSE", value_parser = parse_rmse, allow_hyphen_values = true,
+    #[arg(long, value_name = "RMSE", value_parser = parse_noise_target, allow_hyphen_values = true,
           help_heading = "When to stop (the first one met)")]
     pub noise_target: Option<f64>,
     /// Render only samples A to B - 1, a part of a picture for `weekender merge`
@@ -63,7 +64,8 @@ pub(super) struct RawRender {
     /// How a .ppm holds its numbers: as bytes (P6), or as text (P3) as in the book [default: binary]
     #[arg(long, value_enum, help_heading = "Files")]
     pub ppm: Option<RawPpm>,
-    /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C
+    /// Keep the film so that it can be resumed or merged; it is written regularly and at the end, even after Ctrl-C. A file
+    /// that is there is never replaced unless the render goes on with it (--continue, --resume)
     #[arg(long, value_name = "FILE.exr", help_heading = "Files")]
     pub checkpoint: Option<PathBuf>,
     /// Resume the film of --checkpoint if it is there, so that one command starts a render and goes on with it
@@ -170,7 +172,7 @@ pub(super) struct RawBackend {
           help_heading = "Device")]
     pub isa: Level,
     /// CPU threads, 1 to 1024 [default: one per core]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..=1024),
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1024_u64, 8),
           allow_hyphen_values = true, help_heading = "Device")]
     pub threads: Option<u64>,
 }
@@ -189,7 +191,7 @@ pub(super) struct RawPicture {
     #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "Picture")]
     pub size: Option<(u32, u32)>,
     /// Most rays per path, including the camera's, 1 to 10000 [default: the scene's]
-    #[arg(long, value_name = "RAYS", value_parser = clap::value_parser!(u32).range(1..=i64::from(DEPTH_LIMIT)),
+    #[arg(long, value_name = "RAYS", value_parser = whole(1..=DEPTH_LIMIT, 50),
           allow_hyphen_values = true, help_heading = "Picture")]
     pub depth: Option<u32>,
     /// Source of random numbers: scrambled Sobol points, or independent numbers as in the book
@@ -197,7 +199,7 @@ pub(super) struct RawPicture {
     #[arg(long, value_enum, help_heading = "Picture")]
     pub sampler: Option<SamplerKind>,
     /// Seed: pictures with different seeds differ only in their noise, 0 to 4294967295 [default: 0, or the scene's]
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..),
+    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=u32::MAX, 7),
           allow_hyphen_values = true, help_heading = "Picture")]
     pub seed: Option<u32>,
 
@@ -214,15 +216,15 @@ pub(super) struct RawPicture {
           help_heading = "Camera (default: the scene's)")]
     pub vup: Option<DVec3>,
     #[arg(help = format!("Vertical field of view, {} to {} degrees", VFOV_LIMITS_DEGREES[0], VFOV_LIMITS_DEGREES[1]),
-          long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
+          long, value_name = "DEGREES", value_parser = parse_vfov, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub vfov: Option<f64>,
     /// Angle of the cone from the focus point to the lens, from 0 (a pinhole) to below 179 degrees
-    #[arg(long, value_name = "DEGREES", value_parser = parse_number, allow_hyphen_values = true,
+    #[arg(long, value_name = "DEGREES", value_parser = parse_defocus_angle, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub defocus_angle: Option<f64>,
     /// Distance to the plane in focus, above 0 scene units
-    #[arg(long, value_name = "UNITS", value_parser = parse_number, allow_hyphen_values = true,
+    #[arg(long, value_name = "UNITS", value_parser = parse_focus_distance, allow_hyphen_values = true,
           help_heading = "Camera (default: the scene's)")]
     pub focus_distance: Option<f64>,
 }
@@ -231,6 +233,18 @@ impl RawPicture {
     /// Whether any of these flags is given.
     pub fn is_given(&self) -> bool {
         *self != RawPicture::default()
+    }
+
+    /// The flags of the camera, and whether each is given.
+    pub fn camera_flags(&self) -> [(&'static str, bool); 6] {
+        [
+            ("--look-from", self.look_from.is_some()),
+            ("--look-at", self.look_at.is_some()),
+            ("--vup", self.vup.is_some()),
+            ("--vfov", self.vfov.is_some()),
+            ("--defocus-angle", self.defocus_angle.is_some()),
+            ("--focus-distance", self.focus_distance.is_some()),
+        ]
     }
 
     /// Whether all stages are requested instead of one picture.

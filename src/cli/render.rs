@@ -7,6 +7,7 @@ use super::frames;
 use super::paths::Paths;
 use super::raw::{self, DrawWith, ProgressChoice, RawPpm, RawRender};
 use super::sources::{self, ChosenRecipe};
+use super::unused;
 use super::values::JsonTarget;
 use crate::backends::BackendChoice;
 use crate::output::{OutputFormat, PpmForm};
@@ -100,10 +101,14 @@ pub struct RenderOptions {
     pub every: Duration,
     /// The film to resume.
     pub resume: Option<PathBuf>,
+    /// Samples per pixel that `--samples` asks for.
+    pub asked_samples: Option<u64>,
     /// How a PPM holds its numbers.
     pub ppm: PpmForm,
     /// The command that renders it.
     pub command: String,
+    /// Warnings about flags that have no effect.
+    pub notes: Vec<String>,
 }
 
 /// A scene file to write.
@@ -246,6 +251,11 @@ fn render(
         let reason = "it is the interval at which that film is written";
         return Err(CliError::Needs { flag: "--every", other: "--checkpoint FILE.exr", reason });
     }
+    // What one stage ignores, another needs.
+    let notes = match raw.picture.is_every_stage() {
+        true => Vec::new(),
+        false => unused::notes(&job, chosen.stage, &raw.picture, &raw.animation, raw.samples),
+    };
     Ok(RenderOptions {
         plan: plan(raw, &chosen.recipe),
         recipe: chosen.recipe,
@@ -255,8 +265,10 @@ fn render(
         checkpoint: raw.checkpoint.clone(),
         every: raw.every.unwrap_or(CHECKPOINT_INTERVAL),
         resume: raw.resume.clone(),
+        asked_samples: raw.samples,
         ppm: raw.ppm.map_or(PpmForm::Binary, RawPpm::form),
         command: command.to_owned(),
+        notes,
     })
 }
 

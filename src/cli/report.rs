@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::paths::Paths;
 use super::raw::{ProgressChoice, RawSwitch};
 use super::sources;
-use super::values::{parse_rmse, parse_seconds, parse_size};
+use super::values::{parse_rmse, parse_seconds, parse_size, whole};
 use crate::backends::BackendChoice;
 use crate::recipe::Recipe;
 use crate::render::{SAMPLE_LIMIT, SamplerKind};
@@ -56,7 +56,7 @@ pub(super) struct RawReport {
     #[arg(long, value_name = "WxH", value_parser = parse_size, help_heading = "How it is measured")]
     pub size: Option<(u32, u32)>,
     /// Pictures per curve, which differ only in their random numbers, 1 to 1000 [default: 8]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000),
+    #[arg(long, value_name = "COUNT", value_parser = whole(1..=1000_u32, 8),
           allow_hyphen_values = true, help_heading = "How it is measured")]
     pub seeds: Option<u32>,
     /// Seconds of tracing for all pictures of a curve; each picture ends with the last doubling that fits
@@ -65,7 +65,7 @@ pub(super) struct RawReport {
           help_heading = "How it is measured")]
     pub time_limit: Option<f64>,
     /// Most samples per pixel, 2 to 4294967296 [default: 1024]
-    #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
+    #[arg(long, alias = "max-spp", value_name = "COUNT", value_parser = whole(2..=SAMPLE_LIMIT, 1024),
           allow_hyphen_values = true, help_heading = "How it is measured")]
     pub max_samples: Option<u64>,
     /// Keep samples in two halves, which is needed to estimate the error; off keeps them as a single point set
@@ -94,7 +94,7 @@ pub(super) struct RawReport {
     )]
     pub reference_backend: String,
     /// Samples per pixel of the references [default: 4 times --max-samples, with --calibration 16 times]
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(2..=SAMPLE_LIMIT),
+    #[arg(long, value_name = "COUNT", value_parser = whole(2..=SAMPLE_LIMIT, 1024),
           allow_hyphen_values = true, conflicts_with = "reference", help_heading = "How it is measured")]
     pub reference_samples: Option<u64>,
 

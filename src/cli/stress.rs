@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::paths::Paths;
 use super::raw::ProgressChoice;
-use super::values::{JsonTarget, Levels, parse_levels, parse_seconds};
+use super::values::{JsonTarget, Levels, parse_levels, parse_seconds, whole};
 use crate::backends::BackendError;
 use crate::render_cpu::{CpuError, Isa};
 use clap::Args;
@@ -19,7 +19,7 @@ pub(super) struct RawStress {
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds, help_heading = "Cases")]
     pub search: Option<f64>,
     /// Seed of the random scenes, 0 to 4294967295
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(0..), default_value = "0",
+    #[arg(long, value_name = "NUMBER", value_parser = whole(0..=u32::MAX, 7), default_value = "0",
           allow_hyphen_values = true, requires = "search", help_heading = "Cases")]
     pub seed: u32,
 

@@ -1,13 +1,18 @@
 //! Parses the values of flags. An error message says what is allowed; clap puts the value and the flag before it.
 
 use crate::animation::{FRAME_LIMIT, FRAMES_PER_TURN, Turn};
+use crate::film::ROUNDING_LIMIT;
+use crate::number::Number;
 use crate::output::FrameRate;
 use crate::render::{SAMPLE_LIMIT, SIZE_LIMIT};
 use crate::render_cpu::Isa;
 use crate::scene::builtin::FIELD_COUNT_LIMITS;
+use crate::scene::{DEFOCUS_LIMIT_DEGREES, FOCUS_LIMITS, LENGTH_LIMIT, VFOV_LIMITS_DEGREES};
 use glam::DVec3;
+use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::time::Duration;
 
 /// Where JSON is written.
@@ -113,16 +118,53 @@ pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| format!("must be WIDTHxHEIGHT, each from 1 to {SIZE_LIMIT} pixels, such as 800x450"))
 }
 
-pub(super) fn parse_vector(text: &str) -> Result<DVec3, String> {
-    let parts: Vec<f64> =
-        text.split(',').map(|part| part.trim().parse()).collect::<Result<_, _>>().unwrap_or_default();
-    <[f64; 3]>::try_from(parts)
-        .map(DVec3::from)
-        .map_err(|_| "must be three numbers separated by commas, such as 13,2,3".to_owned())
+/// A parser of whole numbers within `limits`, of which `example` is one.
+pub(super) fn whole<T>(
+    limits: RangeInclusive<T>,
+    example: T,
+) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync
+where
+    T: Copy + Display + FromStr + PartialOrd + Send + Sync,
+{
+    move |text: &str| {
+        text.parse().ok().filter(|number| limits.contains(number)).ok_or_else(|| {
+            let (lowest, highest) = (limits.start(), limits.end());
+            format!("must be a whole number from {lowest} to {highest}, such as {example}")
+        })
+    }
 }
 
-pub(super) fn parse_number(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "must be a number, such as 20 or 0.6".to_owned())
+/// A number, unless it is too large for one.
+fn finite(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+pub(super) fn parse_vector(text: &str) -> Result<DVec3, String> {
+    let parts: Vec<f64> = text.split(',').map(finite).collect::<Option<_>>().unwrap_or_default();
+    <[f64; 3]>::try_from(parts).map(DVec3::from).map_err(|_| {
+        let limit = Number(LENGTH_LIMIT);
+        format!("must be three numbers separated by commas, each within -{limit} and {limit}, such as 13,2,3")
+    })
+}
+
+// Numbers that are finite but out of range are refused with the scene, which gives the same reason for files.
+
+pub(super) fn parse_vfov(text: &str) -> Result<f64, String> {
+    let [narrowest, widest] = VFOV_LIMITS_DEGREES;
+    finite(text)
+        .ok_or_else(|| format!("must be a number of degrees within {narrowest} and {widest}, such as 20"))
+}
+
+pub(super) fn parse_defocus_angle(text: &str) -> Result<f64, String> {
+    finite(text).ok_or_else(|| {
+        format!("must be a number of degrees from 0 to below {DEFOCUS_LIMIT_DEGREES}, such as 0.6")
+    })
+}
+
+pub(super) fn parse_focus_distance(text: &str) -> Result<f64, String> {
+    let (nearest, farthest) = (Number(*FOCUS_LIMITS.start()), Number(*FOCUS_LIMITS.end()));
+    finite(text)
+        .ok_or_else(|| format!("must be a number within {nearest} and {farthest} scene units, such as 10"))
 }
 
 pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
@@ -147,6 +189,13 @@ pub(super) fn parse_duration(text: &str) -> Result<Duration, String> {
 
 pub(super) fn parse_rmse(text: &str) -> Result<f64, String> {
     positive(text, 100.0).ok_or_else(|| "must be above 0 and at most 100, such as 0.005".to_owned())
+}
+
+/// A target for the stated error of a film, which is never below what rounding can cost.
+pub(super) fn parse_noise_target(text: &str) -> Result<f64, String> {
+    positive(text, 100.0).filter(|target| *target > ROUNDING_LIMIT).ok_or_else(|| {
+        format!("must be above {ROUNDING_LIMIT:.0e}, which rounding can cost, and at most 100, such as 0.005")
+    })
 }
 
 fn positive(text: &str, limit: f64) -> Option<f64> {
@@ -258,6 +307,8 @@ mod tests {
         assert_eq!(parse_counts("1e3..2e4").as_deref(), Ok(&[1000, 3000, 10_000][..]));
         assert_eq!(parse_counts("7..7").as_deref(), Ok(&[7][..]));
         assert_eq!(parse_tolerance("0"), Ok(0.0));
+        assert_eq!(whole(2..=u64::MAX, 7)("18446744073709551615"), Ok(u64::MAX));
+        assert_eq!(parse_noise_target("3.1e-8"), Ok(3.1e-8));
     }
 
     #[test]
@@ -303,6 +354,23 @@ mod tests {
         }
         for text in ["", "-1", "nan", "2"] {
             assert!(parse_tolerance(text).is_err(), "{text}");
+        }
+        for text in ["", "1e3", "0", "11", "-1", "2.5", "99999999999999999999", "many"] {
+            let expected = "must be a whole number from 1 to 10, such as 7";
+            assert_eq!(whole(1..=10_u64, 7)(text), Err(expected.to_owned()), "{text}");
+        }
+        for text in ["", "0", "1e-9", "2.9e-8", "101", "nan", "1e400"] {
+            assert!(
+                parse_noise_target(text).unwrap_err().contains("above 3e-8, which rounding can cost"),
+                "{text}"
+            );
+        }
+        for text in ["1e400", "-1e400", "inf", "nan", "x", ""] {
+            assert!(parse_vfov(text).unwrap_err().contains("within 0.01 and 179"), "{text}");
+            assert!(parse_defocus_angle(text).unwrap_err().contains("from 0 to below 179"), "{text}");
+            assert!(parse_focus_distance(text).unwrap_err().contains("within 1e-18 and 1e19"), "{text}");
+            let vector = format!("1,{text},2");
+            assert!(parse_vector(&vector).unwrap_err().contains("each within -1e18 and 1e18"), "{text}");
         }
     }
 }

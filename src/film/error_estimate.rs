@@ -1,8 +1,9 @@
 //! The error of a film, estimated from its halves.
 
-use super::{FIXED_POINT_SCALE, Film};
+use super::{FIXED_POINT_SCALE, Film, ROUNDING_LIMIT};
 
-/// An estimate of the picture's error from its two halves.
+/// An estimate of the picture's error from its two halves. It is never below what rounding can cost, which the halves do
+/// not show where both are rounded the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorEstimate {
     /// Root of the mean squared error over pixels and channels, linear radiance.
@@ -14,11 +15,8 @@ pub struct ErrorEstimate {
     pub rel_mse: f64,
 }
 
-/// The error estimate is doubtful if it effectively rests on fewer pixels than this.
-const PIXELS_IN_EFFECT_MIN: f64 = 100.0;
-
-/// It is doubtful only if these are also less than this share of all pixels: small pictures have few pixels.
-const DOMINANT_SHARE: f64 = 0.2;
+/// The most that rounding can add to `rel_mse`.
+const ROUNDING_REL_MSE: f64 = ROUNDING_LIMIT * ROUNDING_LIMIT / 1e-2;
 
 impl ErrorEstimate {
     /// The effective number of pixels behind the estimate, `(sum e^2)^2 / sum e^4` with `e` the errors. It is small if
@@ -27,6 +25,21 @@ impl ErrorEstimate {
         // For n pixels, the variance of the mean square is (mean e^4 - (mean e^2)^2) / n.
         let share = 2.0 * self.rmse_deviation / self.rmse;
         if share > 0.0 { 1.0 / (share * share) } else { f64::INFINITY }
+    }
+
+    /// Whether the halves do not differ, so that only rounding is left. Either the picture has no noise, or no path has
+    /// found any light yet.
+    pub fn is_without_noise(&self) -> bool {
+        self.rmse <= ROUNDING_LIMIT
+    }
+
+    /// The error in words: `2.000e-2 ± 5.0 % RMSE`, or how much rounding can cost if there is nothing else.
+    pub fn words(&self) -> String {
+        if self.is_without_noise() {
+            format!("{ROUNDING_LIMIT:.0e} RMSE, by rounding alone")
+        } else {
+            format!("{:.3e} {} RMSE", self.rmse, self.uncertainty())
+        }
     }
 
     /// The relative uncertainty of the estimate, one standard deviation, such as "± 0.2 %".
@@ -39,7 +52,8 @@ impl ErrorEstimate {
 impl Film {
     /// The error estimated from the halves. With `A` and `B` the means of `a` and `b` samples,
     /// `MSE = mean((A - B)^2) a b / (a + b)^2`. This is a quarter of the squared difference when `a = b`, as after
-    /// every even number of samples. `None` with one half, or while a half has no samples.
+    /// every even number of samples. The root is at least [`ROUNDING_LIMIT`]. `None` with one half, or while a half has
+    /// no samples.
     pub fn error(&self) -> Option<ErrorEstimate> {
         let [half_a, half_b] = self.halves.as_slice() else { return None };
         let (count_a, count_b) = (self.half_sample_count(0) as f64, self.half_sample_count(1) as f64);
@@ -73,28 +87,9 @@ impl Film {
         let deviation_of_square = ((fourth_power - square * square).max(0.0) / pixels).sqrt();
         let rmse = square.sqrt();
         Some(ErrorEstimate {
-            rmse,
-            rmse_deviation: if rmse > 0.0 { 0.5 * deviation_of_square / rmse } else { 0.0 },
-            rel_mse: relative_sum / (3.0 * pixels),
-        })
-    }
-
-    /// Why an estimate of this film's error is doubtful, in words: few pixels dominate it, or no path has found any
-    /// light. The estimate and its deviation are then most likely too low.
-    pub fn doubt(&self, estimate: &ErrorEstimate) -> Option<String> {
-        if estimate.rmse == 0.0 && self.halves.iter().flatten().all(|sum| sum.0 == [0; 3]) {
-            let count = self.sample_count();
-            return Some(format!(
-                "no path has found any light in {count} samples per pixel, so the error cannot be estimated; more \
-                 samples may find some"
-            ));
-        }
-        let (pixels, all) = (estimate.pixels_in_effect(), self.halves.first().map_or(0, Vec::len));
-        (pixels < PIXELS_IN_EFFECT_MIN && pixels < DOMINANT_SHARE * all as f64).then(|| {
-            format!(
-                "a few pixels dominate the error estimate: it effectively rests on {pixels:.0} of {all} pixels, but needs \
-                 {PIXELS_IN_EFFECT_MIN:.0}; until there are more samples it may be far too low"
-            )
+            rmse: rmse.max(ROUNDING_LIMIT),
+            rmse_deviation: if rmse > ROUNDING_LIMIT { 0.5 * deviation_of_square / rmse } else { 0.0 },
+            rel_mse: (relative_sum / (3.0 * pixels)).max(ROUNDING_REL_MSE),
         })
     }
 }

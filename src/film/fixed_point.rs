@@ -3,6 +3,10 @@
 /// One unit of the film's fixed point is `2^-24` of radiance.
 pub const FIXED_POINT_SCALE: f64 = 16_777_216.0;
 
+/// The most that rounding its samples can cost a mean, linear radiance: half a unit of the fixed point. It costs as much
+/// where all samples of a pixel are alike, because they are then all rounded the same way, however many there are.
+pub const ROUNDING_LIMIT: f64 = 0.5 / FIXED_POINT_SCALE;
+
 /// A sample's radiance is clamped to stay below this limit. It is the largest limit whose fixed-point values fit a
 /// signed 32-bit integer, to which every processor converts in one instruction.
 pub const RADIANCE_LIMIT: f64 = 128.0;

@@ -9,6 +9,7 @@ pub mod checkpoint;
 mod checksum;
 mod description;
 mod difference;
+mod doubt;
 mod error_estimate;
 mod fixed_point;
 mod histogram;
@@ -22,7 +23,9 @@ pub use checkpoint::{CheckpointError, FilmFile, FilmHead};
 pub use checksum::Checksum;
 pub use description::{Description, RECIPE_KEY, key};
 pub use error_estimate::ErrorEstimate;
-pub use fixed_point::{FIXED_POINT_MAX, FIXED_POINT_SCALE, PixelSum, RADIANCE_LIMIT, fixed_point};
+pub use fixed_point::{
+    FIXED_POINT_MAX, FIXED_POINT_SCALE, PixelSum, RADIANCE_LIMIT, ROUNDING_LIMIT, fixed_point,
+};
 pub use histogram::Histogram;
 pub use merge::{FilmSum, MergeError, Share, merge_files, same_recipe_text};
 pub use ranges::SampleRanges;

@@ -2,6 +2,7 @@
 
 mod bounded;
 mod camera;
+mod contacts;
 pub mod cwbvh;
 mod facts;
 mod groups;
@@ -181,7 +182,8 @@ impl<R: Real> PreparedScene<R> {
             self.records.push(RecordColumns::default());
         }
         self.warnings = if job.rules().surface == SurfaceRule::Exact {
-            self.facts.warnings(job, groups.origin)
+            let contact = contacts::warning(job);
+            self.facts.warnings(job, groups.origin).into_iter().chain(contact).collect()
         } else {
             Vec::new()
         };

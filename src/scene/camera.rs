@@ -167,6 +167,7 @@ fn unit(v: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::{Number, Numbers};
 
     fn assert_orthonormal(camera: &Camera) {
         let CameraBasis { u, v, w } = camera.basis();
@@ -190,7 +191,7 @@ mod tests {
             for vup in [view, -view, view * 1e-200, view * 1e200, DVec3::ZERO] {
                 let camera = Camera { look_at: view, vup, ..Camera::BOOK };
                 let refused = message(camera);
-                assert!(refused.starts_with(&format!("vup is [{}, {}, {}], which", vup.x, vup.y, vup.z)));
+                assert!(refused.starts_with(&format!("vup is {}, which", Numbers(vup.to_array()))));
                 let Err(SceneError::NoUp { remedy, .. }) = camera.validate() else { panic!("{refused}") };
                 let mended = Camera { vup: remedy, ..camera };
                 mended.validate().expect("the remedy helps");
@@ -243,7 +244,7 @@ mod tests {
         }
         for vfov_degrees in [0.0, -1.0, 0.0099, 179.001, 180.0] {
             let refused = message(Camera { vfov_degrees, ..Camera::BOOK });
-            assert!(refused.contains(&format!("vfov_degrees is {vfov_degrees}")), "{refused}");
+            assert!(refused.contains(&format!("vfov_degrees is {vfov_degrees},")), "{refused}");
             assert!(refused.contains("within 0.01 and 179 degrees"), "{refused}");
         }
         let refused = message(Camera { vfov_degrees: f64::NAN, ..Camera::BOOK });
@@ -260,7 +261,7 @@ mod tests {
         }
         for distance in [0.0, -1.0, f64::NAN, 1e30] {
             let refused = message(Camera { focus_distance: Some(distance), ..Camera::BOOK });
-            assert!(refused.starts_with(&format!("focus_distance is {distance}")), "{refused}");
+            assert!(refused.starts_with(&format!("focus_distance is {}", Number(distance))), "{refused}");
         }
     }
 

@@ -1,5 +1,6 @@
 //! Errors in scenes, worded so that the reader can fix them.
 
+use crate::number::{Number, Numbers};
 use glam::DVec3;
 use std::borrow::Cow;
 use thiserror::Error;
@@ -16,7 +17,7 @@ pub enum SceneError {
         value: f64,
     },
     /// A number is outside its range.
-    #[error("{what} is {value}, but must be {limit}; {remedy}")]
+    #[error("{what} is {}, but must be {limit}; {remedy}", Number(*value))]
     OutOfRange {
         /// The location of the value.
         what: String,
@@ -28,7 +29,7 @@ pub enum SceneError {
         remedy: &'static str,
     },
     /// A colour has a component outside its range.
-    #[error("{what} is [{}, {}, {}], but each component must be within 0 and {limit}", value.x, value.y, value.z)]
+    #[error("{what} is {}, but each component must be within 0 and {limit}", Numbers(value.to_array()))]
     Colour {
         /// The location of the colour.
         what: String,
@@ -39,7 +40,9 @@ pub enum SceneError {
     },
     /// A sphere names a material that does not exist.
     #[error(
-        "spheres[{sphere}].material is {material:?}, which is not among the materials; add [materials.{material}] or use one that exists"
+        "spheres[{sphere}].material is {}, which is not among the materials; add [materials.{}] or use one that exists",
+        toml_string(material),
+        toml_key(material)
     )]
     MissingMaterial {
         /// Index of the sphere.
@@ -54,17 +57,20 @@ pub enum SceneError {
         name: String,
     },
     /// The camera's position equals the point that it looks at.
-    #[error("look_from and look_at are both [{}, {}, {}], so there is no direction to look in; move one of them", at.x, at.y, at.z)]
+    #[error(
+        "look_from and look_at are both {}, so there is no direction to look in; move one of them",
+        Numbers(at.to_array())
+    )]
     NoDirection {
         /// That point, scene units.
         at: DVec3,
     },
     /// The up vector has no direction, or that of the view.
     #[error(
-        "vup is [{}, {}, {}], {}; use another, such as [{}, {}, {}]",
-        vup.x, vup.y, vup.z,
+        "vup is {}, {}; use another, such as {}",
+        Numbers(vup.to_array()),
         if *vup == DVec3::ZERO { "which has no direction" } else { "which is parallel to the view, so nothing is up in the picture" },
-        remedy.x, remedy.y, remedy.z
+        Numbers(remedy.to_array())
     )]
     NoUp {
         /// The up vector.
@@ -83,6 +89,28 @@ impl SceneError {
     ) -> Self {
         SceneError::OutOfRange { what, value, limit: limit.into(), remedy }
     }
+}
+
+/// A name as a key of a scene file, quoted if it must be.
+fn toml_key(name: &str) -> String {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    if !name.is_empty() && name.chars().all(is_bare) { name.to_owned() } else { toml_string(name) }
+}
+
+/// A text as a scene file has it: quoted, and with escapes for what a reader would not see.
+fn toml_string(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        let is_seen = c == '\'' || c.escape_debug().count() == 1;
+        match u32::from(c) {
+            _ if matches!(c, '"' | '\\') => quoted.extend(['\\', c]),
+            _ if is_seen => quoted.push(c),
+            code @ ..0x1_0000 => quoted.push_str(&format!("\\u{code:04X}")),
+            code => quoted.push_str(&format!("\\U{code:08X}")),
+        }
+    }
+    quoted.push('"');
+    quoted
 }
 
 /// Largest absolute coordinate or radius. Squares of it, and sums of three squares, must be finite in `f32`.
@@ -128,6 +156,45 @@ fn components(v: DVec3) -> [(char, f64); 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_missing_material_is_named_as_a_scene_file_names_it() {
+        for (name, text, key) in [
+            ("red-1_b", "\"red-1_b\"", "red-1_b"),
+            ("", "\"\"", "\"\""),
+            ("a.b", "\"a.b\"", "\"a.b\""),
+            ("Bob's é", "\"Bob's é\"", "\"Bob's é\""),
+            ("a\"\\", "\"a\\\"\\\\\"", "\"a\\\"\\\\\""),
+            ("x\u{202e}\n", "\"x\\u202E\\u000A\"", "\"x\\u202E\\u000A\""),
+            ("\u{e0001}", "\"\\U000E0001\"", "\"\\U000E0001\""),
+        ] {
+            let told = SceneError::MissingMaterial { sphere: 2, material: name.to_owned() }.to_string();
+            let expected = format!(
+                "spheres[2].material is {text}, which is not among the materials; add [materials.{key}] or use one \
+                 that exists"
+            );
+            assert_eq!(told, expected);
+            // The file that follows the remedy has the name.
+            let table: toml::Table = format!("[{key}]").parse().unwrap();
+            assert!(table.contains_key(name), "{key}");
+        }
+    }
+
+    #[test]
+    fn long_numbers_are_short_in_messages() {
+        let radius = SceneError::range("radius".to_owned(), 1e300, "within 1e-18 and 1e18", "scale it");
+        assert_eq!(radius.to_string(), "radius is 1e300, but must be within 1e-18 and 1e18; scale it");
+        let colour = SceneError::Colour {
+            what: "sky.top".to_owned(),
+            value: DVec3::new(0.5, 1e200, -1e-9),
+            limit: 100.0,
+        };
+        assert!(colour.to_string().starts_with("sky.top is [0.5, 1e200, -1e-9], but"), "{colour}");
+        let at = DVec3::new(0.0, 1e-300, 2.0);
+        assert!(SceneError::NoDirection { at }.to_string().contains("both [0, 1e-300, 2],"));
+        let up = SceneError::NoUp { vup: DVec3::new(1e200, 0.0, 0.0), remedy: DVec3::Y }.to_string();
+        assert!(up.starts_with("vup is [1e200, 0, 0], which") && up.ends_with("such as [0, 1, 0]"), "{up}");
+    }
 
     #[test]
     fn positions_are_limited_on_both_sides_of_zero() {

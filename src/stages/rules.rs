@@ -1,5 +1,6 @@
 //! The tracer's rules that a stage can switch. [`Rules::default`] is the finished renderer.
 
+use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Which of the book's rules are in effect.
@@ -49,6 +50,23 @@ impl Rules {
     /// and the transfer happens after it.)
     pub fn are_finished(&self) -> bool {
         Rules { antialiasing: true, transfer: Transfer::Gamma2, ..*self } == Rules::FINISHED
+    }
+
+    /// Whether any rays are traced. Without rays, neither the scene nor the camera shows.
+    pub fn has_rays(&self) -> bool {
+        self.shading != Shading::ImageGradient
+    }
+
+    /// Whether paths go on after their first hit.
+    pub fn has_bounces(&self) -> bool {
+        self.shading == Shading::Path
+    }
+
+    /// The largest radiance that a sample of the scene can have, linear. It is 0 if the scene has no light.
+    pub fn brightest(&self, scene: &Scene) -> f64 {
+        let sky = scene.sky.bottom.max(scene.sky.top).max_element();
+        // Other stages than those with light show colours up to 1.
+        if self.has_bounces() { sky } else { sky.max(1.0) }
     }
 }
 
@@ -136,6 +154,23 @@ impl Transfer {
             Transfer::Linear => false,
             Transfer::Gamma2 => true,
             Transfer::LinearAboveGamma2 => row >= height / 2,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Sky;
+    use glam::DVec3;
+
+    #[test]
+    fn a_sample_is_at_most_as_bright_as_the_sky_or_the_colours_of_the_stage() {
+        let sky = Sky { bottom: DVec3::new(0.0, 2e-8, 0.0), top: DVec3::new(1e-8, 0.0, 0.0) };
+        let scene = Scene { sky, ..Scene::default() };
+        assert_eq!(Rules::FINISHED.brightest(&scene), 2e-8);
+        for shading in [Shading::ImageGradient, Shading::FirstHitRed, Shading::Normals] {
+            assert_eq!(Rules { shading, ..Rules::FINISHED }.brightest(&scene), 1.0);
         }
     }
 }

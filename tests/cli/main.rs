@@ -9,3 +9,4 @@ mod outputs;
 #[path = "../program_common/mod.rs"]
 mod program_common;
 mod values;
+mod warned;

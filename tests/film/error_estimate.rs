@@ -1,7 +1,7 @@
 //! The error estimate.
 
 use super::common::{add, noisy_film};
-use weekender::film::{ErrorEstimate, Film};
+use weekender::film::{ErrorEstimate, Film, PixelSum, ROUNDING_LIMIT, fixed_point};
 
 #[test]
 fn the_error_is_that_of_the_mean() {
@@ -46,7 +46,7 @@ fn the_estimate_knows_how_far_off_it_may_be() {
     same.record(0..2, 0).unwrap();
     let estimate = same.error().unwrap();
     assert_eq!(estimate.rmse_deviation, 0.0);
-    let doubt = same.doubt(&estimate).unwrap();
+    let doubt = same.doubt(Some(&estimate), 1.0).unwrap();
     assert!(doubt.contains("no path has found any light in 2 samples"), "{doubt}");
 }
 
@@ -77,7 +77,73 @@ fn an_estimate_of_few_pixels_among_many_is_in_doubt() {
         [(1000, 50, true), (1000, 1000, false), (1000, 300, false), (150, 50, false), (150, 5, true)]
     {
         let film = film_with_noise_in(pixels, noisy);
-        let doubt = film.doubt(&film.error().unwrap());
+        let doubt = film.doubt(film.error().as_ref(), 1.0);
         assert_eq!(doubt.is_some(), is_doubted, "{noisy} of {pixels}: {doubt:?}");
     }
+}
+
+/// A film of `samples` samples a pixel that are all this bright, except for black ones in the first `black` pixels.
+fn even_film(radiance: f64, samples: u64, black: usize) -> Film {
+    let mut film = Film::new(4, 3, 2);
+    let PixelSum(one) = fixed_point([radiance; 3]).unwrap();
+    for half in film.halves_mut() {
+        half.iter_mut().skip(black).for_each(|sum| *sum = PixelSum(one.map(|k| k * samples / 2)));
+    }
+    film.record(0..samples, 0).unwrap();
+    film
+}
+
+/// Samples that are alike are rounded alike, and the halves do not show it.
+#[test]
+fn the_error_includes_what_rounding_costs() {
+    for radiance in [1e-7, 2.9e-8, 1e-6, 0.3] {
+        for samples in [2, 1 << 20] {
+            let film = even_film(radiance, samples, 0);
+            let error = film.error().unwrap();
+            let wrong = (film.mean(0)[0] - radiance).abs();
+            assert!(error.rmse >= wrong, "{radiance}: {error:?}, but off by {wrong:e}");
+            assert_eq!((error.rmse, error.rmse_deviation), (ROUNDING_LIMIT, 0.0));
+            assert!(error.rel_mse > 0.0 && error.is_without_noise());
+            assert_eq!(error.words(), "3e-8 RMSE, by rounding alone");
+        }
+    }
+    let noisy = noisy_film(200, 100, 2, &[0..8]).error().unwrap();
+    assert!(!noisy.is_without_noise() && noisy.words().ends_with(" % RMSE"), "{}", noisy.words());
+}
+
+#[test]
+fn a_picture_that_is_dark_enough_for_rounding_to_matter_says_so() {
+    let doubt = |film: &Film, brightest| film.doubt(film.error().as_ref(), brightest);
+    for black in [0, 5] {
+        let told = doubt(&even_film(1e-7, 64, black), 1e-7).unwrap();
+        for part in ["brightness is 1.2e-7", "2^-24 (6e-8)", "25 %", "brighten the values of the sky"] {
+            assert!(told.contains(part), "{part:?} is not in {told:?}");
+        }
+        assert_eq!(doubt(&even_film(4e-6, 64, black), 4e-6), None);
+    }
+    // A film of one half has no estimate, but is rounded as well.
+    let mut single = Film::new(1, 1, 1);
+    add(&mut single, 0, 0, [1e-6; 3]);
+    single.record(0..1, 0).unwrap();
+    assert!(doubt(&single, 1e-6).unwrap().contains("3 %"));
+}
+
+#[test]
+fn a_black_picture_says_whether_samples_can_help() {
+    let black = even_film(0.0, 64, 0);
+    let told = |brightest| black.doubt(black.error().as_ref(), brightest).unwrap();
+    assert!(told(1.0).ends_with("more samples may find some"));
+    assert_eq!(
+        told(0.0),
+        "the picture is black, because the scene has no light; give the sky values above 0"
+    );
+    for (brightest, parts) in [
+        (2.9e-8, ["is 2.9e-8 and", "every sample becomes 0"]),
+        (1e-7, ["is 1e-7, and", "much of what paths find becomes 0"]),
+    ] {
+        let told = told(brightest);
+        assert!(parts.iter().all(|part| told.contains(part)) && !told.contains("more samples"), "{told}");
+    }
+    assert_eq!(black.doubt(None, 1.0), None);
+    assert_eq!(Film::new(4, 3, 2).doubt(None, 0.0), None);
 }

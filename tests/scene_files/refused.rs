@@ -33,6 +33,12 @@ fn bad_spheres_are_refused() {
     refusal_with("radius = 1", "radius = -0.5", &["spheres[0].radius is -0.5", "hollow glass"]);
     refusal_with("radius = 1", "radius = nan", &["spheres[0].radius is NaN", "finite"]);
     refusal_with("radius = 1", "radius = inf", &["spheres[0].radius is inf", "finite"]);
+    refusal_with(
+        "radius = 1",
+        "radius = 1e300",
+        &["spheres[0].radius is 1e300, but", "1e18", "give the sphere"],
+    );
+    refusal_with("radius = 1", "radius = 1e-300", &["spheres[0].radius is 1e-300, but"]);
     refusal_with("radius = 1", "radius = \"big\"", &["invalid type", "expected a number"]);
     refusal_with("center = [0, 0, 0]", "center = [0, nan, 0]", &["spheres[0].center.y is NaN"]);
     refusal_with("center = [0, 0, 0]", "center = [0, 0]", &["length 2", "three numbers"]);
@@ -148,7 +154,16 @@ fn bad_settings_are_refused() {
         ("height = 100000", "height is 100000, but must be within 1 and 16384"),
         ("width = -5", "width is -5"),
         ("width = 99999999999", "width is 99999999999"),
-        ("width = 40.5", "expected a whole number"),
+        (
+            "width = 40.5",
+            "width is 40.5, but must be a whole number within 1 and 16384; give pixels, such as 800",
+        ),
+        ("width = 8e2", "width is 800.0, but must be a whole number within"),
+        ("width = \"8\"", "expected a whole number"),
+        (
+            "max_depth = 99999999999999999999",
+            "max_depth is 99999999999999999999, but must be within 1 and 10000",
+        ),
         ("samples_per_pixel = 0", "samples_per_pixel is 0, but must be within 1 and 4294967296"),
         ("samples_per_pixel = -1", "samples_per_pixel is -1"),
         ("max_depth = 0", "max_depth is 0, but must be within 1 and 10000"),
@@ -181,13 +196,60 @@ fn malformed_text_is_refused() {
     let message = refusal(&format!("{CAMERA}[lights]\n"), 5);
     assert!(message.contains("unknown key `lights`"), "{message}");
     let message = refusal(&format!("{CAMERA}[camera]\n"), 5);
-    assert!(message.contains("duplicate key"), "{message}");
+    assert!(message.contains("duplicate key `camera`; keep one of them"), "{message}");
+    let message = refusal(&ONE_SPHERE.replace("radius = 1", "radius = 1\nradius = 2"), 11);
+    assert!(message.contains("duplicate key `radius`; keep one of them"), "{message}");
+    let message = refusal(&ONE_SPHERE.replace("radius = 1", "\"a b\" = 1\n\"a b\" = 2"), 11);
+    assert!(message.contains("duplicate key") && message.contains("a b"), "{message}");
     // Columns count characters.
     let message = refusal("# é\n[camera]\n\"é\" = 1\n", 3);
     assert!(message.starts_with("bad.toml:3:1: unknown key `é`"), "{message}");
     let line = "\"é\" = { kind = \"metal\", albedo = [0.5, 0.5, 0.5], fuzz = -1 }";
     let message = refusal(&format!("{CAMERA}[materials]\n{line}\n"), 6);
     assert!(message.starts_with("bad.toml:6:51: materials.é.fuzz is -1"), "{message}");
+}
+
+#[test]
+fn numbers_that_no_type_holds_are_refused_as_typed() {
+    let limits = ["within 1e-18 and 1e18", "give the sphere a size"];
+    for number in ["1e400", "1_0e999", "99999999999999999999999999999999999999999"] {
+        refusal_with("radius = 1", &format!("radius = {number}"), &limits);
+        refusal_with(
+            "radius = 1",
+            &format!("radius = {number}"),
+            &[&format!("spheres[0].radius is {number}, but")],
+        );
+    }
+    refusal_with("radius = 1", "radius = -1e400", &["spheres[0].radius is -1e400, but", "hollow glass"]);
+    // An integer that is too large for a length is a number all the same.
+    refusal_with(
+        "radius = 1",
+        "radius = 99999999999999999999",
+        &["spheres[0].radius is 1e20, but", limits[0]],
+    );
+    refusal_with(
+        "center = [0, 0, 0]",
+        "center = [0, 1e400, 0]",
+        &["spheres[0].center.y is 1e400, but", "-1e18"],
+    );
+    refusal_with(
+        "vfov_degrees = 40",
+        "vfov_degrees = 1e400",
+        &["vfov_degrees is 1e400, but", "0.01 and 179"],
+    );
+    refusal_with(
+        "albedo = [0.5, 0.5, 0.5]",
+        "albedo = [0.5, 1e999, 0.5]",
+        &["[0.5, 1e999, 0.5], but each component"],
+    );
+    let message = refusal(&format!("{CAMERA}[render]\nwidth = 1e400\n"), 6);
+    assert!(message.contains("width is 1e400, but must be a whole number within 1 and 16384"), "{message}");
+    // Where any number is allowed, or two are too large.
+    let message =
+        refusal(&ONE_SPHERE.replace("[materials.ball]", "vup = [0, 1e400, 1]\n[materials.ball]"), 5);
+    assert!(message.contains("1e400 is too large for a number, whose limit is 1.8e308"), "{message}");
+    let message = refusal(&ONE_SPHERE.replace("[0, 0, 3]", "[1e400, 2e400, 3]"), 2);
+    assert!(message.contains("1e400 is too large for a number"), "{message}");
 }
 
 #[test]
@@ -223,6 +285,24 @@ fn unreadable_files_are_told_from_bad_ones() {
     std::fs::write(&binary, b"[camera]\nlook_from = [0,\xff\xfe").expect("written");
     let message = load(&binary).expect_err("no text").to_string();
     assert!(message.contains("binary.toml:2: this is not UTF-8 text"), "{message}");
+    assert!(message.ends_with("; save it as UTF-8"), "{message}");
+    let picture = folder.path().join("picture.jpg");
+    std::fs::write(&picture, b"\xc3\x28").expect("written");
+    let message = load(&picture).expect_err("no text").to_string();
+    assert!(message.ends_with("save it as UTF-8, or name a .toml file"), "{message}");
+    let wide = |bytes: fn(u16) -> [u8; 2], mark: &str| -> Vec<u8> {
+        format!("{mark}{ONE_SPHERE}").encode_utf16().flat_map(bytes).collect()
+    };
+    for bytes in [
+        wide(u16::to_le_bytes, "\u{feff}"),
+        wide(u16::to_be_bytes, "\u{feff}"),
+        wide(u16::to_le_bytes, ""),
+        wide(u16::to_be_bytes, ""),
+    ] {
+        std::fs::write(&binary, bytes).expect("written");
+        let message = load(&binary).expect_err("not UTF-8").to_string();
+        assert!(message.ends_with("it looks like UTF-16: save it as UTF-8"), "{message}");
+    }
 
     let bad = folder.path().join("bad.toml");
     std::fs::write(&bad, ONE_SPHERE.replace("radius = 1", "radius = 0")).expect("written");

@@ -33,7 +33,7 @@ pub use write::save;
 pub(crate) use write::write;
 
 use super::{Checksum, Description, Film, FilmError, PixelSum, SampleRanges};
-use crate::files::InputError;
+use crate::files::{InputError, ShownPath};
 use crate::memory::MemoryError;
 use std::path::PathBuf;
 
@@ -69,7 +69,7 @@ pub enum CheckpointError {
     #[error(transparent)]
     Input(#[from] InputError),
     /// The file is not an EXR file.
-    #[error("{} is not an EXR file; films are stored in .exr files", path.display())]
+    #[error("{} is not an EXR file: it does not begin like one; films are the .exr files that Weekender saves", path.shown())]
     NotExr {
         /// The file.
         path: PathBuf,
@@ -77,7 +77,7 @@ pub enum CheckpointError {
     /// The file is an EXR picture without a film.
     #[error(
         "{} is a picture without a film's sums, so no samples can be added to it; only .exr files written by Weekender have them",
-        path.display()
+        path.shown()
     )]
     NotFilm {
         /// The file.
@@ -86,7 +86,7 @@ pub enum CheckpointError {
     /// The samples of the film are of another version.
     #[error(
         "{} holds samples of version {version}, traced by {writer}, but this program ({}) traces samples of version {SAMPLE_VERSION}, which cannot be added to them; continue with {writer}, or render it again",
-        path.display(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
+        path.shown(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
     )]
     SampleVersion {
         /// The file.
@@ -99,7 +99,7 @@ pub enum CheckpointError {
     /// The file has a layout that this program does not know.
     #[error(
         "{} is a film file of version {version}, written by {writer}, but this program ({}) reads versions {OLDEST_VERSION} to {VERSION}; continue with {writer}, or render it again",
-        path.display(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
+        path.shown(), concat!("Weekender ", env!("CARGO_PKG_VERSION"))
     )]
     Version {
         /// The file.
@@ -110,7 +110,7 @@ pub enum CheckpointError {
         writer: String,
     },
     /// Something in the file is missing or was changed.
-    #[error("{} is damaged: {what}; use an earlier copy or render it again", path.display())]
+    #[error("{} is damaged: {what}; use an earlier copy or render it again", path.shown())]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -118,7 +118,7 @@ pub enum CheckpointError {
         what: String,
     },
     /// There is not enough memory for the film.
-    #[error("cannot read {}: {reason}", path.display())]
+    #[error("cannot read {}: {reason}", path.shown())]
     Memory {
         /// The file.
         path: PathBuf,

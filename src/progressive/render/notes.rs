@@ -57,7 +57,8 @@ impl Render {
         if self.estimated_samples != self.film.sample_count() {
             let begin = Instant::now();
             self.status.error = self.film.error();
-            self.status.doubt = self.status.error.and_then(|error| self.film.doubt(&error));
+            let brightest = self.job.rules().brightest(self.job.scene());
+            self.status.doubt = self.film.doubt(self.status.error.as_ref(), brightest);
             self.estimated_samples = self.film.sample_count();
             self.estimate_took = begin.elapsed();
             self.estimated_at = Instant::now();

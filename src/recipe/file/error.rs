@@ -17,14 +17,14 @@ pub enum FileError {
     #[error(transparent)]
     Memory(#[from] MemoryError),
     /// The file is not UTF-8 text.
-    #[error(
-        "{name}:{line}: this is not UTF-8 text, but a scene file must be; save it as UTF-8, or name a .toml file"
-    )]
+    #[error("{name}:{line}: this is not UTF-8 text, but a scene file must be; {remedy}")]
     NotText {
         /// The file.
         name: String,
         /// Line of the first byte that is not UTF-8, from 1.
         line: usize,
+        /// What to do.
+        remedy: &'static str,
     },
     /// The file is not TOML, or a key is unknown, missing or of the wrong type.
     #[error("{name}:{line}:{column}: {message}")]
@@ -78,13 +78,18 @@ pub enum Reason {
         /// The scene's name.
         name: String,
     },
-    /// An integer is out of range.
-    #[error("{what} is {value}, but must be within {lowest} and {highest}; {remedy}")]
+    /// A number is not whole or out of range.
+    #[error(
+        "{what} is {value}, but must be {}within {lowest} and {highest}; {remedy}",
+        if *is_whole { "" } else { "a whole number " }
+    )]
     Whole {
         /// The key.
         what: &'static str,
-        /// The value.
-        value: i64,
+        /// The value, as it is written or with the same meaning.
+        value: Box<str>,
+        /// Whether the value is a whole number.
+        is_whole: bool,
         /// The smallest allowed value.
         lowest: u64,
         /// The largest allowed value.

@@ -1,6 +1,7 @@
 //! `[[keyframes]]`: cameras at frames of an animation.
 
 use super::error::{Reason, Refusal};
+use super::numbers::{Real, Whole};
 use super::place::{Step, path_of};
 use super::triple::Triple;
 use crate::animation::{FRAME_LIMIT, Keyframe};
@@ -12,13 +13,13 @@ use serde::Deserialize;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawKeyframe {
-    frame: i64,
+    frame: Whole,
     look_from: Option<Triple>,
     look_at: Option<Triple>,
     vup: Option<Triple>,
-    vfov_degrees: Option<f64>,
-    defocus_angle_degrees: Option<f64>,
-    focus_distance: Option<f64>,
+    vfov_degrees: Option<Real>,
+    defocus_angle_degrees: Option<Real>,
+    focus_distance: Option<Real>,
 }
 
 /// The keyframes, with what they leave out taken from `camera`.
@@ -31,28 +32,23 @@ pub(super) fn keyframes_of(raw: &[RawKeyframe], camera: &Camera) -> Result<Vec<K
             Refusal { path, reason }
         };
         let at_frame = |reason| in_keyframe(vec![Step::Key("frame".to_owned())], reason);
-        let frame = u32::try_from(raw.frame).ok().filter(|frame| *frame < FRAME_LIMIT).ok_or_else(|| {
-            at_frame(Reason::Whole {
-                what: "frame",
-                value: raw.frame,
-                lowest: 0,
-                highest: u64::from(FRAME_LIMIT - 1),
-                remedy: "count frames from 0",
-            })
-        })?;
+        let last = FRAME_LIMIT - 1;
+        let frame = raw.frame.within("frame", [0, last.into()], "count frames from 0").map_err(at_frame)?;
+        let frame = u32::try_from(frame).unwrap_or(last);
         if let Some(Keyframe { frame: before, .. }) = keyframes.last()
             && *before >= frame
         {
             return Err(at_frame(Reason::FrameOrder { frame, before: *before }));
         }
         let vector = |raw: &Option<Triple>, default| raw.as_ref().map_or(default, |triple| triple.0);
+        let number = |raw: Option<Real>, default| raw.map_or(default, |Real(number)| number);
         let camera = Camera {
             look_from: vector(&raw.look_from, camera.look_from),
             look_at: vector(&raw.look_at, camera.look_at),
             vup: vector(&raw.vup, camera.vup),
-            vfov_degrees: raw.vfov_degrees.unwrap_or(camera.vfov_degrees),
-            defocus_angle_degrees: raw.defocus_angle_degrees.unwrap_or(camera.defocus_angle_degrees),
-            focus_distance: raw.focus_distance,
+            vfov_degrees: number(raw.vfov_degrees, camera.vfov_degrees),
+            defocus_angle_degrees: number(raw.defocus_angle_degrees, camera.defocus_angle_degrees),
+            focus_distance: raw.focus_distance.map(|Real(number)| number),
         };
         camera.validate().map_err(|error| {
             let error = JobError::from(error);

@@ -1,6 +1,7 @@
 //! The materials of a scene file.
 
 use super::error::Reason;
+use super::numbers::Real;
 use super::triple::Triple;
 use crate::scene::Material;
 use serde::de::{self, MapAccess, Visitor};
@@ -13,8 +14,8 @@ use std::fmt;
 pub(super) struct RawMaterial {
     kind: String,
     albedo: Option<Triple>,
-    fuzz: Option<f64>,
-    refraction_index: Option<f64>,
+    fuzz: Option<Real>,
+    refraction_index: Option<Real>,
 }
 
 pub(super) enum NamedOrInline {
@@ -72,12 +73,12 @@ pub(super) fn material_of(raw: &RawMaterial, what: &str) -> Result<Material, (&'
         }
         "metal" => {
             none_of("metal", "albedo and fuzz", &[has_index])?;
-            Ok(Material::Metal { albedo: albedo("metal")?, fuzz: raw.fuzz.unwrap_or(0.0) })
+            Ok(Material::Metal { albedo: albedo("metal")?, fuzz: raw.fuzz.unwrap_or_default().0 })
         }
         "dielectric" => {
             none_of("dielectric", "refraction_index", &[has_albedo, has_fuzz])?;
             let missing = || missing("dielectric", "refraction_index", "refraction_index = 1.5");
-            Ok(Material::Dielectric { refraction_index: raw.refraction_index.ok_or_else(missing)? })
+            Ok(Material::Dielectric { refraction_index: raw.refraction_index.ok_or_else(missing)?.0 })
         }
         kind => Err(("kind", Reason::UnknownKind { what: what.to_owned(), kind: kind.to_owned() })),
     }

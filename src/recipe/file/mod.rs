@@ -28,6 +28,8 @@ mod error;
 mod keyframes;
 mod materials;
 mod named;
+mod numbers;
+mod overflow;
 mod place;
 mod read;
 mod settings;

@@ -4,10 +4,12 @@ use super::error::{FileError, Reason, Refusal, refuse};
 use super::keyframes::{RawKeyframe, keyframes_of};
 use super::materials::{NamedOrInline, RawMaterial, material_of};
 use super::named;
+use super::numbers::Real;
+use super::overflow;
 use super::place::{InlineNames, Step, find_place, line_and_column, name_inline_materials, path_of};
 use super::settings::{RawSettings, settings_of};
 use super::triple::Triple;
-use crate::files;
+use crate::files::{self, ShownPath};
 use crate::memory;
 use crate::recipe::Recipe;
 use crate::render::JobError;
@@ -15,6 +17,7 @@ use crate::scene::{Camera, Scene, SceneError, Sky};
 use crate::stages::Rules;
 use serde::Deserialize;
 use std::collections::{BTreeMap, HashMap};
+use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use toml::Spanned;
@@ -31,15 +34,30 @@ const VALUE_BYTES: u64 = 260;
 /// # Errors
 /// [`FileError`] if the file cannot be read or is malformed, or if no picture can be made from it.
 pub fn load(path: &Path) -> Result<Recipe, FileError> {
-    let label = path.display().to_string();
+    let label = path.shown();
     let bytes = files::read(path, "a scene file", FILE_LIMIT)?;
+    if is_wide(&bytes) {
+        let remedy = "it looks like UTF-16: save it as UTF-8";
+        return Err(FileError::NotText { name: label, line: 1, remedy });
+    }
     let text = String::from_utf8(bytes).map_err(|error| {
         let good = &error.as_bytes()[..error.utf8_error().valid_up_to()];
         let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
-        FileError::NotText { name: label.clone(), line }
+        let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+        let remedy = if is_toml { "save it as UTF-8" } else { "save it as UTF-8, or name a .toml file" };
+        FileError::NotText { name: label.clone(), line, remedy }
     })?;
     let stem = path.file_stem().map_or_else(|| label.clone(), |stem| stem.to_string_lossy().into_owned());
     Ok(Recipe { name: stem, ..parse(&text, &label)? })
+}
+
+/// Whether the bytes are text in UTF-16, by its byte order mark or by the zero in the first of its characters.
+fn is_wide(bytes: &[u8]) -> bool {
+    match bytes {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => true,
+        [first, second, ..] => (*first == 0) != (*second == 0),
+        _ => false,
+    }
 }
 
 /// Reads the text of a scene file. `name` becomes the name of the recipe, and messages start with it.
@@ -47,31 +65,60 @@ pub fn load(path: &Path) -> Result<Recipe, FileError> {
 /// # Errors
 /// [`FileError`] if the text is malformed, or if no picture can be made from it.
 pub fn parse(text: &str, name: &str) -> Result<Recipe, FileError> {
+    recipe_in(text, name).map_err(|Fault { error, overflow }| match overflow {
+        None => *error,
+        Some(place) => overflow::explained(*error, text, place, |text| match recipe_in(text, name) {
+            Ok(_) => Ok(()),
+            Err(fault) => Err(*fault.error),
+        }),
+    })
+}
+
+/// What is wrong with a text, and the place of the number that is too large for the parser, if that is it.
+struct Fault {
+    error: Box<FileError>,
+    overflow: Option<Range<usize>>,
+}
+
+impl From<FileError> for Fault {
+    fn from(error: FileError) -> Self {
+        Fault { error: Box::new(error), overflow: None }
+    }
+}
+
+fn recipe_in(text: &str, name: &str) -> Result<Recipe, Fault> {
     let values = text.bytes().filter(|byte| b",=[{\n".contains(byte)).count() as u64;
     let bytes = text.len() as u64 + VALUE_BYTES * values;
-    memory::check(
-        || format!("reading {name}"),
-        bytes,
-        "use a scene of fewer spheres, or close other programs",
-    )?;
+    let remedy = "use a scene of fewer spheres, or close other programs";
+    memory::check(|| format!("reading {name}"), bytes, remedy).map_err(FileError::from)?;
     let raw: RawFile = toml::from_str(text).map_err(|error| {
-        let (line, column) = line_and_column(text, error.span().map_or(0, |span| span.start));
-        FileError::Malformed { name: name.to_owned(), line, column, message: in_toml_words(error.message()) }
+        let span = error.span().unwrap_or_default();
+        let (line, column) = line_and_column(text, span.start);
+        let overflow = overflow::is_meant(error.message()).then(|| span.clone());
+        let message = match text.get(span) {
+            Some(key) if error.message() == DUPLICATE_KEY && !key.trim().is_empty() => {
+                format!("{DUPLICATE_KEY} `{}`; keep one of them", key.trim())
+            }
+            _ => in_toml_words(error.message()),
+        };
+        let error = FileError::Malformed { name: name.to_owned(), line, column, message };
+        Fault { error: Box::new(error), overflow }
     })?;
     recipe_of(raw, name).map_err(|refusal| {
         let (line, column) = line_and_column(text, find_place(text, &refusal.path).start);
-        FileError::Refused { name: name.to_owned(), line, column, reason: refusal.reason }
+        FileError::Refused { name: name.to_owned(), line, column, reason: refusal.reason }.into()
     })
 }
+
+/// What the TOML parser says of a key that is there twice; it leaves out which.
+const DUPLICATE_KEY: &str = "duplicate key";
 
 /// Replaces Rust's words in serde's messages by TOML's.
 fn in_toml_words(message: &str) -> String {
     message
         .replace("unknown field", "unknown key")
         .replace("missing field", "missing key")
-        .replace("duplicate field", "duplicate key")
-        .replace("expected f64", "expected a number")
-        .replace("expected i64", "expected a whole number")
+        .replace("duplicate field", DUPLICATE_KEY)
 }
 
 #[derive(Deserialize)]
@@ -98,10 +145,10 @@ struct RawCamera {
     look_from: Triple,
     look_at: Triple,
     vup: Option<Triple>,
-    vfov_degrees: f64,
+    vfov_degrees: Real,
     #[serde(default)]
-    defocus_angle_degrees: f64,
-    focus_distance: Option<f64>,
+    defocus_angle_degrees: Real,
+    focus_distance: Option<Real>,
 }
 
 #[derive(Deserialize, Default)]
@@ -115,7 +162,7 @@ struct RawSky {
 #[serde(deny_unknown_fields)]
 struct RawSphere {
     center: Triple,
-    radius: f64,
+    radius: Real,
     material: NamedOrInline,
 }
 
@@ -182,9 +229,9 @@ fn camera_of(raw: &RawCamera) -> Camera {
         look_from: raw.look_from.0,
         look_at: raw.look_at.0,
         vup: raw.vup.as_ref().map_or(Camera::BOOK.vup, |vup| vup.0),
-        vfov_degrees: raw.vfov_degrees,
-        defocus_angle_degrees: raw.defocus_angle_degrees,
-        focus_distance: raw.focus_distance,
+        vfov_degrees: raw.vfov_degrees.0,
+        defocus_angle_degrees: raw.defocus_angle_degrees.0,
+        focus_distance: raw.focus_distance.map(|Real(number)| number),
     }
 }
 
@@ -230,7 +277,7 @@ fn listed_scene(
                 place
             }
         };
-        scene.add_sphere(sphere.center.0, sphere.radius, material);
+        scene.add_sphere(sphere.center.0, sphere.radius.0, material);
     }
     Ok((scene, inline))
 }

@@ -1,33 +1,29 @@
 //! The render settings of a scene file.
 
-use super::error::{Reason, Refusal, refuse};
+use super::error::{Refusal, refuse};
+use super::numbers::Whole;
 use crate::recipe::DEFAULT_SAMPLES_PER_PIXEL;
 use crate::render::{DEPTH_LIMIT, RenderSettings, SAMPLE_LIMIT, SIZE_LIMIT, SamplerKind};
 use serde::Deserialize;
 
-/// The table `[render]`. Integers have TOML's type, so that a value out of range is refused with its limits.
+/// The table `[render]`.
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RawSettings {
-    width: Option<i64>,
-    height: Option<i64>,
-    samples_per_pixel: Option<i64>,
-    max_depth: Option<i64>,
+    width: Option<Whole>,
+    height: Option<Whole>,
+    samples_per_pixel: Option<Whole>,
+    max_depth: Option<Whole>,
     sampler: Option<SamplerKind>,
-    seed: Option<i64>,
+    seed: Option<Whole>,
     estimate_error: Option<bool>,
 }
 
 pub(super) fn settings_of(raw: &RawSettings) -> Result<(RenderSettings, u64), Refusal> {
-    let whole = |key: &'static str, value: Option<i64>, default: u64, limits: [u64; 2], remedy| match value {
+    let whole = |key: &'static str, value: Option<Whole>, default: u64, limits: [u64; 2], remedy| match value
+    {
         None => Ok(default),
-        Some(value) => u64::try_from(value)
-            .ok()
-            .filter(|value| (limits[0]..=limits[1]).contains(value))
-            .ok_or_else(|| {
-                let [lowest, highest] = limits;
-                refuse(&["render", key], Reason::Whole { what: key, value, lowest, highest, remedy })
-            }),
+        Some(value) => value.within(key, limits, remedy).map_err(|reason| refuse(&["render", key], reason)),
     };
     let small = |key, value, default: u32, limits: [u32; 2], remedy| {
         let wide = whole(key, value, u64::from(default), limits.map(u64::from), remedy)?;

@@ -1,5 +1,6 @@
 //! Vectors and colours of a scene file.
 
+use super::numbers::Real;
 use glam::DVec3;
 use serde::de::{self, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -20,7 +21,8 @@ impl<'de> Deserialize<'de> for Triple {
                 let mut v = DVec3::ZERO;
                 for index in 0..3 {
                     let length = || de::Error::invalid_length(index, &self);
-                    v[index] = array.next_element()?.ok_or_else(length)?;
+                    let Real(number) = array.next_element()?.ok_or_else(length)?;
+                    v[index] = number;
                 }
                 let mut count = 3;
                 while array.next_element::<IgnoredAny>()?.is_some() {
