@@ -50,7 +50,8 @@ impl Check {
         let (number, path) = (self.number, path.to_owned());
         let checked = path.clone();
         let work = move || {
-            let outcome = Mine::read(&checked).map_err(|error| error.to_string()).and_then(|mine| {
+            let read = Mine::read(&checked).map_err(|error| unreadable(&checked, error.to_string()));
+            let outcome = read.and_then(|mine| {
                 let finding = judge(&mine, stage).map_err(|error| error.to_string())?;
                 let views = pictures(&mine, &finding).map(|pixels| pixels.into_iter().flatten().collect());
                 let words = text(&checked, &mine, &finding, &[]);
@@ -83,6 +84,17 @@ impl Check {
     /// The finding in words, while it is shown.
     pub fn words(&self) -> Option<&str> {
         self.shown.as_ref().map(|shown| shown.words.as_str())
+    }
+
+    /// Whether a finding is shown or awaited.
+    pub fn is_open(&self) -> bool {
+        self.waiting.is_some() || self.shown.is_some()
+    }
+
+    /// Closes the finding. One that is awaited is not shown.
+    pub fn close(&mut self) {
+        self.number += 1;
+        (self.waiting, self.shown) = (None, None);
     }
 
     /// Draws the finding, or that it is awaited.
@@ -132,6 +144,17 @@ impl Check {
     }
 }
 
+/// Why a file cannot be read as a picture. By its name, it may have been meant as a file of another kind.
+fn unreadable(path: &Path, reason: String) -> String {
+    let is_ending = |ending: &std::ffi::OsStr| {
+        ["png", "ppm", "pnm"].iter().any(|known| ending.eq_ignore_ascii_case(known))
+    };
+    if path.extension().is_some_and(is_ending) || !path.is_file() {
+        return reason;
+    }
+    format!("{} is neither a PNG nor a PPM; scene files end in .toml and films in .exr", path.display())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -172,6 +195,21 @@ mod tests {
     }
 
     #[test]
+    fn a_file_of_another_kind_is_told_what_can_be_opened() {
+        let directory = tempfile::tempdir().unwrap();
+        for (name, is_other) in
+            [("notes.txt", true), ("notes", true), ("mine.PPM", false), ("mine.png", false)]
+        {
+            let path = directory.path().join(name);
+            std::fs::write(&path, "no picture").unwrap();
+            let told = unreadable(&path, "it is damaged".to_owned());
+            assert_eq!(told != "it is damaged", is_other, "{name}");
+            assert_eq!(told.ends_with("scene files end in .toml and films in .exr"), is_other, "{told}");
+        }
+        assert_eq!(unreadable(directory.path(), "a folder".to_owned()), "a folder");
+    }
+
+    #[test]
     fn a_finding_stays_until_it_is_closed() {
         let check = Check { shown: Some(finding([32, 18])), ..Check::default() };
         let mut harness = drawn(check, [1280.0, 800.0]);
@@ -179,6 +217,22 @@ mod tests {
         harness.get_by_label("Close window").click();
         harness.run_steps(3);
         assert_eq!(harness.state().words(), None);
+    }
+
+    #[test]
+    fn what_is_closed_before_it_is_found_is_not_shown() {
+        let (context, path) = (egui::Context::default(), PathBuf::from("mine.ppm"));
+        let mut check = Check { number: 1, waiting: Some(path.clone()), ..Check::default() };
+        assert!(check.is_open());
+        check.close();
+        assert!(!check.is_open());
+        let found = Found { words: "mine".to_owned(), size: [1, 1], views: [(); 3].map(|()| vec![0; 3]) };
+        check.answers.answer(&context).give(Checked { number: 1, path, outcome: Ok(found) });
+        assert!(check.follow().is_none() && !check.is_open());
+        check.shown = Some(finding([32, 18]));
+        assert!(check.is_open());
+        check.close();
+        assert!(!check.is_open() && check.words().is_none());
     }
 
     #[test]

@@ -13,8 +13,6 @@ use crate::stages::{Shading, Stage};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-const NO_RAYS: &str = "This stage traces no rays: its picture depends only on the position of each pixel";
-
 /// A snapshot of the window at the start of the frame.
 pub struct Facts {
     /// What the user has chosen.
@@ -23,6 +21,8 @@ pub struct Facts {
     pub status: Arc<Status>,
     /// Paths per second of tracing at present, if known.
     pub speed: Option<f64>,
+    /// Seconds of tracing that the film's samples took before this run, if known.
+    pub seconds_before: Option<f64>,
     /// Whether there is a change to undo.
     pub can_undo: bool,
     /// Whether there is a change to redo.
@@ -70,7 +70,7 @@ impl Facts {
 
     /// Why the document's camera has no effect, if so.
     pub fn no_rays(&self) -> Option<&'static str> {
-        (self.document().rules().shading == Shading::ImageGradient).then_some(NO_RAYS)
+        self.document().no_rays()
     }
 
     /// Whether menus list the command: those for empty slots are left out.
@@ -144,11 +144,21 @@ impl Facts {
             Command::ListPaths if self.model.view.slots.looked().is_some() => {
                 no("A slot is shown, whose paths are not at hand; press Escape to return to the live picture")
             }
+            Command::ListPaths
+            | Command::AddSphere
+            | Command::ViewFrom(_)
+            | Command::AddBookmark
+            | Command::Bookmark(_)
+            | Command::FlyBookmarks
+            | Command::SaveFlight
+                if let Some(reason) = self.no_rays() =>
+            {
+                no(reason)
+            }
             Command::ListPaths if !self.has_pixel => no("Move the pointer over the picture first"),
             Command::GoOn if self.further().is_none() => {
                 no("The render has not ended, or more samples would change nothing")
             }
-            Command::AddSphere if self.no_rays().is_some() => self.no_rays().map(str::to_owned),
             Command::NextSphere | Command::PreviousSphere if document.scene().spheres.is_empty() => {
                 no("There is no sphere in this scene")
             }
@@ -167,7 +177,6 @@ impl Facts {
             Command::Home if document.camera == document.origin.recipe.camera => {
                 no("This is already the stage's camera")
             }
-            Command::ViewFrom(_) => self.no_rays().map(str::to_owned),
             Command::FlyBookmarks | Command::SaveFlight if self.model.remembered.bookmarks.len() < 2 => {
                 no("A path needs two bookmarks; press Ctrl+B where it begins and where it ends")
             }
@@ -298,9 +307,9 @@ impl Facts {
                 Some(_) => None,
             },
             Show::Normals | Show::Albedo | Show::Bounces | Show::Occupancy
-                if shading == Shading::ImageGradient =>
+                if let Some(reason) = self.shown().no_rays() =>
             {
-                no(NO_RAYS)
+                no(reason)
             }
             Show::Bounces if shading != Shading::Path => {
                 no("In this stage rays end at their first hit, so each path is one ray")

@@ -10,6 +10,7 @@ use super::theme;
 use super::tracer::{Shown, Want};
 use super::widgets;
 use super::window::Window;
+use super::wording::in_window_words;
 use crate::scene::Camera;
 use eframe::egui;
 use glam::DVec3;
@@ -101,10 +102,11 @@ impl Window {
         for path in input::dropped(context) {
             self.files.open(context, path);
         }
-        let Model { view, selected, is_full_screen, has_first_steps, has_recovered, presentation, .. } =
-            &self.model;
+        let Model { view, selected, remembered, is_full_screen, has_first_steps, .. } = &self.model;
+        let (has_recovered, presentation) = (self.model.has_recovered, &self.model.presentation);
         let keyboard = Keyboard {
             had_focus: self.had_focus,
+            has_code: remembered.has_code && self.model.has_panels(),
             is_other_view: view.mode().is_some() || view.show() != Show::Picture,
             is_cropping: view.crop.is_some(),
             is_at_slot: view.slots.looked().is_some(),
@@ -115,18 +117,28 @@ impl Window {
             is_presenting: presentation.is_some(),
         };
         // Escape closes a finding first.
-        if self.slot_actions.verdict.is_open()
+        let has_finding = self.slot_actions.verdict.is_open() || self.check.is_open();
+        if has_finding
             && !self.had_focus
             && context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape))
         {
-            self.slot_actions.verdict.close();
+            if self.slot_actions.verdict.is_open() {
+                self.slot_actions.verdict.close();
+            } else {
+                self.check.close();
+            }
         }
         let is_at_slot = keyboard.is_at_slot;
         let is_free = !self.dialogs.is_open() && input::take_keys(context, &keyboard, &mut self.commands);
         let before = self.model.document.camera;
         if is_free && !is_at_slot && input::fly(context, &mut self.model.document.camera) {
-            self.stop_at_surfaces(&before, None);
-            self.changes.note_move();
+            if let Some(reason) = self.document().no_rays() {
+                self.model.document.camera = before;
+                self.toasts.good(reason);
+            } else {
+                self.stop_at_surfaces(&before, None);
+                self.changes.note_move();
+            }
         }
     }
 
@@ -153,7 +165,7 @@ impl Window {
     pub(super) fn stop_at_surfaces(&mut self, before: &Camera, pivot: Option<DVec3>) {
         let document = &self.model.document;
         let stopped = self.surfaces.stop(document, before, &document.camera, pivot);
-        self.model.document.camera = stopped;
+        self.model.document.camera = without_dust(stopped, before);
     }
 
     fn perform_all(&mut self, context: &egui::Context) {
@@ -219,7 +231,7 @@ impl Window {
             Some(film) => self.main.go_on_with(film, &want),
             None => self.main.want(&want),
         };
-        self.invalid = outcome.err();
+        self.invalid = outcome.err().map(|reason| in_window_words(&reason));
         let has_second = self.second.follow(context, view, &want);
         let live = (document, &self.main);
         let subject = Subject::new(view, live, self.seconds_before, &self.slot_actions.thread);
@@ -262,6 +274,23 @@ impl Window {
         }
         self.keep_wanted(context);
     }
+}
+
+/// The camera after a move from `before`. Where rounding has left next to nothing of a coordinate that it looks at, that is
+/// 0: it is shown, saved and copied with all its digits.
+fn without_dust(camera: Camera, before: &Camera) -> Camera {
+    /// How much larger than the rounding of the coordinates it may be, after several steps.
+    const STEPS: f64 = 8.0;
+    /// A smaller share of the distance turns the camera by nothing.
+    const SHARE: f64 = 1e-12;
+    let Camera { look_from, look_at, .. } = camera;
+    let largest = look_from.abs().max_element().max(look_at.abs().max_element());
+    let limit = (STEPS * f64::EPSILON * largest).min(SHARE * look_from.distance(look_at));
+    let without = |axis: usize| {
+        let is_dust = look_at[axis].abs() < limit && look_at[axis] != before.look_at[axis];
+        if is_dust { 0.0 } else { look_at[axis] }
+    };
+    Camera { look_at: DVec3::from_array([0, 1, 2].map(without)), ..camera }
 }
 
 /// The inner size for a window that is too large for its screen, to replace `inner`.

@@ -5,6 +5,7 @@ use super::facts::Facts;
 use super::menu::item;
 use super::model::document::Document;
 use super::model::show::Show;
+use super::model::view::With;
 use super::tips::{self, Side};
 use super::widgets::{About, control};
 use crate::stages::Stage;
@@ -85,6 +86,14 @@ fn recipe_ui(ui: &mut Ui, document: &Document, facts: &Facts, commands: &mut Vec
     let (spheres, materials) = (scene.spheres.len(), scene.materials.len());
     ui.label(format!("{spheres} spheres, {materials} materials"));
     changed_ui(ui, facts, commands);
+    if let Some((frames, command)) = document.animation() {
+        ui.add_space(6.0);
+        ui.label(RichText::new("Animation").small().color(ui.visuals().weak_text_color()));
+        let text =
+            format!("{frames} frames along the scene file's keyframes. This command makes an animated PNG:");
+        ui.add(egui::Label::new(text).wrap());
+        ui.add(egui::Label::new(RichText::new(command).monospace().small()).wrap());
+    }
 }
 
 /// Says that the scene was changed, with a button that resets it.
@@ -111,9 +120,11 @@ fn case_ui(ui: &mut Ui, case: &Case, facts: &Facts, commands: &mut Vec<Command>)
     ui.add(egui::Label::new(RichText::new(case.title()).heading()).wrap());
     changed_ui(ui, facts, commands);
     let watch = case.watch.map_or("", |watch| watch.look_for);
-    for (heading, text) in
-        [("Watch", watch), ("What is stiff", case.stiff.as_str()), ("What it teaches", case.family.lesson)]
-    {
+    for (heading, text) in [
+        ("Watch", watch),
+        ("What is difficult", case.stiff.as_str()),
+        ("What it teaches", case.family.lesson),
+    ] {
         ui.add_space(6.0);
         ui.label(RichText::new(heading).small().color(weak));
         ui.add(egui::Label::new(text).wrap());
@@ -161,7 +172,9 @@ fn compare_ui(
     let view = &facts.model.view;
     let weak = ui.visuals().weak_text_color();
     ui.label(RichText::new("Compare").small().color(weak));
-    if let Some(other) = view.other_of(stage) {
+    if view.with() == With::Book {
+        ui.add(egui::Label::new("with the book's arithmetic, same camera").wrap());
+    } else if let Some(other) = view.other_of(stage) {
         let whose = if view.is_of_cameras(stage) { ", each with its own camera" } else { ", same camera" };
         let with = format!("with {} {}{whose}", other.section, other.title);
         ui.add(egui::Label::new(with).wrap());
@@ -186,7 +199,7 @@ mod tests {
     use super::*;
     use crate::app::model::checked::CheckedScene;
     use crate::app::model::origin::Origin;
-    use crate::app::model::view::{Mode, With};
+    use crate::app::model::view::{Mode, ViewState};
     use crate::app::tests::{Case, Drawings, dressed, facts_of, leave};
     use crate::stress::shown_cases;
     use egui_kittest::Harness;
@@ -256,6 +269,30 @@ mod tests {
         harness.run_steps(3);
         drawings.add("edited", &harness);
         drawings.keep("info");
+    }
+
+    #[test]
+    fn the_panel_names_what_is_compared() {
+        let mut harness = panel("--stage glass-schlick --size 32x18");
+        let stage = Stage::find("glass-schlick").unwrap();
+        let other = ViewState::default().other_of(stage).unwrap();
+        let of_stage = format!("with {} {}, same camera", other.section, other.title);
+        let of_book = "with the book's arithmetic, same camera";
+        let changes: [(Case<Facts>, &str); 5] = [
+            (("nothing", |_| {}), of_stage.as_str()),
+            (("the book", |facts| facts.model.view.toggle(Mode::Wipe, With::Book)), of_book),
+            (("the book", |facts| facts.model.view.toggle(Mode::Difference, With::Book)), of_book),
+            (("nothing", |facts| facts.model.view.choose(Show::Picture)), of_stage.as_str()),
+            (
+                ("the stage", |facts| facts.model.view.toggle(Mode::Difference, With::Stage)),
+                of_stage.as_str(),
+            ),
+        ];
+        for ((name, change), words) in changes {
+            change(&mut harness.state_mut().facts);
+            harness.run_steps(3);
+            assert!(harness.query_by_label(words).is_some(), "{name}: {words}");
+        }
     }
 
     #[test]

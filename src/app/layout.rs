@@ -93,7 +93,7 @@ impl Window {
             if has.has_controls {
                 let panel = egui::Panel::left("controls").default_size(244.0).size_range(190.0..=380.0);
                 Place::Controls.begin(ui);
-                scrolling(ui, panel, |ui| {
+                scrolling(ui, panel, None, |ui| {
                     let has_info_below = is_narrow && has.has_info;
                     let help = "The window has no room for it at the right; it follows the controls";
                     let is_asked = has_info_below && {
@@ -119,7 +119,8 @@ impl Window {
             if has.has_info && !is_narrow {
                 let panel = egui::Panel::right("info").default_size(256.0).size_range(190.0..=420.0);
                 Place::Info.begin(ui);
-                scrolling(ui, panel, |ui| info(ui, view, commands));
+                let name = facts.document().origin.recipe.name.as_str();
+                scrolling(ui, panel, Some(name), |ui| info(ui, view, commands));
             }
         }
         let before = document.camera;
@@ -177,8 +178,11 @@ impl Window {
         if touch.is_move {
             self.stop_at_surfaces(&before, touch.pivot);
         }
-        if touch.is_orbit && facts.no_rays().is_none() {
+        if touch.is_orbit {
             self.note_step(Step::Orbit);
+        }
+        if let Some(reason) = facts.no_rays().filter(|_| touch.is_refused) {
+            self.toasts.good(reason);
         }
         if touch.is_move || touch.edit.is_some() {
             self.changes.note_move();
@@ -213,10 +217,11 @@ impl Window {
         }
     }
 
-    /// The part of the viewport in which a card covers neither the titles of a wipe nor the one of a slot.
+    /// The part of the viewport in which a card covers no title of a wipe or slot, nor that the camera is in a sphere.
     fn below_titles(&self, room: Rect, facts: &Facts) -> Rect {
         let is_wipe = self.model.view.mode() == Some(Mode::Wipe) && self.second.shown().is_some();
-        let is_titled = is_wipe || slot_notice(facts).is_some();
+        let is_inside = || self.surfaces.inside(self.document()).is_some();
+        let is_titled = is_wipe || slot_notice(facts).is_some() || is_inside();
         let titles = self.viewport.placement.rect().top().max(room.top());
         let top = titles + TITLES;
         // A card above the titles stays there. Where hardly anything would be left for it, it is worth more than they are.
@@ -279,10 +284,26 @@ fn slot_notice(facts: &Facts) -> Option<String> {
     }
 }
 
-/// A panel that can scroll.
-fn scrolling(ui: &mut egui::Ui, panel: egui::Panel, content: impl FnOnce(&mut egui::Ui)) {
+/// A panel that can scroll. What it says `about` another picture begins at the top.
+fn scrolling(
+    ui: &mut egui::Ui,
+    panel: egui::Panel,
+    about: Option<&str>,
+    content: impl FnOnce(&mut egui::Ui),
+) {
+    let known = egui::Id::unique("the picture that a panel is about");
+    let is_another = about.is_some_and(|name| {
+        // Not kept for the next start of the program, in which the panel begins at the top, too.
+        let before =
+            ui.data_mut(|data| std::mem::replace(data.get_temp_mut_or_default(known), name.to_owned()));
+        before != name
+    });
     panel.frame(theme::panel(egui::Margin::ZERO)).show(ui, |ui| {
-        egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let mut area = egui::ScrollArea::vertical().auto_shrink(false);
+        if is_another {
+            area = area.vertical_scroll_offset(0.0);
+        }
+        area.show(ui, |ui| {
             egui::Frame::new().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, content);
         });
     });

@@ -76,6 +76,7 @@ mod tracer;
 mod viewport;
 mod widgets;
 mod window;
+mod wording;
 
 pub use command::{Command, Group, SlotCommand};
 pub use model::device::Device;

@@ -77,7 +77,7 @@ impl Window {
                 let bookmarks = &mut self.model.remembered.bookmarks;
                 let document = &self.model.document;
                 let is_free = |name: &String| bookmarks.iter().all(|bookmark| bookmark.name != *name);
-                let mut names = (1..).map(|number| format!("{} {number}", document.origin.recipe.name));
+                let mut names = (1..).map(|number| format!("{} {number}", document.title()));
                 let name = names.find(is_free).unwrap_or_default();
                 bookmarks.push(Bookmark::new(name, &document.camera));
                 self.toasts.good("Bookmarked; see the Camera panel");
@@ -107,6 +107,7 @@ impl Window {
             }
             Command::WipeDifference => {
                 let view = &mut self.model.view;
+                // A comparison with the book's arithmetic that is shown changes only its form.
                 let with = if view.with() == With::Book { With::Book } else { With::Stage };
                 view.toggle(Mode::Difference, with);
             }

@@ -7,6 +7,7 @@ use super::model::document::Document;
 use super::model::origin::{Origin, Source};
 use super::model::show::Show;
 use super::window::Window;
+use super::wording::in_window_words;
 use crate::progressive::{ReferenceMeans, Status, Stop};
 use crate::saved::{Content, Opened};
 use eframe::egui;
@@ -89,8 +90,11 @@ impl Window {
             // A picture is restored with its stop condition; a film continues.
             document.stop = Stop::at_samples(samples);
         }
+        let animation = document.animation().map_or_else(String::new, |(frames, _)| {
+            format!("; its animation has {frames} frames, and the panel at the right says how to render them")
+        });
         self.show_document(document);
-        self.toasts.good(format!("Opened {}", path.display()));
+        self.toasts.good(format!("Opened {}{animation}", path.display()));
         if let Content::Film(film) = content {
             self.adopt(film);
         }
@@ -130,7 +134,16 @@ impl Window {
     fn tell_messages(&mut self) {
         let status = self.main.status().clone();
         for message in untold(self.told_messages, &status) {
-            self.toasts.bad(message);
+            let message = in_window_words(message);
+            // Which device has failed is worth knowing whatever is shown next.
+            if status.given_up.is_empty() {
+                self.toasts.warn(message, status.run);
+            } else {
+                self.toasts.bad(message);
+            }
+        }
+        if status.samples_per_pixel > 0 {
+            self.toasts.end_warnings(status.run);
         }
         self.told_messages = (status.run, status.messages.len());
         self.follow_failures();
@@ -170,6 +183,7 @@ fn device_after(chosen: Device, known: usize, status: &Status) -> (Device, usize
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::animation::Keyframe;
     use crate::app::tests::window;
     use crate::film::Film;
     use crate::recipe::Recipe;
@@ -271,6 +285,18 @@ mod tests {
                 "{told:?}"
             );
         }
+    }
+
+    #[test]
+    fn a_scene_with_keyframes_is_told_to_have_an_animation() {
+        let mut recipe = Recipe::builtin("three-spheres").unwrap();
+        recipe.keyframes = [0, 20].map(|frame| Keyframe { frame, camera: recipe.camera }).to_vec();
+        let job = recipe.job().unwrap();
+        let mut window = window("weekender --stage normals --size 16x9");
+        let path = PathBuf::from("/of/mine.toml");
+        window.show_opened(Opened { path, recipe, job, stage: None, content: Content::Scene });
+        let told = window.messages();
+        assert!(told[0].starts_with("Opened /of/mine.toml; its animation has 21 frames"), "{told:?}");
     }
 
     #[test]

@@ -7,13 +7,17 @@ use super::model::remembered::Remembered;
 use crate::files::write_text;
 use eframe::egui::Context;
 use serde_json::{Map, Value};
-use std::fs::{self, OpenOptions};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// How long changes wait for others, so that not every letter of a name is written.
 const WRITES_APART: Duration = Duration::from_secs(1);
+
+/// How long a window waits for another one that is writing, which takes some milliseconds.
+const LONGEST_TURN: Duration = Duration::from_secs(1);
 
 /// The fields of the settings, by name.
 type Fields = Map<String, Value>;
@@ -161,9 +165,7 @@ fn write(path: &Path, known: Option<&Remembered>, mine: &Remembered) -> Result<(
         fs::create_dir_all(directory)
             .map_err(|error| format!("cannot make the directory {}: {error}", directory.display()))?;
     }
-    // Windows that write at the same time take turns. Where files cannot be locked, the later one wins.
-    let turn = OpenOptions::new().write(true).create(true).truncate(false).open(path.with_extension("lock"));
-    let _turn = turn.ok().filter(|turn| turn.lock().is_ok());
+    let _turn = take_turn(&path.with_extension("lock"));
     let theirs = match read_fields(path)? {
         Stored::Nothing => Fields::new(),
         Stored::Fields(fields) => fields,
@@ -176,6 +178,20 @@ fn write(path: &Path, known: Option<&Remembered>, mine: &Remembered) -> Result<(
     let known = known.map(fields_of).transpose()?.unwrap_or_default();
     let all = Value::Object(merged(&known, fields_of(mine)?, theirs));
     write_text(path, &format!("{all:#}\n")).map_err(|error| error.to_string())
+}
+
+/// Windows that write at the same time take turns. Where files cannot be locked, or another window has stopped during its
+/// turn, the later one wins.
+fn take_turn(path: &Path) -> Option<File> {
+    let file = OpenOptions::new().write(true).create(true).truncate(false).open(path).ok()?;
+    let end = Instant::now() + LONGEST_TURN;
+    loop {
+        match file.try_lock() {
+            Ok(()) => return Some(file),
+            Err(TryLockError::WouldBlock) if Instant::now() < end => thread::sleep(LONGEST_TURN / 100),
+            Err(_) => return None,
+        }
+    }
 }
 
 fn fields_of(settings: &Remembered) -> Result<Fields, String> {
@@ -294,6 +310,17 @@ mod tests {
         mine.has_code = true;
         assert_eq!(one.finish(&mine), Ok(()));
         assert_eq!(stored(&path), Remembered { has_code: true, ..both });
+    }
+
+    #[test]
+    fn a_window_that_stopped_while_it_wrote_holds_up_no_other() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("settings.json");
+        let stopped = File::create(path.with_extension("lock")).unwrap();
+        stopped.lock().unwrap();
+        let mine = Remembered { bookmarks: named(&["a"]), ..Remembered::default() };
+        assert_eq!(SettingsFile::read(&path).file.finish(&mine), Ok(()));
+        assert_eq!(stored(&path), mine);
     }
 
     #[test]

@@ -7,8 +7,8 @@ use super::thumbnails::{SIZE, Thumbnails};
 use super::tips;
 use crate::stages::Stage;
 use eframe::egui::{
-    self, Align, EventFilter, FontId, Id, Key, Modifiers, Rect, Response, RichText, Sense, TextStyle, Ui,
-    WidgetInfo, pos2, vec2,
+    self, Align, Event, EventFilter, FontId, Id, Key, Modifiers, Rect, Response, RichText, Sense, TextStyle,
+    Ui, WidgetInfo, pos2, vec2,
 };
 
 /// The width of the list in points.
@@ -17,17 +17,34 @@ pub const WIDTH: f32 = 348.0;
 /// Space around the picture in its row, points.
 const MARGIN: f32 = 4.0;
 
-/// Draws the list. It opens at the current stage and follows it; arrow keys go through it, and Enter chooses.
+/// How many stages Page Up and Page Down go on.
+const PAGE: usize = 8;
+
+/// Draws the list. It opens at the current stage and follows it; arrow keys go through it, typing leaves the stages that
+/// have these words, and Enter chooses.
 pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mut Vec<Command>) {
     let here = facts.document().stage();
-    let is_new = has_just_opened(ui) || has_moved(ui, here);
+    let (has_opened, has_moved) = (has_just_opened(ui), has_moved(ui, here));
     let height = (ui.ctx().content_rect().height() - 130.0).clamp(160.0, 720.0);
     let id = ui.scope_id();
+    let (typed, has_typed) = typed(ui);
+    let is_new = (has_opened || has_moved) && typed.is_empty();
+    let found = found(&typed);
+    if !typed.is_empty() {
+        let words = if found.is_empty() { "No stage has" } else { "Stages with" };
+        ui.label(RichText::new(format!("{words} \"{}\"", typed.trim())).small());
+    }
+    if has_typed && !found.iter().any(|stage| ui.memory(|memory| memory.has_focus(id.with(stage.id)))) {
+        let first = found.first().map(|stage| id.with(stage.id));
+        ui.memory_mut(|memory| first.into_iter().for_each(|first| memory.request_focus(first)));
+    }
     let mut focused = None;
-    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
+    let area = egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height);
+    // However few stages are left, the list keeps its size.
+    area.auto_shrink([true, typed.is_empty()]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         let mut chapter = "";
-        for stage in Stage::ALL {
+        for (place, stage) in found.iter().copied().enumerate() {
             if stage.chapter() != chapter {
                 chapter = stage.chapter();
                 ui.add_space(6.0);
@@ -44,7 +61,7 @@ pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mu
                 response.scroll_to_me(None);
             }
             if response.has_focus() {
-                focused = Some(stage);
+                focused = Some((place, stage));
             }
             if response.clicked() {
                 commands.push(Command::Stage(stage));
@@ -52,16 +69,61 @@ pub fn ui(ui: &mut Ui, thumbnails: &mut Thumbnails, facts: &Facts, commands: &mu
             }
         }
     });
-    if let Some(stage) = focused {
+    if let Some((place, stage)) = focused {
         let filter = EventFilter { vertical_arrows: true, ..EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(id.with(stage.id), filter));
-        let down = ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, Key::ArrowDown));
-        let up = ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, Key::ArrowUp));
-        let next = (stage.index() + down).saturating_sub(up).min(Stage::ALL.len() - 1);
-        if next != stage.index() {
-            ui.memory_mut(|memory| memory.request_focus(id.with(Stage::ALL[next].id)));
+        let presses = |key| ui.input_mut(|input| input.count_and_consume_key(Modifiers::NONE, key));
+        let down = presses(Key::ArrowDown) + PAGE * presses(Key::PageDown);
+        let up = presses(Key::ArrowUp) + PAGE * presses(Key::PageUp);
+        let next = (place + down).saturating_sub(up).min(found.len().saturating_sub(1));
+        if let Some(next) = found.get(next).filter(|next| next.id != stage.id) {
+            ui.memory_mut(|memory| memory.request_focus(id.with(next.id)));
         }
     }
+}
+
+/// What has been typed since the list was opened, and whether it has changed in this frame.
+fn typed(ui: &Ui) -> (String, bool) {
+    let (place, now) = (ui.scope_id().with("typed"), ui.ctx().cumulative_pass_nr());
+    let kept: Option<(String, u64)> = ui.data(|data| data.get_temp(place));
+    let before = kept.filter(|(_, last)| now <= last + PASSES).map_or_else(String::new, |(text, _)| text);
+    let mut text = before.clone();
+    ui.input_mut(|input| {
+        let mut new = String::new();
+        input.events.retain(|event| match event {
+            Event::Text(letters) => {
+                new.push_str(letters);
+                false
+            }
+            _ => true,
+        });
+        if !text.is_empty() || !new.trim().is_empty() {
+            text.push_str(&new);
+            // Between words, Space does not choose the stage.
+            input.consume_key(Modifiers::NONE, Key::Space);
+        }
+        (0..input.count_and_consume_key(Modifiers::NONE, Key::Backspace)).for_each(|_| _ = text.pop());
+    });
+    let has_changed = text != before;
+    ui.data_mut(|data| data.insert_temp(place, (text.clone(), now)));
+    (text, has_changed)
+}
+
+/// The stages that have all these words in their headings and names, or else in what is new there.
+fn found(typed: &str) -> Vec<&'static Stage> {
+    let typed = typed.to_lowercase();
+    let having = |text: fn(&Stage) -> String| -> Vec<&'static Stage> {
+        let has = |stage: &&Stage| {
+            let text = text(stage).to_lowercase();
+            typed.split_whitespace().all(|word| text.contains(word))
+        };
+        Stage::ALL.iter().filter(has).collect()
+    };
+    let by_name = having(|stage| {
+        let Stage { section, section_title, chapter_title, title, id, .. } = stage;
+        format!("{section} {section_title} {chapter_title} {title} {id}")
+    });
+    if by_name.is_empty() { having(|stage| stage.what_is_new.to_owned()) } else { by_name }
 }
 
 fn row(ui: &mut Ui, id: Id, stage: &'static Stage, is_here: bool, thumbnails: &mut Thumbnails) -> Response {
@@ -99,9 +161,11 @@ fn row(ui: &mut Ui, id: Id, stage: &'static Stage, is_here: bool, thumbnails: &m
     tips::explain_in_column(response, rect.x_range(), stage.what_is_new, None)
 }
 
-/// Whether this area was hidden a moment ago. Its first passes only measure its size.
+/// The first passes of an area only measure its size.
+const PASSES: u64 = 3;
+
+/// Whether this area was hidden a moment ago.
 fn has_just_opened(ui: &Ui) -> bool {
-    const PASSES: u64 = 3;
     let (id, now) = (ui.scope_id().with("opened"), ui.ctx().cumulative_pass_nr());
     ui.data_mut(|data| {
         let (mut first, last) = data.get_temp(id).unwrap_or((now, now));
@@ -181,6 +245,75 @@ mod tests {
         harness.get_by_label(&other.name()).click();
         harness.run_steps(2);
         assert_eq!(harness.state().commands, [other]);
+    }
+
+    /// Types letter by letter.
+    fn type_in(harness: &mut Harness<'_, List>, text: &str) {
+        for letter in text.chars() {
+            harness.event(Event::Text(letter.to_string()));
+            harness.run_steps(1);
+        }
+        harness.run_steps(2);
+    }
+
+    /// The stages whose rows are there.
+    fn listed(harness: &Harness<'_, List>) -> Vec<&'static str> {
+        let is_there =
+            |stage: &&'static Stage| harness.query_by_label(&Command::Stage(stage).name()).is_some();
+        Stage::ALL.iter().filter(is_there).map(|stage| stage.id).collect()
+    }
+
+    #[test]
+    fn typing_leaves_the_stages_with_these_words() {
+        let mut harness = list("--stage sky --size 32x18", 700.0);
+        harness.run_steps(4);
+        type_in(&mut harness, "schl");
+        assert_eq!(listed(&harness), ["glass-schlick"]);
+        assert!(harness.query_by_label_contains("\"schl\"").is_some());
+        (0..4).for_each(|_| harness.key_press(Key::Backspace));
+        harness.run_steps(3);
+        assert!(listed(&harness).len() > 1);
+        // A space is no choice, and arrows stay among what was found.
+        type_in(&mut harness, "glass 11");
+        harness.key_press(Key::Space);
+        harness.run_steps(3);
+        let (few, expected) = (listed(&harness), found("glass 11"));
+        assert_eq!(few, expected.iter().map(|stage| stage.id).collect::<Vec<_>>());
+        assert!(few.len() > 1 && harness.state().commands.is_empty(), "{few:?}");
+        for key in [Key::PageDown, Key::PageUp, Key::ArrowDown] {
+            harness.key_press(key);
+            harness.run_steps(3);
+        }
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        assert_eq!(harness.state().commands, [Command::Stage(expected[1])]);
+    }
+
+    #[test]
+    fn what_is_new_is_looked_through_if_no_name_has_the_words() {
+        assert_eq!(found("").len(), Stage::ALL.len());
+        assert_eq!(found(" SCHLICK ").first().map(|stage| stage.id), Some("glass-schlick"));
+        assert!(found("no stage has these words").is_empty());
+        for stage in Stage::ALL {
+            assert!(found(stage.title).contains(&stage) && found(stage.what_is_new).contains(&stage));
+        }
+    }
+
+    #[test]
+    fn words_that_no_stage_has_choose_nothing() {
+        let mut harness = list("--stage sky --size 32x18", 700.0);
+        harness.run_steps(4);
+        type_in(&mut harness, "xyzzy");
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        assert!(listed(&harness).is_empty() && harness.state().commands.is_empty());
+        assert!(harness.query_by_label_contains("No stage has").is_some());
+        (0..5).for_each(|_| harness.key_press(Key::Backspace));
+        harness.run_steps(5);
+        assert_eq!(listed(&harness).len(), Stage::ALL.len());
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        assert_eq!(harness.state().commands.len(), 1);
     }
 
     #[test]

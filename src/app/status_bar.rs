@@ -15,7 +15,8 @@ pub fn ui(ui: &mut Ui, facts: &Facts) {
     egui::Panel::bottom("status").frame(frame).show(ui, |ui| {
         let speed = facts.speed.unwrap_or_else(|| facts.status.paths_per_second());
         let (stop, is_paused, next) = (facts.document().stop, facts.model.is_paused, next_device(facts));
-        bar(ui, &Bar { status: &facts.status, stop, is_paused, speed, next });
+        let seconds_before = facts.seconds_before;
+        bar(ui, &Bar { status: &facts.status, stop, is_paused, speed, seconds_before, next });
     });
 }
 
@@ -26,6 +27,8 @@ struct Bar<'a> {
     is_paused: bool,
     /// Paths per second.
     speed: f64,
+    /// Seconds of tracing that the film's samples took before this run, if known.
+    seconds_before: Option<f64>,
     /// The chosen device, if it has not traced yet.
     next: Option<Device>,
 }
@@ -92,7 +95,7 @@ fn figure(ui: &mut Ui, text: &str, widest: &str, help: &str) {
 
 /// For each figure its text, its widest text, and its help.
 fn figures(bar: &Bar<'_>) -> Vec<(String, &'static str, Cow<'static, str>)> {
-    let Bar { status, stop, is_paused, speed, .. } = *bar;
+    let Bar { status, stop, is_paused, speed, seconds_before, .. } = *bar;
     let samples = status.samples_per_pixel;
     let mut figures = vec![
         (phase_word(&status.phase, is_paused), "preparing", "What the tracer is doing".into()),
@@ -104,11 +107,7 @@ fn figures(bar: &Bar<'_>) -> Vec<(String, &'static str, Cow<'static, str>)> {
             "00 000 spp",
             "Samples per pixel in the film".into(),
         ),
-        (
-            format!("{:.1} s", status.trace.as_secs_f64()),
-            "0000.0 s",
-            "Seconds of tracing, without pauses".into(),
-        ),
+        seconds(status.trace.as_secs_f64(), seconds_before),
         (
             format!("{:.1} Mpaths/s", speed / 1e6),
             "0000.0 Mpaths/s",
@@ -140,6 +139,23 @@ fn figures(bar: &Bar<'_>) -> Vec<(String, &'static str, Cow<'static, str>)> {
         error_help(status).into(),
     ));
     figures
+}
+
+/// The time of tracing: that of this run, and that of a film which was opened.
+fn seconds(here: f64, before: Option<f64>) -> (String, &'static str, Cow<'static, str>) {
+    let help = "Seconds of tracing, without pauses";
+    let (text, help) = match before {
+        None => {
+            let unknown = "the film that was opened does not say how many it took";
+            (format!("over {here:.1} s"), format!("{help}; {unknown}").into())
+        }
+        Some(before) if before > 0.0 => {
+            let help = format!("{help}; {before:.1} of them before this film was opened");
+            (format!("{:.1} s", before + here), help.into())
+        }
+        Some(_) => (format!("{here:.1} s"), help.into()),
+    };
+    (text, "0000.0 s", help)
 }
 
 fn error_help(status: &Status) -> String {

@@ -18,6 +18,8 @@ struct Toast {
     text: String,
     tone: Tone,
     since: Instant,
+    /// The run of the render whose picture it is about, if it is about a picture.
+    run: Option<u64>,
 }
 
 /// The visible messages.
@@ -45,6 +47,19 @@ impl Toasts {
         self.add(text, Tone::Bad);
     }
 
+    /// Reports what is wrong with the picture of the render with this run, in the window and on the terminal.
+    pub fn warn(&mut self, text: impl Into<String>, run: u64) {
+        self.bad(text);
+        if let Some(toast) = self.0.last_mut() {
+            toast.run = Some(run);
+        }
+    }
+
+    /// Removes what was wrong with the pictures of other runs than this one.
+    pub fn end_warnings(&mut self, run: u64) {
+        self.0.retain(|toast| toast.run.is_none_or(|of| of == run));
+    }
+
     /// Says that a setting is on or off now, in place of an earlier word about it.
     pub fn switched(&mut self, name: &str, is_on: bool) {
         let words = |is_on| format!("{name} {}", if is_on { "on" } else { "off" });
@@ -54,7 +69,7 @@ impl Toasts {
 
     fn add(&mut self, text: String, tone: Tone) {
         self.0.retain(|toast| toast.text != text);
-        self.0.push(Toast { text, tone, since: Instant::now() });
+        self.0.push(Toast { text, tone, since: Instant::now(), run: None });
     }
 
     /// The visible messages, oldest first.
@@ -164,12 +179,28 @@ mod tests {
     }
 
     #[test]
+    fn a_warning_ends_with_its_picture() {
+        let mut toasts = Toasts::default();
+        toasts.warn("too thin", 1);
+        toasts.warn("no light", 1);
+        toasts.bad("not saved");
+        toasts.end_warnings(1);
+        assert_eq!(toasts.texts().count(), 3);
+        toasts.warn("too thin", 2);
+        toasts.end_warnings(2);
+        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["not saved", "too thin"]);
+        toasts.end_warnings(3);
+        assert_eq!(toasts.texts().collect::<Vec<_>>(), ["not saved"]);
+    }
+
+    #[test]
     fn failures_stay_longer() {
         let ages = [(4.0, Tone::Good), (11.0, Tone::Bad), (15.0, Tone::Bad)];
         let toast = |(seconds, tone)| Toast {
             text: format!("{seconds}"),
             tone,
             since: Instant::now().checked_sub(Duration::from_secs_f64(seconds)).unwrap(),
+            run: None,
         };
         let mut toasts = Toasts(ages.into_iter().map(toast).collect());
         let context = egui::Context::default();

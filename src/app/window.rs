@@ -271,6 +271,7 @@ impl Window {
         Facts {
             status: self.main.status().clone(),
             speed: self.speed.paths_per_second(),
+            seconds_before: self.seconds_before,
             can_undo: self.changes.can_undo(self.document()),
             can_redo: self.changes.can_redo(self.document()),
             has_pixel: self.inspector.hovered().is_some(),

@@ -3,13 +3,15 @@
 /// Each room with the rooms that it may use. Lower layers come first.
 pub const ROOMS: &[(&str, &[&str])] = &[
     ("memory", &[]),
-    ("files", &["memory"]),
+    ("console", &[]),
+    ("files", &["memory", "console"]),
     ("suggest", &[]),
+    ("number", &[]),
     ("shell", &[]),
-    ("scene", &[]),
+    ("scene", &["number"]),
     ("stages", &["scene", "suggest"]),
     ("animation", &["scene"]),
-    ("film", &["memory", "files", "stages"]),
+    ("film", &["memory", "files", "number", "stages"]),
     ("render", &["memory", "scene", "stages", "film"]),
     ("record", &[]),
     ("heat", &[]),
@@ -31,7 +33,6 @@ pub const ROOMS: &[(&str, &[&str])] = &[
     ("describe", &["scene", "stages", "film", "render", "recipe", "progressive"]),
     ("baseline", &["scene", "render"]),
     ("environment", &[]),
-    ("console", &[]),
     ("failure", &["console"]),
     ("journal", &["files", "console", "failure"]),
     ("interrupt", &["console", "failure"]),
@@ -41,8 +42,10 @@ pub const ROOMS: &[(&str, &[&str])] = &[
         &[
             "animation",
             "memory",
+            "number",
             "scene",
             "stages",
+            "film",
             "render",
             "recipe",
             "output",
@@ -106,7 +109,13 @@ pub const ROOMS: &[(&str, &[&str])] = &[
             "shell",
         ],
     ),
-    ("info", &["memory", "film", "recipe", "saved", "plan", "describe", "failure", "cli", "terminal"]),
+    (
+        "info",
+        &[
+            "memory", "console", "files", "film", "recipe", "saved", "plan", "describe", "failure", "cli",
+            "terminal",
+        ],
+    ),
     (
         "gallery",
         &[

@@ -3,6 +3,7 @@
 /// Each file of the window with the files that it may use; a folder counts as one. Lower layers come first.
 pub const WINDOW: &[(&str, &[&str])] = &[
     ("model", &[]),
+    ("wording", &["model"]),
     ("command", &["model"]),
     ("facts", &["model", "command"]),
     ("switches", &["model", "command", "facts"]),
@@ -119,7 +120,7 @@ pub const WINDOW: &[(&str, &[&str])] = &[
     ("perform_spheres", &["model", "command", "navigation", "spheres", "window"]),
     ("perform_slots", &["model", "command", "kept", "slots", "window"]),
     ("perform_flights", &["model", "command", "flight", "window"]),
-    ("receive", &["model", "command", "files", "window"]),
+    ("receive", &["model", "wording", "command", "files", "window"]),
     ("perform_recovery", &["model", "recovery", "changes", "window"]),
     ("perform_slot_files", &["model", "recovery", "slot_files", "window"]),
     ("rescue", &["model", "recovery", "window"]),
@@ -145,7 +146,10 @@ pub const WINDOW: &[(&str, &[&str])] = &[
             "window",
         ],
     ),
-    ("frame", &["model", "theme", "frame_log", "tracer", "kept", "sizer", "widgets", "input", "window"]),
+    (
+        "frame",
+        &["model", "wording", "theme", "frame_log", "tracer", "kept", "sizer", "widgets", "input", "window"],
+    ),
     ("mod", &["model", "command", "theme", "window"]),
 ];
 

@@ -47,7 +47,8 @@ fn films_tell_what_is_kept_of_them() {
             writeln!(text, "{what}, {half_count} halves, {samples} samples").unwrap();
             if let Some(error) = film.error() {
                 let (pixels, uncertainty) = (error.pixels_in_effect(), error.uncertainty());
-                writeln!(text, "  {error:.9?} {pixels:.6} {uncertainty} {:?}", film.doubt(&error)).unwrap();
+                writeln!(text, "  {error:.9?} {pixels:.6} {uncertainty} {:?}", film.doubt(Some(&error), 1.0))
+                    .unwrap();
             }
             let smooth = film.smoothed();
             let sums = |film: &Film| digest(film.halves().iter().flatten().flat_map(|sum| sum.0));

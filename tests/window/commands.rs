@@ -229,6 +229,47 @@ fn escape_leaves_a_control_before_tab_hides_the_panels() {
 }
 
 #[test]
+fn escape_closes_the_code_before_it_deselects() {
+    let mut harness = open(SMALL);
+    send(&mut harness, Command::NextSphere);
+    harness.key_press(Key::K);
+    harness.run_steps(2);
+    for expected in [(true, true), (false, true), (false, false)] {
+        let has_code = harness.state_mut().remembered_mut().has_code;
+        assert_eq!((has_code, harness.state().selected().is_some()), expected);
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+    }
+}
+
+#[test]
+fn an_open_menu_keeps_keys_from_what_is_behind_it() {
+    let mut harness = open(SMALL);
+    let state = |harness: &mut Harness<'_, Window>| {
+        let has_controls = harness.state_mut().remembered_mut().has_controls;
+        let window = harness.state();
+        (has_controls, window.is_comparing(), window.document().stage(), window.document().camera)
+    };
+    let before = state(&mut harness);
+    control(&harness, "File").click();
+    harness.run_steps(3);
+    for key in [Key::X, Key::L, Key::PageDown] {
+        harness.key_press(key);
+        harness.run_steps(2);
+    }
+    harness.key_down(Key::W);
+    harness.run_steps(3);
+    harness.key_up(Key::W);
+    harness.run_steps(2);
+    assert!(state(&mut harness) == before);
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    harness.key_press(Key::L);
+    harness.run_steps(2);
+    assert!(state(&mut harness).0 != before.0);
+}
+
+#[test]
 fn changes_are_taken_back_and_made_again_one_by_one() {
     let mut harness = open(SMALL);
     let angle = |harness: &Harness<'_, Window>| harness.state().document().camera.vfov_degrees;

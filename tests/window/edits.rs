@@ -82,8 +82,9 @@ fn numbers_stay_within_the_limits_of_scenes() {
     let mut harness = opened();
     let metal = metal_sphere(&harness);
     select(&mut harness, metal);
+    let radius = spheres(&harness)[metal].radius;
     for (name, value, kept) in [
-        ("Radius", -1.0, 1e-18),
+        ("Radius", -1.0, radius),
         ("Radius", 1e300, 1e18),
         ("Centre x", -1e300, -1e18),
         ("Fuzz", -0.5, 0.0),
@@ -103,6 +104,24 @@ fn numbers_stay_within_the_limits_of_scenes() {
         assert_eq!(number, kept, "{name} {value}");
         harness.state().document().job(1).unwrap();
     }
+}
+
+#[test]
+fn a_warning_goes_with_its_scene() {
+    let mut harness = open("--stage hollow-glass --size 32x18");
+    until(&mut harness, "a picture", has_samples(1));
+    let is_bubble = |sphere: &weekender::scene::Sphere| sphere.radius == 0.4;
+    let ball = spheres(&harness).iter().position(is_bubble).unwrap() - 1;
+    select(&mut harness, ball);
+    control(&harness, "Radius").set_value_accesskit(0.4 + 1e-9);
+    let is_told =
+        |window: &Window| window.messages().iter().any(|text| text.contains("choose the device f64"));
+    until(&mut harness, "the warning", is_told);
+    send(&mut harness, Command::Undo);
+    assert_eq!(spheres(&harness)[ball].radius, 0.5);
+    until(&mut harness, "the picture without the warning", has_samples(1));
+    harness.run_steps(3);
+    assert!(!is_told(harness.state()));
 }
 
 /// What is known about the old scene is not applied to the new one, which has fewer spheres.

@@ -37,14 +37,21 @@ fn choose(harness: &mut Harness<'_, Window>, command: Command) {
 }
 
 #[test]
-fn a_picture_without_rays_offers_only_its_paths() {
+fn a_picture_without_rays_offers_nothing_of_what_is_there() {
     let mut harness = open("--stage ppm-tiny");
     until(&mut harness, "a picture", has_samples(1));
     open_menu(&mut harness);
-    for name in ["Select this", "Focus on this", "Look at this", "Add a sphere here"] {
+    for name in [
+        "Select this",
+        "Focus on this",
+        "Look at this",
+        "List the paths of this pixel",
+        "Add a sphere here",
+        "Bookmark this camera",
+    ] {
         assert!(entry(&harness, name).accesskit_node().is_disabled(), "{name}");
     }
-    assert!(!entry(&harness, "List the paths of this pixel").accesskit_node().is_disabled());
+    assert!(!entry(&harness, "Crop…").accesskit_node().is_disabled());
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Moving about: orbits and the wheel at what is under the pointer, and the axes in the corner.
 
-use crate::common::{control, drag_from, has_samples, hold, open, send, until};
+use crate::common::{control, drag_from, has_samples, hold, middle, open, send, until};
 use crate::objects::on_screen;
 use eframe::egui::{self, Key, Modifiers, PointerButton, Pos2, Shape, vec2};
 use egui_kittest::Harness;
@@ -246,6 +246,45 @@ fn the_axes_can_be_hidden_and_stages_without_rays_have_none() {
     assert!(!is_shown(&harness));
     assert!(harness.state().disabled_reason(Command::ViewFrom(Viewpoint::Top)).is_some());
     harness.step();
+}
+
+/// Whatever would move the camera or list paths says why nothing happens.
+#[test]
+fn a_stage_without_rays_refuses_to_move_its_camera_and_has_no_paths() {
+    type Act = fn(&mut Harness<'static, Window>, Pos2);
+    let acts: [(&str, Act); 6] = [
+        ("List the paths of this pixel: this", |harness, _| harness.key_press(Key::T)),
+        ("Bookmark this camera: this", |harness, _| {
+            harness.key_press_modifiers(Modifiers::COMMAND, Key::B);
+        }),
+        ("This", |harness, _| {
+            harness.key_down(Key::W);
+            harness.run_steps(3);
+            harness.key_up(Key::W);
+        }),
+        ("This", |harness, at| drag_from(harness, at, vec2(40.0, 20.0))),
+        ("This", |harness, at| scroll(harness, at, 2.0)),
+        ("This", |harness, at| {
+            hold(harness, at, true);
+            hold(harness, at, false);
+        }),
+    ];
+    for (index, (begin, act)) in acts.into_iter().enumerate() {
+        let mut harness = open("--stage ppm-gradient --size 64x36");
+        until(&mut harness, "a picture", has_samples(1));
+        let (before, at) = (camera(&harness), middle(&harness));
+        harness.event(egui::Event::PointerMoved(at));
+        harness.run_steps(2);
+        assert!(harness.state().messages().is_empty());
+        act(&mut harness, at);
+        harness.run_steps(3);
+        let reason =
+            format!("{begin} stage traces no rays: its picture depends only on the position of each pixel");
+        assert_eq!(harness.state().messages(), [reason], "{index}");
+        assert_eq!((camera(&harness), harness.state().listed_paths()), (before, 0), "{index}");
+        assert!(harness.state().disabled_reason(Command::Undo).is_some(), "{index}");
+        assert!(harness.state_mut().remembered_mut().bookmarks.is_empty(), "{index}");
+    }
 }
 
 /// A click beside the ends of the axes does not select what is behind them.

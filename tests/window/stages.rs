@@ -1,7 +1,7 @@
 //! Every stage of the book.
 
 use crate::common::{has_samples, open, open_sized, send, until};
-use eframe::egui::{Key, Role, Shape};
+use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, Role, Shape, TouchPhase, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use weekender::app::{Command, Window};
@@ -21,6 +21,24 @@ fn every_stage_is_shown_with_its_text() {
     harness.key_press(Key::PageUp);
     harness.run_steps(2);
     assert_eq!(harness.state().document().stage(), Stage::ALL.iter().rev().nth(1));
+}
+
+/// The top of the text about a stage, which is scrolled.
+#[test]
+fn the_text_about_another_stage_begins_at_its_top() {
+    let mut harness = open_sized("--stage defocus --size 32x18", [1280.0, 360.0]);
+    harness.run_steps(3);
+    let top = |harness: &Harness<'_, Window>| harness.get_by_label("What is new").rect().top();
+    assert!(top(&harness) > 40.0);
+    let pos = harness.get_by_label("What is new").rect().center();
+    harness.event(Event::PointerMoved(pos));
+    let (unit, delta, modifiers) = (MouseWheelUnit::Line, vec2(0.0, -90.0), Modifiers::NONE);
+    let (phase, source) = (TouchPhase::Move, MouseWheelSource::Wheel);
+    harness.event(Event::MouseWheel { unit, delta, phase, source, modifiers });
+    harness.run_steps(60);
+    assert!(top(&harness) < 0.0, "{}", top(&harness));
+    send(&mut harness, Command::Stage(Stage::find("sky").unwrap()));
+    assert!(top(&harness) > 40.0, "{}", top(&harness));
 }
 
 #[test]

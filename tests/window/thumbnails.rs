@@ -1,7 +1,7 @@
 //! The list of stages with small pictures.
 
 use crate::common::{has_samples, open, open_sized, opened, send, until, window};
-use eframe::egui::Key;
+use eframe::egui::{Event, Key};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::Path;
@@ -75,6 +75,28 @@ fn the_list_is_used_from_the_keyboard() {
     harness.key_press(Key::Escape);
     harness.run_steps(10);
     assert_eq!((harness.state().document().stage().unwrap().id, rows(&harness)), ("glass-refract", 0));
+}
+
+/// The letters find a stage, and none of them is a shortcut.
+#[test]
+fn a_stage_is_found_by_typing() {
+    let mut harness = open_sized("--stage metal --size 32x18", [1280.0, 800.0]);
+    harness.run_steps(2);
+    harness.key_press(Key::O);
+    harness.run_steps(10);
+    for (key, letter) in [(Key::S, "s"), (Key::C, "c"), (Key::H, "h"), (Key::L, "l")] {
+        harness.key_down(key);
+        harness.event(Event::Text(letter.to_owned()));
+        harness.key_up(key);
+        harness.run_steps(2);
+    }
+    assert_eq!(rows(&harness), 1);
+    assert!(harness.state_mut().remembered_mut().has_controls);
+    assert!(!harness.state().is_comparing() && !harness.state().has_sight());
+    harness.key_press(Key::Enter);
+    harness.run_steps(5);
+    assert_eq!(harness.state().document().stage().unwrap().id, "glass-schlick");
+    assert_eq!(rows(&harness), 0, "the list has closed");
 }
 
 #[test]

@@ -95,7 +95,7 @@ impl Command {
     /// What the command does, in one sentence.
     pub fn help(self) -> &'static str {
         match self {
-            Command::Fresh => "The usual first picture, as the first window shows it",
+            Command::Fresh => "The scene of section 11.5, which is the usual picture, in the usual view",
             Command::Open => {
                 "Open a scene file (.toml), or restore the view of a .png, .ppm or .exr that Weekender wrote"
             }

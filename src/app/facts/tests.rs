@@ -37,6 +37,7 @@ fn early(document: Document, view: ViewState) -> Facts {
         model,
         status: Arc::default(),
         speed: None,
+        seconds_before: Some(0.0),
         can_undo: false,
         can_redo: false,
         has_pixel: false,

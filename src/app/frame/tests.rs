@@ -15,6 +15,19 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 #[test]
+fn a_move_leaves_no_dust_in_what_the_camera_looks_at() {
+    let camera = |look_at| Camera { look_from: DVec3::new(0.0, 1.0, 3.0), look_at, ..Camera::BOOK };
+    let before = camera(DVec3::new(0.0, 2e-16, -1.0));
+    let after = without_dust(camera(DVec3::new(-1.11e-16, 2e-16, -1.0)), &before);
+    assert_eq!(after, camera(DVec3::new(0.0, 2e-16, -1.0)), "what was there before stays");
+    let small = camera(DVec3::new(1e-13, 1e-9, -1.0));
+    assert_eq!(without_dust(small, &before), small);
+    // Close to the point itself it is no dust.
+    let near = Camera { look_from: DVec3::X, look_at: DVec3::new(1.0, 4e-16, 0.0), ..Camera::BOOK };
+    assert_eq!(without_dust(near, &before), near);
+}
+
+#[test]
 fn a_signal_closes_a_window_that_is_hidden() {
     let mut window = window("weekender --stage normals --size 16x9 --samples 1");
     let interrupt = Arc::new(Interrupt::unheard());

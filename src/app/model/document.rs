@@ -6,9 +6,11 @@ use crate::progressive::Stop;
 use crate::recipe::Recipe;
 use crate::render::{JobError, RenderJob, RenderSettings};
 use crate::scene::{Camera, Scene};
-use crate::stages::{Rules, Stage};
+use crate::stages::{Rules, Shading, Stage};
 use crate::stress::Case;
 use std::sync::Arc;
+
+const NO_RAYS: &str = "This stage traces no rays: its picture depends only on the position of each pixel";
 
 /// The picture in the window, with the user's changes.
 #[derive(Clone, Debug)]
@@ -89,6 +91,11 @@ impl Document {
     /// The rules of the origin.
     pub fn rules(&self) -> &Rules {
         &self.origin.recipe.rules
+    }
+
+    /// Why there are no rays, if so: the camera then has no effect, and no pixel has paths.
+    pub fn no_rays(&self) -> Option<&'static str> {
+        (self.rules().shading == Shading::ImageGradient).then_some(NO_RAYS)
     }
 
     /// The stage, if the origin is one.

@@ -121,7 +121,7 @@ impl ViewState {
         self.mode
     }
 
-    /// The kind of picture to compare with.
+    /// The kind of picture to compare with. Without a comparison it is the stage.
     pub fn with(&self) -> With {
         self.with
     }
@@ -141,7 +141,7 @@ impl ViewState {
 
     /// Shows only this view of the film.
     pub fn choose(&mut self, show: Show) {
-        self.mode = None;
+        self.end_comparison();
         self.show = show;
     }
 
@@ -160,9 +160,8 @@ impl ViewState {
             With::Stage | With::Book => self.slots.look(None),
         }
         self.show = Show::Picture;
-        self.mode = if is_on { None } else { Some(mode) };
+        (self.mode, self.with) = if is_on { (None, With::Stage) } else { (Some(mode), with) };
         (self.divider, self.is_divider_unplaced) = (0.5, self.mode == Some(Mode::Wipe));
-        self.with = with;
     }
 
     /// Looks at a slot, or at the live picture. A comparison with that slot ends.
@@ -180,13 +179,13 @@ impl ViewState {
     fn leave_own_comparison(&mut self) {
         let is_own = self.slots.looked().is_some_and(|number| self.with == With::Slot(number));
         if is_own || (self.slots.looked().is_some() && !matches!(self.with, With::Slot(_))) {
-            self.mode = None;
+            self.end_comparison();
         }
     }
 
-    /// Ends the comparison.
+    /// Ends the comparison. The next one does not begin with its picture.
     pub fn end_comparison(&mut self) {
-        self.mode = None;
+        (self.mode, self.with) = (None, With::Stage);
     }
 
     /// The view for resolving the film; `other` is the film of the second picture, once there is one.

@@ -63,26 +63,40 @@ fn group(
 ) {
     let id = ui.make_persistent_id(("group", name));
     let state = egui::collapsing_header::CollapsingState::load_with_default_open(ui.ctx(), id, is_open);
-    state
-        .show_header(ui, |ui| {
-            ui.label(RichText::new(name).strong());
-            let Some(Reset { is_changed, reset }) = reset else { return };
-            let is_changed = is_changed(document);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let button = ui.add_enabled(is_changed, egui::Button::new("Reset").small());
-                let (help, reason) = ("Reset to the stage's values", "Nothing here differs from the stage");
-                let button = tips::explain(ui, button, Side::Beside, help, Some(reason))
-                    .accessible_name(format!("Reset {}", name.to_lowercase()));
-                if button.clicked() {
-                    reset(document);
-                }
-            });
-        })
-        .body_unindented(|ui| {
-            ui.add_space(2.0);
-            body(ui, document);
+    let mut is_pressed = false;
+    let mut header = state.show_header(ui, |ui| {
+        is_pressed = heading(ui, name, id);
+        let Some(Reset { is_changed, reset }) = reset else { return };
+        let is_changed = is_changed(document);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let button = ui.add_enabled(is_changed, egui::Button::new("Reset").small());
+            let (help, reason) = ("Reset to the stage's values", "Nothing here differs from the stage");
+            let button = tips::explain(ui, button, Side::Beside, help, Some(reason))
+                .accessible_name(format!("Reset {}", name.to_lowercase()));
+            if button.clicked() {
+                reset(document);
+            }
         });
+    });
+    if is_pressed {
+        header.toggle();
+    }
+    header.body_unindented(|ui| {
+        ui.add_space(2.0);
+        body(ui, document);
+    });
     ui.add_space(6.0);
+}
+
+/// The name of a group. Returns whether it was clicked, or the place beside it, which folds the group as its triangle does.
+fn heading(ui: &mut Ui, name: &str, id: egui::Id) -> bool {
+    let label = ui.add(egui::Label::new(RichText::new(name).strong()).selectable(false)).rect;
+    let half = 0.5 * ui.spacing().interact_size.y;
+    let (middle, right) = (label.center().y, ui.max_rect().right());
+    let row = egui::Rect::from_x_y_ranges(label.left()..=right, middle - half..=middle + half);
+    // The Tab key leads to the triangle.
+    let response = ui.interact(row, id.with("heading"), egui::Sense::CLICK);
+    response.on_hover_cursor(egui::CursorIcon::PointingHand).clicked()
 }
 
 #[cfg(test)]
@@ -294,6 +308,26 @@ mod tests {
         press(&mut harness, "Go to b");
         assert_eq!(std::mem::take(&mut harness.state_mut().commands), [Command::Bookmark(1)]);
         assert!(harness.state().edits.is_empty());
+    }
+
+    #[test]
+    fn a_click_on_a_heading_or_beside_it_folds_the_group() {
+        let mut harness = panel("--stage defocus --size 32x18");
+        for (name, inside) in [("Camera", "Field of view"), ("Output", "Width")] {
+            for (beside, is_open) in [(0.0, false), (60.0, true)] {
+                let pos = harness.get_by_label(name).rect().center() + egui::vec2(beside, 0.0);
+                let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+                harness.event(egui::Event::PointerMoved(pos));
+                for pressed in [true, false] {
+                    harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+                    harness.run_steps(1);
+                }
+                harness.run_steps(10);
+                let is_seen = harness.query_all_by_label(inside).next().is_some();
+                assert_eq!(is_seen, is_open, "{name}, {beside} points beside it");
+            }
+        }
+        assert!(harness.state().facts.document().camera == facts_of("--stage defocus").document().camera);
     }
 
     #[test]

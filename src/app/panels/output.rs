@@ -62,7 +62,11 @@ fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts, commands: &mut Ve
         for sizing in Sizing::ALL {
             let command = Command::Size(sizing);
             let response = ui.add(button(sizing.name(), facts.is_on(command)));
-            let response = explained(ui, response, About::new(&command.name(), command.help()));
+            let held = held_words(document, facts).filter(|_| sizing == Sizing::Viewport);
+            let help = held.as_deref().map_or_else(|| command.help().to_owned(), |held| {
+                format!("{}.\n\n{held}. Without them it follows the viewport again", command.help())
+            });
+            let response = explained(ui, response, About::new(&command.name(), &help));
             if response.accessible_name(command.name()).clicked() {
                 commands.push(command);
             }
@@ -75,6 +79,18 @@ fn sizing(ui: &mut Ui, document: &mut Document, facts: &Facts, commands: &mut Ve
             document.has_own_size = true;
         }
     });
+    if let Some(held) = held_words(document, facts) {
+        let text = egui::RichText::new(held).small().color(ui.visuals().weak_text_color());
+        ui.add(egui::Label::new(text).wrap());
+    }
+}
+
+/// Says that the picture does not follow the viewport, if it does not: the kept pictures keep their size.
+fn held_words(document: &Document, facts: &Facts) -> Option<String> {
+    let model = &facts.model;
+    let follows = model.remembered.sizing == Sizing::Viewport && !document.has_own_size;
+    let [width, height] = document.origin.size_in(model.view.slots.room().filter(|_| follows)?)?;
+    Some(format!("Held at {width}x{height}, the size of the kept pictures, for comparison"))
 }
 
 fn size(ui: &mut Ui, document: &mut Document) {
@@ -102,8 +118,33 @@ fn size(ui: &mut Ui, document: &mut Document) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::model::kept::Kept;
     use crate::app::model::origin::Origin;
+    use crate::app::model::slots::{Slot, SlotNumber};
+    use crate::app::tests::facts_of;
+    use crate::film::Film;
     use crate::stages::Stage;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_size_that_is_held_by_kept_pictures_is_told() {
+        let mut facts = facts_of("--stage normals --size 64x36");
+        facts.model.document.has_own_size = false;
+        facts.model.remembered.sizing = Sizing::Viewport;
+        let told = |facts: &Facts| held_words(&facts.model.document, facts);
+        assert_eq!(told(&facts), None, "nothing is kept");
+        let (document, mut film) = (facts.model.document.clone(), Film::new(64, 36, 1));
+        film.record(0..1, 0).unwrap();
+        let kept = Arc::new(Kept::new(document, film, Arc::default(), None));
+        facts.model.view.slots.put(SlotNumber::ALL[0], Slot { name: "mine".to_owned(), kept });
+        let held = "Held at 64x36, the size of the kept pictures, for comparison";
+        assert_eq!(told(&facts).as_deref(), Some(held));
+        facts.model.remembered.sizing = Sizing::Book;
+        assert_eq!(told(&facts), None);
+        facts.model.remembered.sizing = Sizing::Viewport;
+        facts.model.document.has_own_size = true;
+        assert_eq!(told(&facts), None);
+    }
 
     #[test]
     fn a_reset_brings_back_the_size_of_a_picture_that_keeps_its_own() {

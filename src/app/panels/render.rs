@@ -6,7 +6,7 @@ use crate::app::model::device::{Device, core_count, lane_counts};
 use crate::app::model::document::Document;
 use crate::app::model::remembered::Remembered;
 use crate::app::tips;
-use crate::app::widgets::{About, check, control, whole};
+use crate::app::widgets::{About, check, choice, control, whole};
 use crate::render::{DEPTH_LIMIT, RenderSettings, SamplerKind};
 use crate::stages::Shading;
 use eframe::egui::{self, ComboBox, Ui};
@@ -52,7 +52,7 @@ pub(super) fn ui(ui: &mut Ui, settings: &mut RenderSettings, remembered: &mut Re
             .selected_text(settings.sampler.name())
             .show_ui(ui, |ui| {
                 for sampler in SamplerKind::ALL {
-                    ui.selectable_value(&mut settings.sampler, sampler, sampler.name());
+                    choice(ui, &mut settings.sampler, sampler, sampler.name());
                 }
             })
             .response
@@ -109,7 +109,7 @@ fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
             .selected_text(word(remembered.lanes))
             .show_ui(ui, |ui| {
                 for lanes in [None].into_iter().chain(lane_counts().into_iter().map(Some)) {
-                    ui.selectable_value(&mut remembered.lanes, lanes, word(lanes));
+                    choice(ui, &mut remembered.lanes, lanes, word(lanes));
                 }
             })
             .response
@@ -124,7 +124,7 @@ fn lanes_and_threads(ui: &mut Ui, remembered: &mut Remembered) {
             .selected_text(word(remembered.threads))
             .show_ui(ui, |ui| {
                 for threads in [None].into_iter().chain((1..=core_count()).map(Some)) {
-                    ui.selectable_value(&mut remembered.threads, threads, word(threads));
+                    choice(ui, &mut remembered.threads, threads, word(threads));
                 }
             })
             .response

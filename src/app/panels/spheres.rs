@@ -8,7 +8,7 @@ use crate::app::model::document::Document;
 use crate::app::model::edit::{Body, Edit};
 use crate::app::spheres::Selected;
 use crate::app::tips::{self, Side};
-use crate::app::widgets::{About, control, explained, named, number, slider, under_name, vector};
+use crate::app::widgets::{About, choice, control, explained, named, number, slider, under_name, vector};
 use crate::scene::{Material, RADIUS_LIMITS, REFRACTION_INDEX_LIMITS};
 use crate::stages::Shading;
 use eframe::egui::{self, ComboBox, RichText, Ui, vec2};
@@ -160,9 +160,7 @@ fn kind(ui: &mut Ui, material: Material, disabled_reason: Option<&str>) -> Mater
             .show_ui(ui, |ui| {
                 for other in kinds {
                     let is_it = other.kind() == material.kind();
-                    if ui.selectable_label(is_it, other.kind()).clicked() && !is_it {
-                        chosen = other;
-                    }
+                    choice(ui, &mut chosen, if is_it { material } else { other }, other.kind());
                 }
             })
             .response

@@ -14,7 +14,9 @@ impl Paths {
     pub fn ui(&mut self, ui: &mut Ui, document: &Document) {
         let weak = ui.visuals().weak_text_color();
         let Some(listed) = &self.listed else {
-            let text = if self.is_waiting {
+            let text = if document.no_rays().is_some() {
+                "This stage traces no rays, so its pixels have no paths."
+            } else if self.is_waiting {
                 "Recording paths…"
             } else {
                 "T lists the paths of the pixel under the pointer; so do Alt-click and right-click."

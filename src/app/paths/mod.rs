@@ -103,12 +103,18 @@ impl Paths {
     }
 
     /// Takes recorded paths. Lists them again if a change affects the random numbers; if only the camera moves, the
-    /// existing paths stay. In a picture of another size they are those of the pixel at the same place.
+    /// existing paths stay. In a picture of another size they are those of the pixel at the same place. A picture without
+    /// rays has none.
     pub fn follow(&mut self, document: &Document, context: &egui::Context) {
         while let Some(listed) = self.answers.take() {
             self.learn(listed);
         }
         let Some(listed) = &self.listed else { return };
+        // Undo may have led to a stage without rays.
+        if document.no_rays().is_some() {
+            self.forget();
+            return;
+        }
         let is_same_scene = std::sync::Arc::ptr_eq(&listed.document.checked, &document.checked);
         if self.is_waiting || (is_same_scene && listed.document.settings == document.settings) {
             return;
@@ -270,5 +276,8 @@ mod tests {
         let before = paths.number;
         paths.follow(&document, &context);
         assert_eq!((paths.number, paths.is_waiting), (before, false), "nothing has changed");
+        let no_rays = Document::new(Origin::of_stage(Stage::find("ppm-gradient").unwrap()));
+        paths.follow(&no_rays, &context);
+        assert_eq!((paths.len(), paths.is_waiting), (0, false), "this picture has none");
     }
 }

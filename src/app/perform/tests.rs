@@ -6,6 +6,7 @@ use crate::app::model::document::Document;
 use crate::app::model::kept::Kept;
 use crate::app::model::kept_view::ShownSlots;
 use crate::app::model::slots::{Slot, SlotNumber};
+use crate::app::model::view::Other;
 use crate::app::tests::{until, window};
 use crate::film::Film;
 use crate::kept;
@@ -145,6 +146,30 @@ fn every_command_does_what_it_says() {
         text.push_str(&done(&context, &mut window, command));
     }
     kept::check("commands_done", &text);
+}
+
+#[test]
+fn a_difference_is_from_the_stage_once_the_books_arithmetic_was_left() {
+    let context = Context::default();
+    for leave in [Command::Show(Show::Picture), Command::BookArithmetic, Command::WipeDifference] {
+        let mut window = window("weekender --stage glass-schlick --size 16x9 --device cpu");
+        let is_by_book = |window: &Window| match window.model.view.compared(window.document()) {
+            Some(Other::ByTheBook(..)) => Some(true),
+            Some(_) => Some(false),
+            None => None,
+        };
+        window.perform(&context, Command::BookArithmetic);
+        if leave == Command::WipeDifference {
+            window.perform(&context, Command::WipeDifference);
+        }
+        assert_eq!(is_by_book(&window), Some(true), "{leave:?}");
+        window.perform(&context, leave);
+        assert_eq!(is_by_book(&window), None, "{leave:?}");
+        window.perform(&context, Command::WipeDifference);
+        assert_eq!(is_by_book(&window), Some(false), "{leave:?}");
+        window.perform(&context, Command::NextStage);
+        assert_eq!(is_by_book(&window), Some(false), "{leave:?}");
+    }
 }
 
 #[test]

@@ -20,8 +20,11 @@ const HEIGHT: f32 = 66.0;
 /// Largest width of a thumbnail in points.
 const THUMBNAIL: f32 = 112.0;
 
-/// Width of a name in points.
+/// Least width of a name in points.
 const NAME: f32 = 206.0;
+
+/// Largest width of a name in points. Longer names are cut.
+const LONG_NAME: f32 = 340.0;
 
 /// The thumbnails of the slots.
 #[derive(Default)]
@@ -79,10 +82,15 @@ impl Strip {
                 ui.vertical(|ui| {
                     ui.spacing_mut().item_spacing = vec2(3.0, 2.0);
                     if let Some(name) = slots.name_mut(number) {
-                        let edit = TextEdit::singleline(name).desired_width(NAME).margin(vec2(4.0, 1.0));
+                        let (width, is_cut) = name_width(ui, name);
+                        let edit = TextEdit::singleline(name).desired_width(width).margin(vec2(4.0, 1.0));
                         let response = ui.add(edit);
-                        let help = "The name of this slot; click to change it";
-                        let response = tips::explain(ui, response, Side::Above, help, None);
+                        let mut help = "The name of this slot; click to change it".to_owned();
+                        if is_cut && !response.has_focus() {
+                            paint_ellipsis(ui, response.rect);
+                            help = format!("{name}\n\n{help}");
+                        }
+                        let response = tips::explain(ui, response, Side::Above, &help, None);
                         let response = response.accessible_name(format!("Name of slot {number}"));
                         is_touched |= response.gained_focus();
                     }
@@ -150,6 +158,24 @@ impl Strip {
     }
 }
 
+/// The width of a slot's name in points, and whether it is cut there.
+fn name_width(ui: &Ui, name: &str) -> (f32, bool) {
+    /// The margins and the place of the cursor.
+    const AROUND: f32 = 12.0;
+    let font = TextStyle::Body.resolve(ui.style());
+    let text = ui.painter().layout_no_wrap(name.to_owned(), font, Color32::PLACEHOLDER);
+    let width = text.size().x + AROUND;
+    (width.clamp(NAME, LONG_NAME), width > LONG_NAME)
+}
+
+/// Shows at the end of a text field that its text goes on.
+fn paint_ellipsis(ui: &Ui, field: Rect) {
+    let end = Rect { min: pos2(field.right() - 18.0, field.top()), ..field }.shrink(1.0);
+    ui.painter().rect_filled(end, CornerRadius::ZERO, ui.visuals().text_edit_bg_color());
+    let (font, colour) = (TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
+    ui.painter().text(end.center(), Align2::CENTER_CENTER, "…", font, colour);
+}
+
 /// The size and the samples of a picture.
 fn about(ui: &Ui, [width, height]: [u32; 2], samples: u64) -> RichText {
     let words = format!("{width}x{height}, {samples} samples");
@@ -167,8 +193,9 @@ fn coming_card(ui: &mut Ui, number: SlotNumber, coming: &Coming) {
             egui::Spinner::new().paint_at(ui, Rect::from_center_size(rect.center(), vec2(24.0, 24.0)));
             ui.vertical(|ui| {
                 // As large as the slot will be, so that nothing moves when it is there.
-                ui.set_min_size(vec2(NAME + 8.0, HEIGHT + 2.0));
-                ui.set_max_width(NAME + 8.0);
+                let (width, _) = name_width(ui, &coming.name);
+                ui.set_min_size(vec2(width + 8.0, HEIGHT + 2.0));
+                ui.set_max_width(width + 8.0);
                 ui.spacing_mut().item_spacing.y = 2.0;
                 ui.add(egui::Label::new(format!("{number}  {}", coming.name)).truncate());
                 ui.label(about(ui, coming.size, coming.samples));

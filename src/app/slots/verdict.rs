@@ -180,6 +180,7 @@ fn found(pictures: [Picture; 2]) -> Result<Found, String> {
     let headline = match (comparison.is_equal(), comparison.is_same) {
         (true, true) => "Identical to the bit",
         (true, false) => "Only noise",
+        (false, _) if comparison.unclear.is_some() => "Cannot tell",
         (false, _) => "More than noise",
     };
     Ok(Found { headline, is_equal: comparison.is_equal(), text: told(&sides, &comparison) })

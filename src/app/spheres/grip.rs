@@ -104,8 +104,8 @@ pub fn new_body(hit: Option<Pick>, camera: &Camera, aspect: f64, place: [f64; 2]
     }
 }
 
-/// From a sphere to a place for its copy: beside it, where the copy is in sight and in no other sphere; above it if there
-/// is no such place.
+/// From a sphere to a place for its copy: beside it, where the copy is in no other sphere and the whole of it is in sight,
+/// or else its centre; above it if there is no such place.
 pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DVec3 {
     let Some(original) = scene.spheres.get(sphere) else { return DVec3::ZERO };
     let radius = original.radius;
@@ -113,19 +113,24 @@ pub fn to_copy(scene: &Scene, camera: &Camera, aspect: f64, sphere: usize) -> DV
         center.distance(other.center) < other.radius + radius * (1.0 - OVERLAP)
     };
     let basis = camera.basis();
+    let is_in_picture = |point: DVec3| {
+        let place = camera.place_of(point, aspect);
+        place.is_some_and(|place| place.iter().all(|along| (0.0..1.0).contains(along)))
+    };
+    let edges = [basis.u, -basis.u, basis.v, -basis.v].map(|direction| radius * direction);
+    let is_whole = |by: &DVec3| edges.iter().all(|edge| is_in_picture(original.center + *by + *edge));
     let is_free = |by: &DVec3| {
         let center = original.center + *by;
-        let is_in_sight = camera.place_of(center, aspect).is_some_and(|place| {
-            place.iter().all(|along| (0.0..1.0).contains(along))
-                && camera.look_from.distance(center) > 2.0 * radius
-        });
+        let is_in_sight = is_in_picture(center) && camera.look_from.distance(center) > 2.0 * radius;
         // What the original overlaps too, such as the ground or a glass around it, is no obstacle.
         let is_obstacle = |other: &&Sphere| overlaps(center, other) && !overlaps(original.center, other);
         is_in_sight && scene.spheres.iter().find(is_obstacle).is_none()
     };
     let directions = [basis.u, -basis.u, basis.v, basis.w, -basis.w];
     let places = directions.map(|direction| COPY_RADII * radius * direction);
-    places.into_iter().find(is_free).unwrap_or(COPY_RADII * radius * basis.v)
+    let free: Vec<DVec3> = places.into_iter().filter(is_free).collect();
+    let best = free.iter().find(|by| is_whole(by)).or(free.first());
+    best.copied().unwrap_or(COPY_RADII * radius * basis.v)
 }
 
 /// Rounds a positive number to two digits.
@@ -210,6 +215,21 @@ mod tests {
         scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.9, 0);
         scene.add_sphere(DVec3::new(0.0, 0.0, -3.0), 0.5, 0);
         assert!(super::to_copy(&scene, &Camera::BOOK, 1.5, 1).normalize().distance(DVec3::X) < 1e-12);
+    }
+
+    #[test]
+    fn a_copy_is_wholly_in_the_picture_if_it_can_be() {
+        let mut scene = Scene::default();
+        // The copy at its right would be cut off at the edge: half a picture is 4.5 wide at its distance.
+        scene.add_sphere(DVec3::new(3.2, 0.0, -3.0), 0.5, 0);
+        let by = to_copy(&scene, &Camera::BOOK, 1.5, 0);
+        assert!(by.normalize().distance(DVec3::NEG_X) < 1e-12, "{by}");
+        scene.add_sphere(scene.spheres[0].center + DVec3::NEG_X, 0.5, 0);
+        let by = to_copy(&scene, &Camera::BOOK, 1.5, 0);
+        assert!(by.normalize().distance(DVec3::Y) < 1e-12, "{by}");
+        let mut ball = Scene::default();
+        ball.add_sphere(DVec3::new(0.0, 0.0, -3.0), 2.9, 0);
+        assert_ne!(to_copy(&ball, &Camera::BOOK, 1.5, 0), DVec3::ZERO, "none fits");
     }
 
     #[test]

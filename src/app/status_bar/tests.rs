@@ -56,7 +56,14 @@ fn parts() -> [Contribution; 3] {
 const STOP: Stop = Stop { samples: None, seconds: None, noise: Some(0.002) };
 
 fn of(status: &Status) -> Bar<'_> {
-    Bar { status, stop: STOP, is_paused: false, speed: status.paths_per_second(), next: None }
+    Bar {
+        status,
+        stop: STOP,
+        is_paused: false,
+        speed: status.paths_per_second(),
+        seconds_before: Some(0.0),
+        next: None,
+    }
 }
 
 #[test]
@@ -67,6 +74,20 @@ fn the_figures_are_those_of_the_status() {
     let figures = ["tracing", "100 spp", "2.0 s", "0.5 Mpaths/s", "2.56 rays/path", "16 lanes 75 % full"];
     assert_eq!(texts[..6], figures);
     assert!(texts[6].starts_with("error 0.00400, 0.002 in about"), "{texts:?}");
+}
+
+#[test]
+fn a_film_that_was_opened_brings_its_time() {
+    let status = status_of(parts()[..1].to_vec());
+    for (seconds_before, text, help) in [
+        (Some(0.0), "2.0 s", "pauses"),
+        (Some(90.5), "92.5 s", "90.5 of them before this film was opened"),
+        (None, "over 2.0 s", "does not say how many it took"),
+    ] {
+        let figures = figures(&Bar { seconds_before, ..of(&status) });
+        assert_eq!(figures[2].0, text);
+        assert!(figures[2].2.ends_with(help), "{}", figures[2].2);
+    }
 }
 
 #[test]

@@ -9,7 +9,6 @@ use super::model::document::Document;
 use super::navigation;
 use crate::prepared::hierarchy::{Effort, Hierarchy};
 use crate::scene::{Camera, Pick};
-use crate::stages::Shading;
 use eframe::egui::Context;
 use glam::DVec3;
 use near::{Near, Tree};
@@ -69,7 +68,7 @@ impl Surfaces {
     /// The sphere that the camera is inside of, in words, if the document's rays can see it.
     pub fn inside(&self, document: &Document) -> Option<String> {
         let (_, sphere) = self.around.filter(|_| self.is_of(document))?;
-        let sphere = sphere.filter(|_| document.rules().shading != Shading::ImageGradient)?;
+        let sphere = sphere.filter(|_| document.no_rays().is_none())?;
         let scene = document.scene();
         let material = &scene.materials[scene.spheres[sphere].material].name;
         Some(format!("the camera is inside sphere {sphere} ({material})"))

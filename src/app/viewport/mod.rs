@@ -143,13 +143,15 @@ impl Viewport {
             true => facts.shown().clone(),
             false => Document { camera: *camera, ..facts.document().clone() },
         };
+        let notices = pictures.notices.len();
         paint(ui, [room, rect], &self.placement, *divider, pictures, &document, facts);
         let clip = if is_wipe {
             Rect { max: pos2(rect.lerp_inside(vec2(*divider, 0.0)).x, rect.max.y), ..rect }
         } else {
             rect
         };
-        self.selection.paint(ui, rect, clip.intersect(room), selected);
+        let rows = if notices > 0 { notices + usize::from(is_wipe) } else { 0 };
+        self.selection.paint(ui, (rect, clip.intersect(room)), selected, rows);
         if let Some(crop) = crop {
             crop::paint(ui, &ui.painter().with_clip_rect(room), rect, pixels, *crop);
         }
@@ -212,7 +214,9 @@ impl Viewport {
     ) {
         let rect = self.placement.rect();
         let Some(at) = response.interact_pointer_pos().filter(|at| rect.contains(*at)) else { return };
-        if response.double_clicked() {
+        if !sight.has_rays {
+            touch.is_refused |= response.clicked();
+        } else if response.double_clicked() {
             self.use_at(Spot::Centre, at, sight, camera, touch);
         } else if response.clicked() {
             let is_held = |is_it: fn(&egui::Modifiers) -> bool| {
@@ -293,8 +297,7 @@ impl Viewport {
                 let mouse = RichText::new(mouse).color(ui.visuals().weak_text_color());
                 let button =
                     egui::Button::new(name).shortcut_text(mouse).min_size(vec2(ui.available_width(), 0.0));
-                // Every stage has paths.
-                let reason = facts.no_rays().filter(|_| !matches!(spot, Spot::Paths));
+                let reason = facts.no_rays();
                 let response = ui.add_enabled(reason.is_none(), button);
                 if response.on_disabled_hover_text(reason.unwrap_or_default()).clicked() {
                     self.use_at(spot, at, sight, camera, touch);

@@ -26,15 +26,14 @@ pub(super) fn angles(drag: Vec2) -> [f64; 2] {
 pub(super) struct Target<'a> {
     pub document: &'a Document,
     pub surfaces: &'a Surfaces,
-    /// Whether the stage traces rays, so that there is something to turn about.
+    /// Whether the stage traces rays. Without them the camera has no effect, so it stays where it is.
     pub has_rays: bool,
 }
 
 impl Target<'_> {
     /// The point of the scene at a point of the screen, if there is one in the picture at `rect`.
     fn point(&self, camera: &Camera, rect: Rect, at: Pos2) -> Option<DVec3> {
-        let is_seen = self.has_rays && rect.contains(at);
-        let pick = is_seen.then(|| self.surfaces.pick(self.document, camera, place_at(rect, at)));
+        let pick = rect.contains(at).then(|| self.surfaces.pick(self.document, camera, place_at(rect, at)));
         Some(pick??.point)
     }
 
@@ -99,15 +98,18 @@ impl Moving {
             } else if scroll != 0.0 {
                 let aspect = sight.document.aspect();
                 let point = sight.point(&moved, rect, pointer).unwrap_or_else(|| {
-                    let is_in_picture = sight.has_rays && rect.contains(pointer);
                     let depth = || navigation::at_depth(&moved, place_at(rect, pointer), aspect);
-                    if is_in_picture { depth() } else { moved.look_at }
+                    if rect.contains(pointer) { depth() } else { moved.look_at }
                 });
                 moved = navigation::dolly(&moved, point, (-f64::from(scroll) * DOLLY_PER_POINT).exp());
                 touch.pivot = Some(point);
             }
         }
-        if moved != *camera {
+        let is_moved = moved != *camera;
+        if !sight.has_rays {
+            (self.pivot, touch.pivot) = (None, None);
+            touch.is_refused |= is_moved;
+        } else if is_moved {
             *camera = moved;
             touch.is_move = true;
             touch.is_orbit = is_primary;
@@ -205,13 +207,10 @@ mod tests {
         let [right, down] = angles(by);
         assert!((right - 0.24).abs() < 1e-9 && (down + 0.09).abs() < 1e-9, "{right} {down}");
         let mut drawings = Drawings::default();
-        for (name, at, has_rays, pivot) in [
-            ("the ball", BALL, true, Some(DVec3::new(0.0, 0.0, -0.7))),
-            ("the sky", SKY, true, None),
-            ("no rays", BALL, false, None),
-        ] {
+        for (name, at, pivot) in
+            [("the ball", BALL, Some(DVec3::new(0.0, 0.0, -0.7))), ("the sky", SKY, None)]
+        {
             let mut harness = picture();
-            harness.state_mut().has_rays = has_rays;
             let before = camera(&harness);
             let pivot = pivot.unwrap_or(before.look_at);
             drag(&mut harness, at, by, PointerButton::Primary, Modifiers::NONE);
@@ -230,6 +229,25 @@ mod tests {
             assert!(harness.state().moving.pivot.is_none());
         }
         drawings.keep("pivots");
+    }
+
+    #[test]
+    fn without_rays_the_camera_stays() {
+        let (primary, secondary) = (PointerButton::Primary, PointerButton::Secondary);
+        let by = vec2(40.0, -15.0);
+        for (button, modifiers, is_refused) in [
+            (primary, Modifiers::NONE, true),
+            (secondary, Modifiers::NONE, true),
+            (primary, Modifiers::SHIFT, false),
+        ] {
+            let mut harness = picture();
+            harness.state_mut().has_rays = false;
+            let before = camera(&harness);
+            drag(&mut harness, BALL, by, button, modifiers);
+            let Picture { touch, moving, .. } = harness.state();
+            assert_eq!((touch.is_refused, touch.is_move), (is_refused, false), "{button:?} {modifiers:?}");
+            assert!(touch.pivot.is_none() && moving.pivot.is_none() && camera(&harness) == before);
+        }
     }
 
     #[test]
@@ -266,10 +284,9 @@ mod tests {
             harness.state_mut().has_rays = has_rays;
             let before = camera(&harness);
             let place = place_at(harness.state().placement.rect(), at);
-            let point = match (at == BALL, has_rays) {
-                (true, true) => DVec3::new(0.0, 0.0, -0.7),
-                (false, _) => navigation::at_depth(&before, place, 16.0 / 9.0),
-                (true, false) => before.look_at,
+            let point = match at == BALL {
+                true => DVec3::new(0.0, 0.0, -0.7),
+                false => navigation::at_depth(&before, place, 16.0 / 9.0),
             };
             harness.event(Event::PointerMoved(at));
             harness.run_steps(1);
@@ -277,9 +294,14 @@ mod tests {
             let (unit, phase, source) = (MouseWheelUnit::Point, TouchPhase::Move, MouseWheelSource::Wheel);
             harness.event(Event::MouseWheel { unit, delta: vec2(0.0, down), phase, source, modifiers });
             harness.run_steps(2);
+            let touch = &harness.state().touch;
+            assert_eq!(touch.is_refused, !has_rays);
+            if !has_rays {
+                assert!(camera(&harness) == before && !touch.is_move && touch.pivot.is_none());
+                continue;
+            }
             let expected = navigation::dolly(&before, point, f64::exp(-0.002 * f64::from(down)));
             assert!(same(&camera(&harness), &expected), "{at} {down}: {:?}", camera(&harness));
-            let touch = &harness.state().touch;
             assert!(touch.is_move && !touch.is_orbit && touch.pivot.unwrap().distance(point) < 1e-9);
         }
     }

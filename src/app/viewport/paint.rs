@@ -3,6 +3,7 @@
 use super::badge::badge;
 use super::legend::paint_scale;
 use super::placement::{Placement, Zoom};
+use super::selection::ROW;
 use crate::app::facts::Facts;
 use crate::app::model::document::Document;
 use crate::app::model::fitted::Fitted;
@@ -102,7 +103,7 @@ pub(super) fn paint(
     for (row, notice) in notices.iter().enumerate() {
         // Below the titles of a wipe.
         let row = row + usize::from(view.mode() == Some(Mode::Wipe));
-        let at = corners.center_top() + vec2(0.0, 8.0 + 28.0 * row as f32);
+        let at = corners.center_top() + vec2(0.0, 8.0 + ROW * row as f32);
         badge(ui, &painter, at, Align2::CENTER_TOP, notice, &font);
     }
     if !has_film {

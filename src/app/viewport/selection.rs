@@ -24,6 +24,9 @@ const SMALL: f32 = 16.0;
 /// A sphere that looks larger than this many pictures is not dragged: drags on the ground turn the camera.
 const LARGEST: f64 = 1.5;
 
+/// Height of a row of notices, in points.
+pub(super) const ROW: f32 = 28.0;
+
 /// What is known about the selected sphere in the picture.
 #[derive(Default)]
 pub(super) struct Selection {
@@ -149,8 +152,14 @@ impl Selection {
         }
     }
 
-    /// Draws the outline, the handle and the name of the selected sphere.
-    pub(super) fn paint(&self, ui: &Ui, rect: Rect, clip: Rect, selected: Option<&Selected>) {
+    /// Draws the outline, the handle and the name of the selected sphere. The name is below so many `rows` of notices.
+    pub(super) fn paint(
+        &self,
+        ui: &Ui,
+        (rect, clip): (Rect, Rect),
+        selected: Option<&Selected>,
+        rows: usize,
+    ) {
         let (Some(selected), Some(drawn)) = (selected, &self.drawn) else { return };
         let painter = &ui.painter().with_clip_rect(clip);
         paint_outline(&drawn.outline.points, painter, rect);
@@ -177,7 +186,8 @@ impl Selection {
         };
         let font = TextStyle::Body.resolve(ui.style());
         // Above the outline if there is room.
-        let at = pos2(top.x, (top.y - 8.0).max(painter.clip_rect().top() + 34.0));
+        let highest = painter.clip_rect().top() + 34.0 + ROW * rows as f32;
+        let at = pos2(top.x, (top.y - 8.0).max(highest));
         badge(ui, painter, at, Align2::CENTER_BOTTOM, &text, &font);
     }
 }

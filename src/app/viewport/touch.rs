@@ -9,6 +9,8 @@ use glam::DVec3;
 pub struct Touch {
     /// The user moved the camera.
     pub is_move: bool,
+    /// The user would have moved the camera or asked for what is there, but the stage traces no rays.
+    pub is_refused: bool,
     /// The user dragged the camera around a point.
     pub is_orbit: bool,
     /// The point of the scene that the move keeps where it is in the picture.

@@ -77,7 +77,7 @@ fn a_film_that_is_adopted_brings_its_seconds() {
         window.model.document.settings.seed += 1;
         window.adopt(SavedFilm { film: Film::new(16, 9, 2), seconds, backend: None });
         assert!(window.pending_film.take().is_some());
-        assert_eq!(window.seconds_before, seconds);
+        assert_eq!((window.seconds_before, window.facts().seconds_before), (seconds, seconds));
         let context = eframe::egui::Context::default();
         let document = window.document().clone();
         assert!(!window.changes.follow(&context, &document, false), "it is no change that starts a new film");

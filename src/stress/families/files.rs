@@ -8,7 +8,7 @@ use crate::stress::case::{Case, Expected, Family};
 pub const FILES: Family = Family {
     id: "file",
     title: "Scenes to look at",
-    lesson: "Whole pictures in which several of the difficulties above meet.",
+    lesson: "Whole pictures in which several of these difficulties meet.",
 };
 
 struct Entry {

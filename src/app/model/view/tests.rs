@@ -54,6 +54,24 @@ fn one_thing_at_a_time_is_looked_at() {
     assert_eq!((view.mode(), view.of_film(None)), (None, View::Difference(film)));
 }
 
+/// However a comparison ends, the next one is with the stage.
+#[test]
+fn a_comparison_that_has_ended_leaves_nothing_behind() {
+    let ends: [fn(&mut ViewState); 4] = [
+        |view| view.choose(Show::Picture),
+        |view| view.toggle(Mode::Wipe, With::Book),
+        |view| view.look(Some(ONE)),
+        ViewState::end_comparison,
+    ];
+    for (index, end) in ends.into_iter().enumerate() {
+        let (mut view, document) = with_slots();
+        view.toggle(Mode::Wipe, With::Book);
+        assert!(matches!(view.compared(&document), Some(Other::ByTheBook(..))), "{index}");
+        end(&mut view);
+        assert_eq!((view.mode(), view.with()), (None, With::Stage), "{index}");
+    }
+}
+
 /// A view with two slots in use, of a picture of 4 by 2 pixels and one of 8 by 8.
 fn with_slots() -> (ViewState, Document) {
     let mut document = Document::new(Origin::of_stage(Stage::find("metal").unwrap()));

@@ -59,6 +59,23 @@ fn strip() -> Harness<'static, Shown> {
 }
 
 #[test]
+fn a_long_name_gets_more_room_and_an_ellipsis_where_it_is_cut() {
+    let mut harness = strip();
+    let width = |harness: &Harness<'_, Shown>| harness.get_by_label("Name of slot 1").rect().width();
+    let short = width(&harness);
+    let very_long = "a picture of glass ".repeat(9);
+    for (name, is_cut) in [("13.2 A lens instead of a pinhole, 36 spp", false), (very_long.as_str(), true)] {
+        *harness.state_mut().slots().name_mut(ONE).unwrap() = name.to_owned();
+        harness.run_steps(3);
+        assert!(width(&harness) > short + 20.0, "{name}");
+        let is_ellipsis =
+            |shape: &egui::Shape| matches!(shape, egui::Shape::Text(text) if text.galley.text() == "…");
+        let has_it = harness.output().shapes.iter().any(|clipped| is_ellipsis(&clipped.shape));
+        assert_eq!(has_it, is_cut, "{name}");
+    }
+}
+
+#[test]
 fn the_strip_in_all_its_states() {
     let mut drawings = Drawings::default();
     let mut harness = strip();

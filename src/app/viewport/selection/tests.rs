@@ -32,7 +32,7 @@ fn picture(stage: &str, sphere: usize) -> Harness<'static, Picture> {
         let (held, edit) = selection.handle(ui, &response, RECT, selected.as_ref(), document);
         *is_held = held;
         edits.extend(edit);
-        selection.paint(ui, RECT, RECT, selected.as_ref());
+        selection.paint(ui, (RECT, RECT), selected.as_ref(), 0);
         *cursor = ui.ctx().output(|output| output.cursor_icon);
     };
     let picture = Picture {

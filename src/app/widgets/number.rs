@@ -1,123 +1,17 @@
-//! Controls for panels. Each has a name and a tooltip; a disabled control also shows the reason.
+//! Numbers to type or drag. What is typed counts when it is complete; what cannot be is told.
 
-use super::tips::{self, Side};
-use eframe::egui::{
-    self, DragValue, Response, RichText, Sense, Slider, SliderClamping, Ui, UiBuilder, Vec2, vec2,
-};
-use glam::DVec3;
+use eframe::egui::{self, DragValue, Response, Sense, Ui, UiBuilder, Vec2};
 use std::cell::Cell;
 use std::ops::RangeInclusive;
-
-/// A control's name, its tooltip with the unit, and the reason if it is disabled.
-#[derive(Clone, Copy)]
-pub struct About<'a> {
-    pub name: &'a str,
-    pub help: &'a str,
-    pub disabled_reason: Option<&'a str>,
-}
-
-impl<'a> About<'a> {
-    pub fn new(name: &'a str, help: &'a str) -> Self {
-        About { name, help, disabled_reason: None }
-    }
-
-    pub fn disabled_if(self, reason: Option<&'a str>) -> Self {
-        About { disabled_reason: reason, ..self }
-    }
-}
 
 /// Gives a widget a name for assistive technology.
 pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
-/// A name with a control below it, which gets the same accessible name.
-pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
-    under_name(ui, about, |ui| {
-        let response = add(ui);
-        named(&response, about.name);
-        explained(ui, response, about)
-    })
-}
-
-/// A name with controls below it that have names and tooltips of their own.
-pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
-    ui.spacing_mut().item_spacing.y = 3.0;
-    let is_useful = about.disabled_reason.is_none();
-    let response = ui
-        .add_enabled_ui(is_useful, |ui| {
-            ui.add(egui::Label::new(RichText::new(about.name).small().color(ui.visuals().weak_text_color())));
-            add(ui)
-        })
-        .inner;
-    ui.add_space(5.0);
-    response
-}
-
-/// Adds the tooltip beside the panel, with the reason if the control is disabled.
-pub fn explained(ui: &Ui, response: Response, about: About<'_>) -> Response {
-    tips::explain(ui, response, Side::Beside, about.help, about.disabled_reason)
-}
-
-/// A slider with its number. The slider covers the usual values `track`; the number takes any within `limits`.
-pub fn slider(
-    ui: &mut Ui,
-    about: About<'_>,
-    value: &mut f64,
-    (track, limits): (RangeInclusive<f64>, RangeInclusive<f64>),
-    suffix: &str,
-    change: impl FnOnce(Slider<'_>) -> Slider<'_>,
-) -> Response {
-    under_name(ui, about, |ui| {
-        ui.horizontal(|ui| {
-            let digits = ui.text_style_height(&egui::TextStyle::Body) * 5.0;
-            ui.spacing_mut().slider_width =
-                (ui.available_width() - digits - ui.spacing().item_spacing.x).max(40.0);
-            let speed = 0.002 * (track.end() - track.start()).min(value.abs().max(0.1) * 5.0);
-            let slider = Slider::new(value, track).show_value(false).clamping(SliderClamping::Edits);
-            let slid = ui.add(change(slider));
-            named(&slid, about.name);
-            let size = vec2(digits, ui.spacing().interact_size.y);
-            let typed =
-                number(ui, (about.name, size), value, limits, |drag| drag.speed(speed).suffix(suffix));
-            explained(ui, slid, about).union(explained(ui, typed, about))
-        })
-        .inner
-    })
-}
-
-/// Controls for the three components of a vector, each within `limits`.
-pub fn vector(
-    ui: &mut Ui,
-    about: About<'_>,
-    value: &mut DVec3,
-    limits: RangeInclusive<f64>,
-    speed: f64,
-) -> Response {
-    under_name(ui, about, |ui| {
-        ui.horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = 4.0;
-            let size = vec2((ui.available_width() - 8.0) / 3.0, ui.spacing().interact_size.y);
-            let mut all: Option<Response> = None;
-            for (axis, component) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
-                let name = format!("{} {axis}", about.name);
-                let response = number(ui, (&name, size), component, limits.clone(), |drag| drag.speed(speed));
-                let response = explained(ui, response, about);
-                all = Some(match all {
-                    Some(earlier) => earlier.union(response),
-                    None => response,
-                });
-            }
-            all
-        })
-        .inner
-        .unwrap_or_else(|| ui.label(""))
-    })
-}
-
 /// A number to type or drag. A typed number counts when the edit is complete, or after a pause in typing. Until the edit is
-/// complete, Escape takes it back. The control keeps its size, however long the text is, and a number beyond the limits is
-/// told with [`tell`].
+/// complete, Escape takes it back. The control keeps its size, however long the text is. The user is told what is not a
+/// number or beyond the limits.
 pub fn number(
     ui: &mut Ui,
     (name, size): (&str, Vec2),
@@ -140,14 +34,15 @@ pub fn number(
         let frame = ui.ctx().cumulative_frame_nr();
         ui.data_mut(|data| data.insert_temp(typed(), frame));
     }
-    let (beyond, last) = (Cell::new(None), Cell::new(None));
+    let (refusal, last) = (Cell::new(None), Cell::new(None));
     let parse = |text: &str| {
-        last.set(Some(None));
-        let number = if is_given_up { before } else { parsed(text, before)? };
-        let kept = number.clamp(*limits.start(), *limits.end());
-        last.set(Some(Some(kept)));
-        beyond.set((number != kept && is_complete).then_some((number, kept)));
-        is_complete.then_some(kept)
+        let number = if is_given_up { Some(before) } else { parsed(text, before) };
+        let kept = number.and_then(|number| within_limits(number, &limits));
+        last.set(Some(kept));
+        if is_complete {
+            refusal.set(refused(text, (number, kept), &limits, before));
+        }
+        kept.filter(|_| is_complete)
     };
     let drag = DragValue::new(&mut shown)
         .range(limits.clone())
@@ -157,6 +52,11 @@ pub fn number(
         .min_size(size);
     let mut response = within.add(change(drag));
     named(&response, name);
+    // Nor does a drag or assistive technology make a limit of 0 that only stands for "above 0".
+    let least = *limits.start();
+    if stands_for_zero(least) && shown == least && last.get() != Some(Some(least)) {
+        shown = before;
+    }
     let now = ui.input(|input| input.time);
     if shown != before || is_complete {
         typing = None;
@@ -177,11 +77,56 @@ pub fn number(
         response.mark_changed();
     }
     Typing::keep(typing, ui, id);
-    if let Some((number, kept)) = beyond.get() {
-        let (number, kept) = (compact(number), compact(kept));
-        tell(ui.ctx(), format!("{name} is {kept}, its limit: {number} is beyond it"));
+    if let Some(reason) = refusal.take() {
+        tell(ui.ctx(), format!("{name} {reason}"));
     }
     response
+}
+
+/// A lower limit below this only keeps out 0, where its arithmetic ends: nobody means the limit itself.
+const TINY: f64 = 1e-8;
+
+fn stands_for_zero(least: f64) -> bool {
+    0.0 < least && least < TINY
+}
+
+/// What becomes of a typed number: the nearest limit if it is beyond one; `None` if it is refused.
+fn within_limits(number: f64, limits: &RangeInclusive<f64>) -> Option<f64> {
+    let (least, most) = (*limits.start(), *limits.end());
+    (number >= least || !stands_for_zero(least)).then(|| number.clamp(least, most))
+}
+
+/// Why a typed text is not taken as it is, if so: the `number` that it is, and what was made of that.
+fn refused(
+    text: &str,
+    (number, kept): (Option<f64>, Option<f64>),
+    limits: &RangeInclusive<f64>,
+    before: f64,
+) -> Option<String> {
+    let (text, before_words) = (text.trim(), compact(before));
+    let Some(number) = number else {
+        let pointed = text.replace(',', ".");
+        let remedy = match parsed(&pointed, before) {
+            Some(_) => format!("; decimals need a point, as in {pointed}"),
+            None => String::new(),
+        };
+        let start: String = text.chars().take(30).collect();
+        return (!text.is_empty())
+            .then(|| format!("stays {before_words}: \u{201c}{start}\u{201d} is not a number{remedy}"));
+    };
+    let (least, most, typed) = (*limits.start(), *limits.end(), digits(number));
+    let limit = if number > most {
+        format!("at most {}", digits(most))
+    } else if number <= 0.0 && stands_for_zero(least) {
+        "above 0".to_owned()
+    } else {
+        format!("at least {}", digits(least))
+    };
+    match kept {
+        Some(kept) if kept == number => None,
+        Some(kept) => Some(format!("must be {limit}, not {typed}; it is {} now", digits(kept))),
+        None => Some(format!("must be {limit}, not {typed}; it stays {before_words}")),
+    }
 }
 
 /// A typed number counts after so many seconds without a key.
@@ -260,21 +205,6 @@ pub fn take_told(context: &egui::Context) -> Option<String> {
     context.data_mut(|data| data.remove_temp(told()))
 }
 
-/// A whole number to type or drag.
-pub fn whole(
-    ui: &mut Ui,
-    about: About<'_>,
-    value: &mut u64,
-    range: RangeInclusive<u64>,
-    speed: f64,
-) -> Response {
-    under_name(ui, about, |ui| {
-        let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
-        let response = whole_number(ui, (about.name, size), value, range, |drag| drag.speed(speed));
-        explained(ui, response, about)
-    })
-}
-
 /// Like [`number`], for whole numbers up to 2^53, with all their digits.
 pub fn whole_number(
     ui: &mut Ui,
@@ -293,12 +223,6 @@ pub fn whole_number(
     response
 }
 
-/// A check box. What it enables is shown only while it is checked.
-pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
-    let response = ui.add_enabled(about.disabled_reason.is_none(), egui::Checkbox::new(value, about.name));
-    explained(ui, response, about)
-}
-
 /// Formats a number in few characters.
 pub fn compact(n: f64) -> String {
     let magnitude = n.abs();
@@ -313,10 +237,19 @@ pub fn compact(n: f64) -> String {
     }
 }
 
+/// A number with all its digits, as a power of ten where that is much shorter.
+fn digits(n: f64) -> String {
+    const LONG: usize = 9;
+    let [usual, power] = [format!("{n}"), format!("{n:e}")];
+    if usual.len() > LONG && power.len() < usual.len() { power } else { usual }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Drawings, dressed, leave};
+    use crate::app::tests::dressed;
+    use eframe::egui::{Event, Key, vec2};
+    use egui_kittest::Harness;
     use egui_kittest::kittest::Queryable;
 
     #[test]
@@ -351,49 +284,75 @@ mod tests {
             assert_eq!(compact(number), text);
         }
     }
-
-    struct Controls {
-        numbers: [f64; 2],
-        vector: DVec3,
-        count: u64,
-        is_on: bool,
-        reason: Option<&'static str>,
+    /// A number that is typed into a control with these limits, and what is told about it.
+    fn typed(before: f64, limits: RangeInclusive<f64>, text: &str) -> (f64, Option<String>) {
+        let draw = move |ui: &mut Ui, number: &mut f64| {
+            super::number(ui, ("Radius", vec2(60.0, 22.0)), number, limits.clone(), |drag| drag);
+        };
+        let mut harness: Harness<'_, f64> = dressed([100.0, 50.0]).build_ui_state(draw, before);
+        harness.get_by_label("Radius").focus();
+        harness.run_steps(3);
+        for letter in text.chars() {
+            harness.event(Event::Text(letter.to_string()));
+            harness.run_steps(2);
+        }
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+        (*harness.state(), take_told(&harness.ctx))
     }
 
     #[test]
-    fn controls_are_drawn_under_their_names_and_tell_why_they_are_disabled() {
-        let draw = |ui: &mut Ui, controls: &mut Controls| {
-            let Controls { numbers: [first, second], vector: vector_of, count, is_on, reason } = controls;
-            let about = |name| About::new(name, "What it is").disabled_if(*reason);
-            let ranges = (0.0..=10.0, -100.0..=100.0);
-            slider(ui, about("Slider"), first, ranges, "°", |slider| slider.max_decimals(1));
-            vector(ui, about("Vector"), vector_of, -5.0..=5.0, 0.01);
-            whole(ui, about("Whole"), count, 1..=9, 1.0);
-            check(ui, about("Check"), is_on);
-            control(ui, about("Control"), |ui| ui.button("press"));
-            number(ui, ("Number", vec2(60.0, 22.0)), second, 0.0..=1.0, |drag| drag);
-        };
-        let vector = DVec3::new(1.5, -2.25, 0.0);
-        let controls = Controls { numbers: [2.5, 0.125], vector, count: 7, is_on: true, reason: None };
-        let mut harness = dressed([240.0, 330.0]).build_ui_state(draw, controls);
-        let mut drawings = Drawings::default();
-        drawings.add("enabled", &harness);
-        drawings.add_tips(&mut harness);
-        for name in ["Slider", "Check", "Control", "Number"] {
-            let pos = harness.get_all_by_label(name).last().unwrap().rect().center();
-            for pressed in [true, false] {
-                let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
-                harness.event(egui::Event::PointerMoved(pos));
-                harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
-                harness.run_steps(1);
-                drawings.add(&format!("{name}, pressed: {pressed}"), &harness);
-            }
+    fn what_cannot_be_is_told_with_its_limit() {
+        let radius = 1e-18..=1e18;
+        for (text, expected, told) in [
+            ("0", 0.5, Some("Radius must be above 0, not 0; it stays 0.5")),
+            ("-3", 0.5, Some("Radius must be above 0, not -3; it stays 0.5")),
+            ("1e-30", 0.5, Some("Radius must be at least 1e-18, not 1e-30; it stays 0.5")),
+            ("1e-18", 1e-18, None),
+            ("1e40", 1e18, Some("Radius must be at most 1e18, not 1e40; it is 1e18 now")),
+            ("abc", 0.5, Some("Radius stays 0.5: \u{201c}abc\u{201d} is not a number")),
+            (
+                "1,5",
+                0.5,
+                Some(
+                    "Radius stays 0.5: \u{201c}1,5\u{201d} is not a number; decimals need a point, as in 1.5",
+                ),
+            ),
+            ("2.5", 2.5, None),
+            (" ", 0.5, None),
+        ] {
+            assert_eq!(typed(0.5, radius.clone(), text), (expected, told.map(str::to_owned)), "{text}");
         }
-        leave(&mut harness);
-        harness.state_mut().reason = Some("Why it is disabled");
-        harness.run_steps(2);
-        drawings.add("disabled", &harness);
-        drawings.add_tips(&mut harness);
-        drawings.keep("widgets");
+        let (kept, told) = typed(759.0, 1.0..=16384.0, "100000");
+        assert_eq!(kept, 16384.0);
+        assert_eq!(told.as_deref(), Some("Radius must be at most 16384, not 100000; it is 16384 now"));
+        let (kept, told) = typed(4.0, 1.0..=9.0, "0");
+        assert_eq!((kept, told.as_deref()), (1.0, Some("Radius must be at least 1, not 0; it is 1 now")));
+    }
+
+    #[test]
+    fn a_limit_that_stands_for_zero_is_not_reached_without_typing() {
+        for (limits, expected) in [(1e-18..=9.0, 0.5), (0.0..=9.0, 0.0), (1e-6..=9.0, 1e-6)] {
+            let draw = move |ui: &mut Ui, number: &mut f64| {
+                super::number(ui, ("Radius", vec2(60.0, 22.0)), number, limits.clone(), |drag| drag);
+            };
+            let mut harness: Harness<'_, f64> = dressed([100.0, 50.0]).build_ui_state(draw, 0.5);
+            harness.get_by_label("Radius").set_value_accesskit(0.0);
+            harness.run_steps(2);
+            assert_eq!(*harness.state(), expected);
+        }
+    }
+
+    #[test]
+    fn numbers_in_messages_have_all_their_digits() {
+        for (number, text) in [
+            (100_000.0, "100000"),
+            (0.1, "0.1"),
+            (1e18, "1e18"),
+            (-1e-12, "-1e-12"),
+            (4294967295.0, "4294967295"),
+        ] {
+            assert_eq!(digits(number), text);
+        }
     }
 }

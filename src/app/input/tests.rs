@@ -1,0 +1,232 @@
+//! Tests of the keyboard.
+
+use super::*;
+use crate::app::model::slots::SlotNumber;
+
+const KEYBOARD: Keyboard = Keyboard {
+    had_focus: false,
+    has_code: false,
+    is_other_view: false,
+    is_cropping: false,
+    is_at_slot: false,
+    has_selection: false,
+    is_full_screen: false,
+    has_first_steps: false,
+    has_sight: false,
+    is_presenting: false,
+};
+
+/// The commands of a key that types `key` and is at the place of `physical_key` on the keyboard.
+fn commands(key: Key, physical_key: Option<Key>, modifiers: Modifiers) -> Vec<Command> {
+    let pressed = egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers };
+    let input = egui::RawInput { events: vec![pressed], ..egui::RawInput::default() };
+    let mut commands = Vec::new();
+    let _ = egui::Context::default().run_ui(input, |ui| {
+        take_keys(ui.ctx(), &KEYBOARD, &mut commands);
+    });
+    commands
+}
+
+#[test]
+fn some_commands_have_a_second_key() {
+    for (key, modifiers, command) in [
+        (Key::Questionmark, Modifiers::SHIFT, Command::Help),
+        (Key::Y, Modifiers::COMMAND, Command::Redo),
+        (Key::Backspace, Modifiers::NONE, Command::DeleteSphere),
+    ] {
+        assert_eq!(commands(key, None, modifiers), [command]);
+    }
+}
+
+#[test]
+fn a_digit_with_alt_is_known_by_its_place() {
+    let place = Some(Key::Num1);
+    let of_first = |command: fn(SlotNumber) -> SlotCommand| [Command::Slot(command(SlotNumber::ALL[0]))];
+    let shift_alt = Modifiers::SHIFT | Modifiers::ALT;
+    assert_eq!(commands(Key::Exclamationmark, place, shift_alt), of_first(SlotCommand::KeepIn));
+    assert_eq!(commands(Key::Exclamationmark, place, Modifiers::ALT), of_first(SlotCommand::Look));
+    assert!(commands(Key::Exclamationmark, place, Modifiers::SHIFT).is_empty());
+}
+
+fn key(key: Key, modifiers: Modifiers) -> egui::Event {
+    egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers }
+}
+
+/// The commands of these events, and whether held keys may move the camera then.
+fn taken(events: Vec<egui::Event>, keyboard: &Keyboard, context: &egui::Context) -> (Vec<Command>, bool) {
+    let input = egui::RawInput { events, ..egui::RawInput::default() };
+    let (mut commands, mut is_free) = (Vec::new(), false);
+    let _ = context.run_ui(input, |ui| is_free = take_keys(ui.ctx(), keyboard, &mut commands));
+    (commands, is_free)
+}
+
+fn commands_in(keyboard: &Keyboard, pressed: Key) -> Vec<Command> {
+    taken(vec![key(pressed, Modifiers::NONE)], keyboard, &egui::Context::default()).0
+}
+
+#[test]
+fn every_shortcut_gives_its_command() {
+    for command in Command::all() {
+        let Some(shortcut) = command.shortcut() else { continue };
+        let event = key(shortcut.logical_key, shortcut.modifiers);
+        let found = taken(vec![event], &KEYBOARD, &egui::Context::default());
+        assert_eq!(found, (vec![command], !command.opens_dialog()), "{command:?}");
+    }
+}
+
+#[test]
+fn escape_leaves_one_thing_after_the_other() {
+    let mut keyboard = Keyboard {
+        had_focus: true,
+        has_code: true,
+        is_other_view: true,
+        is_cropping: true,
+        is_at_slot: false,
+        has_selection: true,
+        is_full_screen: true,
+        has_first_steps: true,
+        has_sight: true,
+        is_presenting: false,
+    };
+    let escape = |keyboard: &Keyboard| commands_in(keyboard, Key::Escape);
+    assert!(escape(&keyboard).is_empty(), "a control has the keyboard");
+    keyboard.had_focus = false;
+    assert_eq!(escape(&keyboard), [Command::Code]);
+    keyboard.has_code = false;
+    assert_eq!(escape(&keyboard), [Command::FirstSteps]);
+    keyboard.is_presenting = true;
+    assert_eq!(escape(&keyboard), [Command::Crop], "a presentation has no card");
+    (keyboard.is_presenting, keyboard.has_first_steps) = (false, false);
+    assert_eq!(escape(&keyboard), [Command::Crop]);
+    keyboard.is_cropping = false;
+    assert_eq!(escape(&keyboard), [Command::Deselect]);
+    keyboard.is_at_slot = true;
+    assert_eq!(escape(&keyboard), [Command::ShowMe], "no sphere is selected in a slot");
+    keyboard.has_sight = false;
+    assert_eq!(escape(&keyboard), [Command::Show(Show::Picture)]);
+    keyboard.is_other_view = false;
+    assert_eq!(escape(&keyboard), [Command::Slot(SlotCommand::LookLive)]);
+    (keyboard.is_at_slot, keyboard.has_selection, keyboard.is_presenting) = (false, false, true);
+    assert_eq!(escape(&keyboard), [Command::Present]);
+    keyboard.is_presenting = false;
+    assert_eq!(escape(&keyboard), [Command::FullScreen]);
+    keyboard.is_full_screen = false;
+    assert!(escape(&keyboard).is_empty());
+}
+
+#[test]
+fn a_remote_control_goes_through_a_presentation() {
+    let presenting = Keyboard { is_presenting: true, ..KEYBOARD };
+    for (key, command) in REMOTE {
+        assert_eq!(commands_in(&presenting, key), [command]);
+        assert_ne!(commands_in(&KEYBOARD, key), [command], "{key:?}");
+    }
+}
+
+#[test]
+fn each_press_counts_and_a_dialog_gets_the_keys_that_follow() {
+    let context = egui::Context::default();
+    let plain = |pressed| key(pressed, Modifiers::NONE);
+    let thrice = vec![plain(Key::Plus), plain(Key::Plus), plain(Key::Plus)];
+    assert_eq!(taken(thrice, &KEYBOARD, &context).0, [Command::Brighter; 3]);
+    let dialog = vec![key(Key::P, Modifiers::COMMAND), plain(Key::M)];
+    assert_eq!(taken(dialog, &KEYBOARD, &context), (vec![Command::Palette], false));
+    let copied = vec![egui::Event::Copy, egui::Event::Text("c".to_owned())];
+    assert_eq!(taken(copied, &KEYBOARD, &context).0, [Command::CopyPicture]);
+}
+
+#[test]
+fn a_control_with_the_keyboard_keeps_its_own_keys() {
+    for (pressed, command) in [
+        (Key::Space, Command::Pause),
+        (Key::Tab, Command::Panels),
+        (Key::ArrowRight, Command::NextRay),
+        (Key::ArrowLeft, Command::PreviousRay),
+        (Key::F, Command::Fit),
+    ] {
+        for is_focused in [false, true] {
+            let context = egui::Context::default();
+            if is_focused {
+                context.memory_mut(|memory| memory.request_focus(egui::Id::unique("a control")));
+            }
+            let expected = if is_focused && pressed != Key::F { vec![] } else { vec![command] };
+            let found = taken(vec![key(pressed, Modifiers::NONE)], &KEYBOARD, &context).0;
+            assert_eq!(found, expected, "{pressed:?}");
+        }
+    }
+}
+
+#[test]
+fn an_open_menu_has_the_keys_that_are_pressed_alone() {
+    let (context, id) = (egui::Context::default(), egui::Id::unique("a menu"));
+    for (pressed, modifiers, expected) in [
+        (Key::L, Modifiers::NONE, vec![]),
+        (Key::X, Modifiers::NONE, vec![]),
+        (Key::PageDown, Modifiers::NONE, vec![]),
+        (Key::Questionmark, Modifiers::NONE, vec![]),
+        (Key::Backspace, Modifiers::NONE, vec![]),
+        (Key::Escape, Modifiers::NONE, vec![]),
+        (Key::Y, Modifiers::COMMAND, vec![Command::Redo]),
+        (Key::P, Modifiers::COMMAND, vec![Command::Palette]),
+    ] {
+        for is_presenting in [false, true] {
+            let keyboard = Keyboard { is_presenting, has_selection: true, ..KEYBOARD };
+            egui::Popup::open_id(&context, id);
+            let found = taken(vec![key(pressed, modifiers)], &keyboard, &context);
+            assert_eq!(found, (expected.clone(), false), "{pressed:?}");
+            egui::Popup::close_all(&context);
+            let (commands, _) = taken(vec![key(pressed, modifiers)], &keyboard, &context);
+            assert_eq!(commands.len(), 1, "{pressed:?}");
+        }
+    }
+}
+
+/// How far a camera, four units before what it looks at, flies in a frame while these keys are held.
+fn flown_in(seconds: f32, keys: &[(Key, Modifiers)], modifiers: Modifiers) -> Option<DVec3> {
+    let context = egui::Context::default();
+    let before = Camera { look_from: DVec3::new(0.0, 0.0, 4.0), look_at: DVec3::ZERO, ..Camera::BOOK };
+    let mut camera = before;
+    let mut has_moved = false;
+    let mut events: Vec<egui::Event> = keys.iter().map(|(pressed, with)| key(*pressed, *with)).collect();
+    events.push(egui::Event::ModifiersChanged(modifiers));
+    for events in [events, Vec::new()] {
+        let input = egui::RawInput { events, predicted_dt: seconds, ..egui::RawInput::default() };
+        let _ = context.run_ui(input, |ui| {
+            camera = before;
+            has_moved = fly(ui.ctx(), &mut camera);
+        });
+    }
+    assert_eq!(has_moved, camera != before);
+    has_moved.then(|| camera.look_from - before.look_from)
+}
+
+fn flown(keys: &[(Key, Modifiers)], modifiers: Modifiers) -> Option<DVec3> {
+    flown_in(0.04, keys, modifiers)
+}
+
+#[test]
+fn held_keys_fly_as_fast_as_the_scene_is_large() {
+    let none = Modifiers::NONE;
+    let step = flown(&[(Key::D, none)], none).unwrap();
+    // Seven tenths of four units a second, in a frame of at most a twentieth.
+    assert!(step.distance(DVec3::X * (0.7 * 4.0 * 0.04)) < 1e-6, "{step}");
+    let long = flown_in(1.0, &[(Key::D, none)], none).unwrap();
+    assert!(long.distance(DVec3::X * (0.7 * 4.0 * 0.05)) < 1e-6, "{long}");
+    for (pressed, along) in [
+        (Key::A, DVec3::NEG_X),
+        (Key::E, DVec3::Y),
+        (Key::Q, DVec3::NEG_Y),
+        (Key::W, DVec3::NEG_Z),
+        (Key::S, DVec3::Z),
+    ] {
+        let found = flown(&[(pressed, none)], none).unwrap();
+        assert!(found.distance(along * step.x) < 1e-9, "{pressed:?}: {found}");
+    }
+    let fast = flown(&[(Key::D, none)], Modifiers::SHIFT).unwrap();
+    assert!((fast.x / step.x - 4.0).abs() < 1e-9, "{fast}");
+    assert_eq!(flown(&[(Key::A, none), (Key::D, none)], none), None);
+    assert_eq!(flown(&[(Key::D, none)], Modifiers::COMMAND), None);
+    assert_eq!(flown(&[(Key::D, none)], Modifiers::ALT), None);
+    assert_eq!(flown(&[(Key::D, Modifiers::COMMAND)], none), None, "D is still held after Ctrl+D");
+    assert_eq!(flown(&[(Key::F, none)], none), None);
+}

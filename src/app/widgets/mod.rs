@@ -1,0 +1,217 @@
+//! Controls for panels. Each has a name and a tooltip; a disabled control also shows the reason.
+
+mod number;
+
+pub use number::{compact, is_typing, named, number, take_told, whole_number};
+
+use super::tips::{self, Side};
+use eframe::egui::{self, Response, RichText, Slider, SliderClamping, Ui, vec2};
+use glam::DVec3;
+use std::ops::RangeInclusive;
+
+/// A control's name, its tooltip with the unit, and the reason if it is disabled.
+#[derive(Clone, Copy)]
+pub struct About<'a> {
+    pub name: &'a str,
+    pub help: &'a str,
+    pub disabled_reason: Option<&'a str>,
+}
+
+impl<'a> About<'a> {
+    pub fn new(name: &'a str, help: &'a str) -> Self {
+        About { name, help, disabled_reason: None }
+    }
+
+    pub fn disabled_if(self, reason: Option<&'a str>) -> Self {
+        About { disabled_reason: reason, ..self }
+    }
+}
+
+/// A name with a control below it, which gets the same accessible name.
+pub fn control(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
+    under_name(ui, about, |ui| {
+        let response = add(ui);
+        named(&response, about.name);
+        explained(ui, response, about)
+    })
+}
+
+/// A value in a list that a [`control`] opens. Choosing it closes the list, with the keyboard, too.
+pub fn choice<T: PartialEq>(ui: &mut Ui, chosen: &mut T, value: T, text: impl Into<egui::WidgetText>) {
+    if ui.selectable_label(*chosen == value, text.into()).clicked() {
+        *chosen = value;
+        ui.close();
+    }
+}
+
+/// A name with controls below it that have names and tooltips of their own.
+pub fn under_name(ui: &mut Ui, about: About<'_>, add: impl FnOnce(&mut Ui) -> Response) -> Response {
+    ui.spacing_mut().item_spacing.y = 3.0;
+    let is_useful = about.disabled_reason.is_none();
+    let response = ui
+        .add_enabled_ui(is_useful, |ui| {
+            ui.add(egui::Label::new(RichText::new(about.name).small().color(ui.visuals().weak_text_color())));
+            add(ui)
+        })
+        .inner;
+    ui.add_space(5.0);
+    response
+}
+
+/// Adds the tooltip beside the panel, with the reason if the control is disabled.
+pub fn explained(ui: &Ui, response: Response, about: About<'_>) -> Response {
+    tips::explain(ui, response, Side::Beside, about.help, about.disabled_reason)
+}
+
+/// A slider with its number. The slider covers the usual values `track`; the number takes any within `limits`.
+pub fn slider(
+    ui: &mut Ui,
+    about: About<'_>,
+    value: &mut f64,
+    (track, limits): (RangeInclusive<f64>, RangeInclusive<f64>),
+    suffix: &str,
+    change: impl FnOnce(Slider<'_>) -> Slider<'_>,
+) -> Response {
+    under_name(ui, about, |ui| {
+        ui.horizontal(|ui| {
+            let digits = ui.text_style_height(&egui::TextStyle::Body) * 5.0;
+            ui.spacing_mut().slider_width =
+                (ui.available_width() - digits - ui.spacing().item_spacing.x).max(40.0);
+            let speed = 0.002 * (track.end() - track.start()).min(value.abs().max(0.1) * 5.0);
+            let slider = Slider::new(value, track).show_value(false).clamping(SliderClamping::Edits);
+            let slid = ui.add(change(slider));
+            named(&slid, about.name);
+            let size = vec2(digits, ui.spacing().interact_size.y);
+            let typed =
+                number(ui, (about.name, size), value, limits, |drag| drag.speed(speed).suffix(suffix));
+            explained(ui, slid, about).union(explained(ui, typed, about))
+        })
+        .inner
+    })
+}
+
+/// Controls for the three components of a vector, each within `limits`.
+pub fn vector(
+    ui: &mut Ui,
+    about: About<'_>,
+    value: &mut DVec3,
+    limits: RangeInclusive<f64>,
+    speed: f64,
+) -> Response {
+    under_name(ui, about, |ui| {
+        ui.horizontal(|ui| {
+            ui.spacing_mut().item_spacing.x = 4.0;
+            let size = vec2((ui.available_width() - 8.0) / 3.0, ui.spacing().interact_size.y);
+            let mut all: Option<Response> = None;
+            for (axis, component) in ["x", "y", "z"].into_iter().zip(value.as_mut()) {
+                let name = format!("{} {axis}", about.name);
+                let response = number(ui, (&name, size), component, limits.clone(), |drag| drag.speed(speed));
+                let response = explained(ui, response, about);
+                all = Some(match all {
+                    Some(earlier) => earlier.union(response),
+                    None => response,
+                });
+            }
+            all
+        })
+        .inner
+        .unwrap_or_else(|| ui.label(""))
+    })
+}
+
+/// A whole number to type or drag.
+pub fn whole(
+    ui: &mut Ui,
+    about: About<'_>,
+    value: &mut u64,
+    range: RangeInclusive<u64>,
+    speed: f64,
+) -> Response {
+    under_name(ui, about, |ui| {
+        let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
+        let response = whole_number(ui, (about.name, size), value, range, |drag| drag.speed(speed));
+        explained(ui, response, about)
+    })
+}
+
+/// A check box. What it enables is shown only while it is checked.
+pub fn check(ui: &mut Ui, about: About<'_>, value: &mut bool) -> Response {
+    let response = ui.add_enabled(about.disabled_reason.is_none(), egui::Checkbox::new(value, about.name));
+    explained(ui, response, about)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::tests::{Drawings, dressed, leave};
+    use egui_kittest::kittest::Queryable;
+
+    struct Controls {
+        numbers: [f64; 2],
+        vector: DVec3,
+        count: u64,
+        is_on: bool,
+        reason: Option<&'static str>,
+    }
+
+    #[test]
+    fn a_choice_by_key_closes_the_list() {
+        let mut chosen = 1;
+        let ui = |ui: &mut Ui| {
+            control(ui, About::new("Number", "One of three"), |ui| {
+                let list = egui::ComboBox::from_id_salt("list");
+                let add = |ui: &mut Ui| {
+                    (1..4).for_each(|value| choice(ui, &mut chosen, value, format!("take {value}")))
+                };
+                list.show_ui(ui, add).response
+            });
+        };
+        let mut harness = egui_kittest::Harness::new_ui(ui);
+        harness.get_by_label("Number").click();
+        harness.run();
+        harness.get_by_label("take 3").focus();
+        harness.run();
+        harness.key_press(egui::Key::Enter);
+        harness.run();
+        assert!(harness.query_by_label("take 3").is_none(), "the list is still open");
+        drop(harness);
+        assert_eq!(chosen, 3);
+    }
+
+    #[test]
+    fn controls_are_drawn_under_their_names_and_tell_why_they_are_disabled() {
+        let draw = |ui: &mut Ui, controls: &mut Controls| {
+            let Controls { numbers: [first, second], vector: vector_of, count, is_on, reason } = controls;
+            let about = |name| About::new(name, "What it is").disabled_if(*reason);
+            let ranges = (0.0..=10.0, -100.0..=100.0);
+            slider(ui, about("Slider"), first, ranges, "°", |slider| slider.max_decimals(1));
+            vector(ui, about("Vector"), vector_of, -5.0..=5.0, 0.01);
+            whole(ui, about("Whole"), count, 1..=9, 1.0);
+            check(ui, about("Check"), is_on);
+            control(ui, about("Control"), |ui| ui.button("press"));
+            number(ui, ("Number", vec2(60.0, 22.0)), second, 0.0..=1.0, |drag| drag);
+        };
+        let vector = DVec3::new(1.5, -2.25, 0.0);
+        let controls = Controls { numbers: [2.5, 0.125], vector, count: 7, is_on: true, reason: None };
+        let mut harness = dressed([240.0, 330.0]).build_ui_state(draw, controls);
+        let mut drawings = Drawings::default();
+        drawings.add("enabled", &harness);
+        drawings.add_tips(&mut harness);
+        for name in ["Slider", "Check", "Control", "Number"] {
+            let pos = harness.get_all_by_label(name).last().unwrap().rect().center();
+            for pressed in [true, false] {
+                let (button, modifiers) = (egui::PointerButton::Primary, egui::Modifiers::NONE);
+                harness.event(egui::Event::PointerMoved(pos));
+                harness.event(egui::Event::PointerButton { pos, button, pressed, modifiers });
+                harness.run_steps(1);
+                drawings.add(&format!("{name}, pressed: {pressed}"), &harness);
+            }
+        }
+        leave(&mut harness);
+        harness.state_mut().reason = Some("Why it is disabled");
+        harness.run_steps(2);
+        drawings.add("disabled", &harness);
+        drawings.add_tips(&mut harness);
+        drawings.keep("widgets");
+    }
+}
