@@ -167,12 +167,12 @@ mod tests {
             });
         };
         let mut harness = egui_kittest::Harness::new_ui(ui);
-        harness.get_by_label("Number").click();
-        harness.run();
+        harness.get_by_role(egui::accesskit::Role::ComboBox).click();
+        harness.run_steps(4);
         harness.get_by_label("take 3").focus();
-        harness.run();
+        harness.run_steps(4);
         harness.key_press(egui::Key::Enter);
-        harness.run();
+        harness.run_steps(4);
         assert!(harness.query_by_label("take 3").is_none(), "the list is still open");
         drop(harness);
         assert_eq!(chosen, 3);
