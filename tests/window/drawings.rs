@@ -174,7 +174,8 @@ fn two_stages_and_a_divider() {
         let (mut harness, before) = usual();
         send(&mut harness, Command::Wipe);
         until(&mut harness, "both pictures", |window| window.has_other_picture());
-        // The noise decided where it was.
+        // The noise decides where it is placed.
+        until(&mut harness, "the divider in its place", |window| window.divider() != 0.5);
         harness.run_steps(30);
         let rect = harness.state().picture_rect();
         let [from, to] = [harness.state().divider(), 0.5].map(|share| rect.lerp_inside(vec2(share, 0.5)));

@@ -154,6 +154,7 @@ fn a_divider_at_both_ends() {
         let (mut harness, before) = usual();
         send(&mut harness, Command::Wipe);
         until(&mut harness, "both pictures", |window| window.has_other_picture());
+        until(&mut harness, "the divider in its place", |window| window.divider() != 0.5);
         harness.run_steps(30);
         for (name, share) in [("divider_left", 0.0), ("divider_right", 1.0)] {
             let rect = harness.state().picture_rect();
